@@ -1,0 +1,60 @@
+# Every target makes its own .venv first, once; `make` or `make help` lists them.
+PYTHON ?= python3
+VENV ?= .venv
+RECIPE ?= da_per_episode
+SWEEP ?= default
+ARGS ?=
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+.DEFAULT_GOAL := help
+.PHONY: help install train evaluate sweep table export test lint bench doctor clean
+
+help: ## list the targets
+	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1|/' \
+	  | awk -F'|' '{printf "  make %-10s %s\n", $$1, $$2}'
+
+$(VENV)/.stamp: pyproject.toml
+	@echo "setting up $(VENV) (minutes, once)"
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) torch==2.13.0
+	$(PIP) -e '.[dev]'
+	@touch $@
+
+$(VENV)/.stamp-%: $(VENV)/.stamp
+	$(PIP) -e '.[$*]'
+	@touch $@
+
+install: $(VENV)/.stamp ## make the environment in .venv and stop
+
+train: $(VENV)/.stamp ## train and evaluate: RECIPE=da_per_episode ARGS="severity=0.6 seed=1"
+	$(BIN)/python -m mitigate.train recipe=$(RECIPE) $(ARGS)
+
+evaluate: $(VENV)/.stamp ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"
+	$(BIN)/python -m mitigate.evaluate $(ARGS)
+
+sweep: $(VENV)/.stamp-sweep ## many runs, one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
+	$(BIN)/python -m mitigate.train --multirun runs=sweeps/$(SWEEP) $(ARGS); status=$$?; \
+	$(BIN)/python -m mitigate.table sweeps/$(SWEEP) --out sweeps/$(SWEEP) && exit $$status
+
+table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --out report"
+	$(BIN)/python -m mitigate.table $(ARGS)
+
+export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/a NAME=mine
+	$(BIN)/python -m mitigate.export $(RUN) $(NAME) $(ARGS)
+
+test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
+	$(BIN)/python -m pytest $(ARGS)
+
+lint: $(VENV)/.stamp ## check style and formatting
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+bench: $(VENV)/.stamp-bench ## measure the renderer against MiniWorld, and the corruptions
+	$(BIN)/python -m mitigate.bench $(ARGS)
+
+doctor: ## say what this machine has and what is missing
+	@$(if $(wildcard $(VENV)/.stamp),$(BIN)/python,$(PYTHON)) -m mitigate.doctor
+
+clean: ## delete caches; runs/, sweeps/ and .venv stay
+	rm -rf .pytest_cache .ruff_cache .mypy_cache .hypothesis
+	find . -name __pycache__ -not -path './$(VENV)/*' -type d -prune -exec rm -rf {} +

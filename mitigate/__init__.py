@@ -1,0 +1,1 @@
+"""Corrupt, mitigate, measure and ship hardened navigation agents."""

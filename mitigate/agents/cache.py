@@ -1,0 +1,130 @@
+"""Stored features of lattice poses of training apartments: planner training without rendering.
+
+Poses lie about ``SPACING`` metres apart and look along heading 0. Headings are multiples of 30 degrees,
+where a panorama is the heading-0 one with its views rolled. Built once, in order, resumable: each
+apartment is one file written atomically.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import torch
+from scipy.spatial import cKDTree
+from tqdm import tqdm
+
+from mitigate.agents.concepts import view_labels
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.agents.waypoints import COUNT, select
+from mitigate.checkpoint import write_atomically
+from mitigate.envs.apartments.renderer import Renderer
+from mitigate.envs.apartments.simulator import apartment_of, goal_field
+from mitigate.envs.apartments.tasks import from_vlnce, heading_of, landmarks
+from mitigate.envs.episodes import Episode
+from mitigate.keys import VIEW_STEP_DEGREES, VIEWS
+
+SPACING = 0.5  # metres
+
+
+class ApartmentCache:
+    """Arrays of one apartment: xy [n, 2], views float16 [n, 12, F], waypoints [n, 6, 2] (metres 0 =
+    none), seen uint64 [n, 12] (bit i: furniture i shows in the middle of the view)."""
+
+    def __init__(self, arrays: dict[str, np.ndarray]) -> None:
+        self.xy, self.views = arrays["xy"], torch.from_numpy(arrays["views"])
+        self.waypoints, self.seen = arrays["waypoints"], arrays["seen"]
+        self.tree = cKDTree(self.xy)
+
+
+def lattice(cells: np.ndarray, xy: np.ndarray) -> np.ndarray:
+    """Indices of free cells on a ``SPACING`` lattice: the cell nearest to each lattice point."""
+    key = np.floor(xy / SPACING).astype(int)
+    middle = np.abs(xy / SPACING - key - 0.5).sum(1)
+    order = np.lexsort((middle, key[:, 1], key[:, 0]))
+    first = np.ones(len(order), bool)
+    first[1:] = (np.diff(key[order], axis=0) != 0).any(1)
+    return np.sort(order[first])
+
+
+def path_of(folder: Path, seed: int) -> Path:
+    return folder / f"{seed:06d}.npz"
+
+
+@torch.no_grad()
+def build(agent: TopologicalAgent, folder: Path, apartments: range, size: int = 64) -> None:
+    """Fill the cache of some training apartments; those already there are kept."""
+    renderer = Renderer(size, scenes=2)
+    folder.mkdir(parents=True, exist_ok=True)
+    for seed in tqdm([s for s in apartments if not path_of(folder, s).exists()], desc="feature cache", disable=None):
+        apartment = apartment_of(f"apartments/train/{seed:06d}")
+        renderer.load(apartment)
+        xy_all = (apartment.space.cells[:, ::-1] + 0.5) * 0.1
+        xy = xy_all[lattice(apartment.space.cells, xy_all)]
+        views, waypoints, seen = zip(*(_entry(agent, renderer, apartment, p) for p in xy), strict=True)
+        arrays = {"xy": xy, "views": np.stack(views), "waypoints": np.stack(waypoints), "seen": np.stack(seen)}
+        write_atomically(path_of(folder, seed), partial(_save, arrays))
+
+
+def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
+    with open(path, "wb") as file:
+        np.savez(file, **arrays)
+
+
+def _entry(agent: TopologicalAgent, renderer: Renderer, apartment, xy: np.ndarray) -> tuple:  # type: ignore[no-untyped-def]
+    rgb, depth, ids = renderer.render(float(xy[0]), float(xy[1]), 0.0)
+    with torch.autocast("cpu", torch.bfloat16):
+        views, _, waypoints = agent.perceive(torch.from_numpy(rgb)[None], torch.from_numpy(depth)[None])
+    chosen = np.zeros((COUNT, 2), np.float32)
+    found = select(waypoints[0].float().numpy())
+    chosen[: len(found)] = found
+    _, seen = view_labels(apartment, ids, depth)
+    bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(1, dtype=np.uint64)
+    return views[0].half().numpy(), chosen, bits
+
+
+def load(folder: Path, seed: int) -> ApartmentCache:
+    with np.load(path_of(folder, seed), allow_pickle=False) as arrays:
+        return ApartmentCache({name: arrays[name] for name in arrays.files})
+
+
+class CachedWorld:
+    """A world of stored features: every move ends on the lattice pose nearest to its target.
+
+    ``shown`` holds, for each look, which views show the goal's landmark: float32 [12].
+    """
+
+    def __init__(self, episode: Episode, cache: ApartmentCache) -> None:
+        self.episode, self.cache = episode, cache
+        self.space = apartment_of(episode.scene_id).space
+        self.field = goal_field(episode.scene_id, tuple(goal.position for goal in episode.goals))
+        self.index = int(cache.tree.query(from_vlnce(episode.start_position))[1])
+        self.turn = _turns(heading_of(episode.start_rotation))
+        self.landmarks = np.uint64(sum(1 << i for i in landmarks(episode)))
+        self.shown: list[np.ndarray] = []
+
+    def look(self) -> tuple[torch.Tensor, np.ndarray]:
+        waypoints = self.cache.waypoints[self.index]
+        waypoints = waypoints[waypoints[:, 1] > 0].copy()
+        waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (2 * np.pi)
+        shows = (self.cache.seen[self.index] & self.landmarks) > 0
+        self.shown.append(np.roll(shows.astype(np.float32), self.turn))
+        return self.cache.views[self.index].float().roll(self.turn, 0), waypoints
+
+    def pose(self) -> np.ndarray:
+        return np.array([*self.cache.xy[self.index], np.radians(VIEW_STEP_DEGREES) * self.turn])
+
+    def go(self, route: list[np.ndarray]) -> None:
+        before = route[-2] if len(route) > 1 else self.cache.xy[self.index]
+        self.index = int(self.cache.tree.query(route[-1])[1])
+        dx, dy = route[-1] - before
+        self.turn = _turns(float(np.arctan2(-dx, dy)))
+
+    def distance(self, xy: np.ndarray) -> float:
+        return float(self.field[self.space.cell_of(xy)])
+
+
+def _turns(heading: float) -> int:
+    """Heading in steps of 30 degrees, counter-clockwise."""
+    return int(np.round(np.degrees(heading) / VIEW_STEP_DEGREES)) % VIEWS

@@ -1,0 +1,91 @@
+"""What a view can show, in words: the shared vocabulary of RGB features and instructions.
+
+The RGB encoder predicts, for the central 36 degrees of each view, which concepts are there; the
+planner turns the probabilities into text embeddings of the concepts' words, so that views and
+instructions live in one space from the start.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from mitigate.envs.apartments.apartment import Apartment
+from mitigate.envs.apartments.furniture import CATEGORIES, ROOM_KINDS
+from mitigate.envs.apartments.palette import COLOUR_NAMES
+
+# visible things, things within NEAR_METRES, colours of coloured things, kinds of the rooms seen
+CONCEPTS = (
+    *CATEGORIES,
+    *(f"near {name}" for name in CATEGORIES),
+    *COLOUR_NAMES,
+    *ROOM_KINDS,
+)
+THINGS = slice(0, len(CATEGORIES))
+NEAR = slice(len(CATEGORIES), 2 * len(CATEGORIES))
+COLOURS = slice(NEAR.stop, NEAR.stop + len(COLOUR_NAMES))
+KINDS = slice(COLOURS.stop, len(CONCEPTS))
+NEAR_METRES = 2.0
+_HALF_ANGLE = np.radians(18.0)
+
+
+def band(size: int) -> tuple[int, int]:
+    """First and last + 1 column of the central 36 degrees of a 90 degree view."""
+    half = np.tan(_HALF_ANGLE) * size / 2
+    return int(round(size / 2 - half)), int(round(size / 2 + half))
+
+
+def view_labels(apartment: Apartment, ids: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Labels of a panorama from its face ids.
+
+    Returns concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1} and seen bool ``[12, furniture]``:
+    which pieces of furniture show in the central band of each view.
+    """
+    low, high = band(ids.shape[2])
+    instance, room, category, colour, kind = _tables(apartment.scene_id, apartment)
+    return _label(ids, depth[..., 0], low, high, instance, room, category, colour, kind, len(CATEGORIES), len(COLOUR_NAMES), len(CONCEPTS))
+
+
+@lru_cache(maxsize=1024)
+def _tables(scene_id: str, apartment: Apartment) -> tuple[np.ndarray, ...]:
+    furniture = apartment.furniture
+    category = np.array([CATEGORIES.index(p.category) for p in furniture], np.int64)
+    colour = np.array([COLOUR_NAMES.index(p.colour) if p.colour else -1 for p in furniture], np.int64)
+    kind = np.array([ROOM_KINDS.index(r.kind) for r in apartment.rooms], np.int64)
+    faces = apartment.faces
+    return faces.instance.astype(np.int64), faces.room.astype(np.int64), category, colour, kind
+
+
+@njit(cache=True)
+def _label(ids, depth, low, high, instance, room, category, colour, kind, things, colours, concepts):  # type: ignore[no-untyped-def]
+    views, rows = ids.shape[0], ids.shape[1]
+    out = np.zeros((views, concepts), np.float32)
+    seen = np.zeros((views, category.shape[0]), np.bool_)
+    total = (high - low) * rows
+    for v in range(views):
+        count, close = np.zeros(category.shape[0]), np.zeros(category.shape[0])
+        rooms = np.zeros(kind.shape[0])
+        for i in range(rows):
+            for j in range(low, high):
+                face = ids[v, i, j]
+                if face < 0 or face >= room.shape[0]:
+                    continue
+                rooms[room[face]] += 1
+                thing = instance[face]
+                if thing >= 0:
+                    count[thing] += 1
+                    close[thing] += depth[v, i, j] < 2.0
+        for thing in range(category.shape[0]):
+            if count[thing] >= 0.010 * total:
+                seen[v, thing] = True
+                out[v, category[thing]] = 1
+                if close[thing] > 0.5 * count[thing]:
+                    out[v, things + category[thing]] = 1
+                if colour[thing] >= 0:
+                    out[v, 2 * things + colour[thing]] = 1
+        for r in range(kind.shape[0]):
+            if rooms[r] >= 0.05 * total:
+                out[v, 2 * things + colours + kind[r]] = 1
+    return out, seen

@@ -1,0 +1,86 @@
+"""Per-view encoders: small residual CNNs with GroupNorm, one for RGB and one for depth.
+
+Their ``stages`` are the places where adapters go. Both take what the sensor gives (uint8 RGB,
+float32 metres) and normalise inside, so no caller can normalise wrongly.
+"""
+
+from __future__ import annotations
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from mitigate.agents.concepts import CONCEPTS
+
+DEPTH_RANGE = 5.0  # metres; beyond it nothing matters for steps of at most 3 m
+_GRID = 4  # rows and columns of the last feature map at 64 pixels
+
+
+class Block(nn.Module):
+    """Residual block of two 3x3 convolutions; ``stride`` 2 halves the map."""
+
+    def __init__(self, inputs: int, outputs: int, stride: int) -> None:
+        super().__init__()
+        self.first = nn.Conv2d(inputs, outputs, 3, stride, 1, bias=False)
+        self.norm1 = nn.GroupNorm(8, outputs)
+        self.second = nn.Conv2d(outputs, outputs, 3, 1, 1, bias=False)
+        self.norm2 = nn.GroupNorm(8, outputs)
+        self.skip = nn.Conv2d(inputs, outputs, 1, bias=False)
+        self.stride = stride
+
+    def forward(self, x: Tensor) -> Tensor:
+        y = self.norm2(self.second(F.relu(self.norm1(self.first(x)))))
+        x = F.avg_pool2d(x, self.stride) if self.stride > 1 else x
+        return F.relu(y + self.skip(x))
+
+
+class Encoder(nn.Module):
+    """Stem and residual stages; any input size a multiple of 16, a 4x4 map out."""
+
+    def __init__(self, channels: int, stem: int, widths: tuple[int, ...]) -> None:
+        super().__init__()
+        self.stem = nn.Sequential(nn.Conv2d(channels, stem, 3, 2, 1, bias=False), nn.GroupNorm(8, stem), nn.ReLU())
+        blocks = [Block(a, b, 2) for a, b in zip((stem, *widths[:-1]), widths, strict=True)]
+        self.stages = nn.ModuleList(blocks)
+
+    def maps(self, x: Tensor) -> Tensor:
+        """Normalised input ``[n, c, H, W]`` to features ``[n, widths[-1], 4, 4]``."""
+        x = self.stem(x)
+        for stage in self.stages:
+            x = stage(x)
+        return x if x.shape[-1] == _GRID else F.adaptive_avg_pool2d(x, _GRID)
+
+
+class RGBEncoder(Encoder):
+    """uint8 ``[n, H, W, 3]`` to (features ``[n, width]``, concept logits ``[n, len(CONCEPTS)]``)."""
+
+    def __init__(self, stem: int = 32, widths: tuple[int, ...] = (48, 96, 160), width: int = 128) -> None:
+        super().__init__(3, stem, tuple(widths))
+        self.gather = nn.Conv2d(widths[-1], 2 * widths[-1], _GRID, groups=widths[-1])
+        self.embed = nn.Linear(2 * widths[-1], width)
+        self.concepts = nn.Linear(width, len(CONCEPTS))
+
+    def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
+        x = rgb.permute(0, 3, 1, 2).float() / 127.5 - 1
+        x = F.gelu(self.gather(self.maps(x)).flatten(1))
+        features = F.gelu(self.embed(x))
+        return features, self.concepts(features)
+
+
+class DepthEncoder(Encoder):
+    """float32 metres ``[n, H, W, 1]`` to features ``[n, width]`` of each view.
+
+    Invalid depth (0, NaN, infinite) enters as 0 with its own mask channel.
+    """
+
+    def __init__(self, stem: int = 24, widths: tuple[int, ...] = (32, 64, 96), width: int = 128) -> None:
+        super().__init__(2, stem, tuple(widths))
+        self.rows = nn.Conv2d(widths[-1], widths[-1], (_GRID, 1))
+        self.embed = nn.Linear(_GRID * widths[-1], width)
+
+    def forward(self, depth: Tensor) -> Tensor:
+        z = depth.permute(0, 3, 1, 2).float()
+        valid = torch.isfinite(z) & (z > 0)
+        z = torch.where(valid, z.clamp(max=DEPTH_RANGE) / DEPTH_RANGE, torch.zeros_like(z))
+        x = self.maps(torch.cat([z * 2 - valid.float(), 1 - valid.float()], 1))
+        return F.gelu(self.embed(F.relu(self.rows(x)).flatten(1)))

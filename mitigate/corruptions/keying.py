@@ -1,0 +1,176 @@
+"""Keyed randomness: every draw is a pure function of (seed, episode, corruption, frame, view, pixel).
+
+A blake2b digest of the named parts gives 64 bits; an integer hash (splitmix64, Steele et al. 2014)
+of that digest plus a counter gives the numbers. No global state, no Python ``hash()``, no running
+generator: the same frame gets the same pixels in any batch, process, order or resumed run.
+
+Tables and masks are computed in float64 and rounded to fixed point or float32, and kernels use only
+basic arithmetic, so the last bit of a machine's ``exp`` does not reach the pixels. (After editing
+``mix``, delete ``__pycache__``: numba does not see that callers in other files changed.)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from hashlib import blake2b
+from statistics import NormalDist
+
+import numpy as np
+from numba import njit
+
+GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment
+MIX_A, MIX_B = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB  # splitmix64 multipliers
+MASK = (1 << 64) - 1
+NORMAL_BITS = 16  # size of the normal quantile table: |n| <= 4.3
+FIELD_SIDE = 128  # cells along the shorter side of a random field, at every frame size
+
+_U = np.uint64
+_GOLDEN, _A, _B = _U(GOLDEN), _U(MIX_A), _U(MIX_B)
+_S30, _S27, _S31 = _U(30), _U(27), _U(31)
+
+
+@dataclass(frozen=True)
+class Key:
+    """Names one instant: ``seed``, the ``episode`` (any string) and the ``frame`` number in it.
+
+    Lens dirt, flare position and the like follow (seed, episode); pixel noise follows the frame as
+    well. The per-frame regime is a new ``episode`` string for every frame, nothing else.
+    """
+
+    seed: int
+    episode: str
+    frame: int = 0
+
+    def still(self) -> Key:
+        """The key without its frame: what episode state is cached under."""
+        return Key(self.seed, self.episode)
+
+
+def digest(key: Key, name: str, *, frame: bool = False, view: int | None = None) -> int:
+    """64-bit digest of the episode scope, or of the frame scope, for the draw called ``name``."""
+    parts = [str(int(key.seed)), str(key.episode), name]
+    if frame:
+        parts.append(str(int(key.frame)))
+    text = "".join(f"{len(part)}:{part}" for part in parts).encode("utf-8", "surrogatepass")
+    value = int.from_bytes(blake2b(text, digest_size=8, person=b"mitigate").digest(), "little")
+    return value if view is None else scramble(value, view)
+
+
+def scramble(value: int, counter: int) -> int:
+    """Splitmix64 output number ``counter`` of the stream ``value`` (Python integers)."""
+    z = (value + (counter + 1) * GOLDEN) & MASK
+    z = ((z ^ (z >> 30)) * MIX_A) & MASK
+    z = ((z ^ (z >> 27)) * MIX_B) & MASK
+    return z ^ (z >> 31)
+
+
+def uniform(value: int, counter: int = 0) -> float:
+    """Number ``counter`` of the stream ``value``, uniform in [0, 1), 53 bits."""
+    return (scramble(value, counter) >> 11) * 2.0**-53
+
+
+@njit(inline="always")
+def mix(value, counter):
+    """The compiled twin of ``scramble``: both arguments and the result are uint64."""
+    z = value + (counter + _U(1)) * _GOLDEN
+    z = (z ^ (z >> _S30)) * _A
+    z = (z ^ (z >> _S27)) * _B
+    return z ^ (z >> _S31)
+
+
+def unit_normals(bits: int) -> np.ndarray:
+    """float64 [2^bits]: standard normal quantiles at the middles of equal bins, variance one."""
+    count = 1 << bits
+    half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
+    table = np.concatenate([half, -half[::-1]])
+    return table / np.sqrt(np.mean(table**2))
+
+
+@lru_cache(maxsize=1)
+def normal_table() -> np.ndarray:
+    """float32 [65536]: the quantiles that pixel noise looks up."""
+    return unit_normals(NORMAL_BITS).astype(np.float32)
+
+
+@njit(cache=True)
+def _fill_normals(value, table, out):
+    for i in range(out.size):
+        word = mix(value, _U(i >> 2))
+        out[i] = table[(word >> _U((i & 3) << 4)) & _U(0xFFFF)]
+
+
+def normals(value: int, count: int) -> np.ndarray:
+    """float32 [count]: standard normals of the stream ``value``."""
+    out = np.empty(count, np.float32)
+    _fill_normals(_U(value), normal_table(), out)
+    return out
+
+
+@njit(cache=True)
+def _blur_torus(noise, weights):
+    rows, cols = noise.shape
+    radius = weights.size // 2
+    tall = np.zeros((rows, cols + 2 * radius), np.float32)
+    out = np.zeros((rows, cols), np.float32)
+    for y in range(rows):
+        for k in range(weights.size):
+            source = (y + k - radius) % rows
+            for x in range(cols):
+                tall[y, radius + x] += weights[k] * noise[source, x]
+        for x in range(radius):
+            tall[y, x] = tall[y, cols + x]
+            tall[y, cols + radius + x] = tall[y, radius + x]
+        for k in range(weights.size):
+            for x in range(cols):
+                out[y, x] += weights[k] * tall[y, x + k]
+    return out
+
+
+@njit(cache=True)
+def _resize_torus(cells, height, width):
+    rows, cols = cells.shape
+    out = np.empty((height, width), np.float32)
+    for y in range(height):
+        v = (y + 0.5) * rows / height - 0.5
+        top = int(np.floor(v))
+        fy = np.float32(v - top)
+        a, b = top % rows, (top + 1) % rows
+        for x in range(width):
+            u = (x + 0.5) * cols / width - 0.5
+            left = int(np.floor(u))
+            fx = np.float32(u - left)
+            i, j = left % cols, (left + 1) % cols
+            upper = cells[a, i] + fx * (cells[a, j] - cells[a, i])
+            lower = cells[b, i] + fx * (cells[b, j] - cells[b, i])
+            out[y, x] = upper + fy * (lower - upper)
+    return out
+
+
+@lru_cache(maxsize=32)
+def field(value: int, height: int, width: int, correlation: float) -> tuple:
+    """A Gaussian random field on a torus and its sorted cells.
+
+    ``correlation`` is the standard deviation of the smoothing kernel as a fraction of the shorter
+    side. The field is drawn on a grid whose shorter side has ``FIELD_SIDE`` cells and resampled, so
+    a frame and its half-size copy get the same pattern.
+
+    Returns (float32 [height, width] with unit standard deviation, float32 sorted cells).
+    """
+    scale = FIELD_SIDE / min(height, width)
+    rows, cols = max(1, round(height * scale)), max(1, round(width * scale))
+    sigma = correlation * FIELD_SIDE
+    radius = int(np.ceil(3.0 * sigma))
+    weights = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma) ** 2)
+    weights = (weights / np.sqrt(np.sum(weights**2))).astype(np.float32)
+    cells = _blur_torus(normals(value, rows * cols).reshape(rows, cols), weights)
+    smooth = _resize_torus(cells, height, width)
+    ordered = np.sort(cells, axis=None)
+    smooth.flags.writeable = ordered.flags.writeable = False
+    return smooth, ordered
+
+
+def top_share(ordered: np.ndarray, share: float) -> float:
+    """The level that the top ``share`` of the sorted cells reach; infinity for share 0."""
+    count = round(share * ordered.size)
+    return float("inf") if count == 0 else float(ordered[ordered.size - count])

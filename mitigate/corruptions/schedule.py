@@ -1,0 +1,138 @@
+"""Which frame is hurt by what: clean, per-frame, per-episode and success-distributed schedules."""
+
+from __future__ import annotations
+
+import math
+from bisect import bisect_right
+from dataclasses import dataclass
+from itertools import accumulate
+
+from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.suite import (
+    CLEAN,
+    NAMES,
+    RGB,
+    Corruption,
+    check_name,
+    check_severity,
+)
+
+MODES = ("clean", "per_frame", "per_episode", "success_distributed")
+
+
+@dataclass
+class Schedule:
+    """Draws the corruption and the key of a frame.
+
+    * ``clean``: nothing is hurt.
+    * ``per_frame``: corruption and random state are drawn anew for every frame (transient).
+    * ``per_episode``: one corruption and one episode state for the whole episode (persistent).
+    * ``success_distributed``: per episode, corruption k with p_k proportional to
+      (1 - SR_k)^alpha + floor, where SR_k is its success rate in a prior evaluation.
+
+    Args:
+        mode: one of MODES.
+        severity: s in [0, 1] of RGB corruptions, and of depth ones unless
+            ``severity_depth`` is given (the paper also trains at 0.9 / 0.8).
+        clean_share: share of frames (per frame) or episodes that stay clean, in [0, 1].
+        names: the corruptions to draw from.
+        alpha, floor: of the success-distributed weights; both >= 0, floor > 0 keeps all alive.
+        success: SR_k in [0, 1] by name; None means uniform weights until ``refresh``.
+
+    Raises ValueError for anything outside these ranges.
+    """
+
+    mode: str
+    severity: float
+    severity_depth: float | None = None
+    clean_share: float = 0.25
+    names: tuple[str, ...] = NAMES
+    alpha: float = 1.0
+    floor: float = 0.05
+    success: dict[str, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.mode not in MODES:
+            raise ValueError(
+                f"There is no schedule mode {self.mode!r}. Allowed modes: {', '.join(MODES)}."
+            )
+        self.severity = check_severity(self.severity)
+        if self.severity_depth is not None:
+            self.severity_depth = check_severity(self.severity_depth)
+        self.names = tuple(check_name(name) for name in self.names)
+        if not self.names or len(set(self.names)) < len(self.names):
+            raise ValueError(
+                f"A schedule needs at least one corruption and each only once, but names = "
+                f"{self.names}. Leave it out to draw from all of {', '.join(NAMES)}."
+            )
+        if not 0.0 <= self.clean_share <= 1.0:
+            raise ValueError(f"clean_share must be in [0, 1], but it is {self.clean_share!r}.")
+        if not (0.0 <= self.alpha < math.inf and 0.0 <= self.floor < math.inf):
+            raise ValueError(
+                f"alpha and floor must be finite and >= 0, but alpha = {self.alpha!r} and floor = "
+                f"{self.floor!r}."
+            )
+        success, self.success = self.success, None
+        self._weights = [1.0 / len(self.names)] * len(self.names)
+        if success is not None:
+            self.refresh(success)
+
+    @property
+    def weights(self) -> dict[str, float]:
+        """Probability of each corruption given that the frame is not clean; adds up to 1."""
+        return dict(zip(self.names, self._weights, strict=True))
+
+    def refresh(self, success: dict[str, float]) -> None:
+        """Recompute the weights from success rates by name ("clean" and others are ignored).
+
+        A name that is absent keeps its last rate. Raises ValueError if it never had one, or if a
+        rate is outside [0, 1]. Other modes than success_distributed keep uniform weights.
+        """
+        known = {**(self.success or {}), **success}
+        missing = [name for name in self.names if name not in known]
+        if missing:
+            raise ValueError(
+                f"No success rate for {', '.join(missing)}. Evaluate these corruptions first, or "
+                "leave them out of the schedule's names."
+            )
+        rates = {name: float(known[name]) for name in self.names}
+        wrong = {name: rate for name, rate in rates.items() if not 0.0 <= rate <= 1.0}
+        if wrong:
+            raise ValueError(f"Success rates are shares in [0, 1], but got {wrong}.")
+        self.success = rates
+        if self.mode == "success_distributed":
+            raw = [(1.0 - rate) ** self.alpha + self.floor for rate in rates.values()]
+            total = sum(raw)
+            self._weights = [w / total if total > 0 else 1.0 / len(raw) for w in raw]
+
+    def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
+        """The corruption and key of one frame: a function of the arguments and the weights."""
+        episode = str(episode)
+        if self.mode == "clean":
+            return CLEAN, Key(seed, episode, frame)
+        if self.mode == "per_frame":
+            episode = f"{episode}#{frame}"
+        key = Key(seed, episode, frame)
+        value = digest(key, "schedule")
+        if uniform(value, 0) < self.clean_share:
+            return CLEAN, key
+        place = bisect_right(list(accumulate(self._weights)), uniform(value, 1))
+        name = self.names[min(place, len(self.names) - 1)]
+        deep = name not in RGB and self.severity_depth is not None
+        return Corruption(name, self.severity_depth if deep else self.severity), key
+
+    def state_dict(self) -> dict:
+        """JSON-able: what a checkpoint keeps so that the weights survive a resume."""
+        return {"success": None if self.success is None else dict(self.success)}
+
+    def load_state_dict(self, state: dict) -> None:
+        """Restore ``state_dict()``; ValueError if it lacks a corruption of this schedule."""
+        if "success" not in state:
+            raise ValueError(
+                f"This is not the state of a Schedule: it has no 'success' entry, only "
+                f"{sorted(state)}. Pass what state_dict() returned."
+            )
+        self.success = None
+        self._weights = [1.0 / len(self.names)] * len(self.names)
+        if state["success"] is not None:
+            self.refresh(state["success"])

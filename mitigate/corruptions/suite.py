@@ -1,0 +1,194 @@
+"""The suite: names, checks and the two calls that everything else uses.
+
+``corrupt`` hurts one modality of one instant; ``corrupt_observation`` hurts an observation dict.
+Both are pure functions of (frame, name, severity, key, heading).
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mitigate import keys
+from mitigate.corruptions import depth, eld, rgb
+from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.keying import Key
+
+SUITE_VERSION = "1.0"  # changes when any pixel of any corruption changes
+
+_RGB = {
+    "motion_blur": rgb.motion_blur,
+    "low_light": rgb.low_light,
+    "low_light_noise": eld.low_light_noise,
+    "spatter": rgb.spatter,
+    "flare": rgb.flare,
+    "defocus": rgb.defocus,
+    "foreign_object": rgb.foreign_object,
+    "black_out": rgb.black_out,
+}
+_DEPTH = {
+    "gaussian_noise": depth.gaussian_noise,
+    "missing_data": depth.missing_data,
+    "multipath": depth.multipath,
+    "quantization": depth.quantization,
+}
+RGB = tuple(_RGB)
+DEPTH = tuple(_DEPTH)
+NAMES = RGB + DEPTH
+SENSOR = DepthSensor()
+
+
+def check_name(name: str, allowed: tuple[str, ...] = NAMES) -> str:
+    """Return ``name``, or raise ValueError with the nearest allowed name."""
+    if name in allowed:
+        return name
+    near = difflib.get_close_matches(str(name), allowed, n=1)
+    hint = f" Did you mean {near[0]!r}?" if near else ""
+    raise ValueError(
+        f"There is no corruption called {name!r}.{hint} Allowed names: {', '.join(allowed)}."
+    )
+
+
+def check_severity(severity: float) -> float:
+    """Return ``severity`` as a float in [0, 1], or raise ValueError (NaN included)."""
+    try:
+        value = float(severity)
+    except (TypeError, ValueError):
+        value = math.nan
+    if not 0.0 <= value <= 1.0:
+        raise ValueError(
+            f"Severity must be a number from 0 (clean) to 1 (worst), but it is {severity!r}. "
+            "The paper uses 0.6 for R2R and 0.5 for RxR and HM3D; percentages and the 1-5 scale "
+            "of ImageNet-C must be divided by 100 or 5 first."
+        )
+    return value
+
+
+@dataclass(frozen=True)
+class Corruption:
+    """What is done to the frames: ``name`` ("clean" or one of NAMES) at ``severity`` in [0, 1].
+
+    Raises ValueError for an unknown name, a severity outside [0, 1], or "clean" with severity > 0.
+    """
+
+    name: str
+    severity: float
+
+    def __post_init__(self) -> None:
+        check_name(self.name, ("clean", *NAMES))
+        object.__setattr__(self, "severity", check_severity(self.severity))
+        if self.name == "clean" and self.severity > 0.0:
+            raise ValueError(
+                f"'clean' has severity 0, but {self.severity} was given. Use CLEAN, or name the "
+                f"corruption that is meant: {', '.join(NAMES)}."
+            )
+
+    @property
+    def modality(self) -> str:
+        """"rgb", "depth", or "none" for clean frames."""
+        if self.name == "clean":
+            return "none"
+        return "rgb" if self.name in _RGB else "depth"
+
+
+CLEAN = Corruption("clean", 0.0)
+
+
+def _rgb_views(frame: np.ndarray) -> np.ndarray:
+    """The frame as contiguous uint8 [V, H, W, 3]; ValueError for anything else."""
+    if frame.dtype != np.uint8:
+        raise ValueError(
+            f"RGB frames must be uint8 in 0-255, but this one is {frame.dtype}. Convert it first: "
+            "np.rint(frame * 255).astype(np.uint8) if it is in 0-1, np.rint(frame).astype(np.uint8)"
+            " if it is in 0-255. Float frames are refused because pipelines such as CLIP's divide "
+            "by 255 only for uint8, so a float frame in 0-255 silently breaks them."
+        )
+    if frame.ndim not in (3, 4) or frame.shape[-1] != 3 or 0 in frame.shape:
+        raise ValueError(
+            f"RGB frames must be [H, W, 3] or [views, H, W, 3], but the shape is {frame.shape}. "
+            "Move the channels last, drop an alpha channel, and corrupt a batch one instant at a "
+            "time: every instant has its own key."
+        )
+    return np.ascontiguousarray(frame if frame.ndim == 4 else frame[None])
+
+
+def _depth_views(frame: np.ndarray) -> np.ndarray:
+    """The frame as contiguous float32 [V, H, W]; ValueError for anything else."""
+    if frame.dtype != np.float32:
+        raise ValueError(
+            f"Depth must be float32 in metres, but this frame is {frame.dtype}. Convert it first: "
+            "depth.astype(np.float32), divided by 1000 if it holds millimetres (uint16); a sensor "
+            "that normalises to 0-1 goes through DepthSensor(z_min, z_max).to_metres."
+        )
+    shape = frame.shape[:-1] if frame.ndim > 2 and frame.shape[-1] == 1 else frame.shape
+    if len(shape) not in (2, 3) or 0 in shape:
+        raise ValueError(
+            f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], but the shape is "
+            f"{frame.shape}. Corrupt a batch one instant at a time: every instant has its own key."
+        )
+    return np.ascontiguousarray(frame.reshape((1, *shape) if len(shape) == 2 else shape))
+
+
+def corrupt(
+    frame: np.ndarray,
+    name: str,
+    severity: float,
+    *,
+    key: Key,
+    heading: float | None = None,
+    sensor: DepthSensor = SENSOR,
+) -> np.ndarray:
+    """Corrupt one modality of one instant.
+
+    Args:
+        frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
+            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees.
+        name: one of NAMES.
+        severity: s in [0, 1]; 0 returns a bit-exact copy.
+        key: names the random draw.
+        heading: the agent's heading in radians, counter-clockwise. The flare keeps its direction
+            in the world; None (unknown) keeps it at its place in view 0 instead.
+        sensor: depth range and sentinel.
+
+    Returns a new array of the same shape and dtype; the input is not modified.
+    Raises ValueError for a wrong name, severity, dtype, shape or key.
+    """
+    check_name(name)
+    severity = check_severity(severity)
+    if not isinstance(key, Key):
+        raise ValueError(f"key must be a Key(seed, episode, frame), but it is {key!r}.")
+    frame = np.asarray(frame)
+    views = _rgb_views(frame) if name in _RGB else _depth_views(frame)
+    if severity == 0.0:
+        return frame.copy()
+    if name in _RGB:
+        return _RGB[name](views, severity, key, heading).reshape(frame.shape)
+    return _DEPTH[name](views, severity, key, sensor).reshape(frame.shape)
+
+
+def corrupt_observation(
+    obs: dict, corruption: Corruption, key: Key, sensor: DepthSensor = SENSOR
+) -> dict:
+    """A new observation dict in which the modality concerned is hurt (see ``mitigate.keys``).
+
+    The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
+    Raises ValueError if the modality is missing, and as ``corrupt`` does.
+    """
+    if corruption.modality == "none":
+        return dict(obs)
+    entry = keys.RGB if corruption.modality == "rgb" else keys.DEPTH
+    if entry not in obs:
+        raise ValueError(
+            f"{corruption.name!r} hurts {entry!r}, which this observation does not hold (it holds "
+            f"{', '.join(map(repr, obs)) or 'nothing'}). Give the agent that sensor or leave "
+            f"{corruption.name!r} out of its suite."
+        )
+    pose = obs.get(keys.POSE)
+    heading = None if pose is None else float(pose[2])
+    hurt = corrupt(
+        obs[entry], corruption.name, corruption.severity, key=key, heading=heading, sensor=sensor
+    )
+    return {**obs, entry: hurt}

@@ -1,0 +1,1 @@
+"""Environments: the embedded ``apartments`` world and the field's episode files."""

@@ -1,0 +1,139 @@
+"""Where an agent can stand and how far it is: occupancy grid, geodesics, straight-line motion."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numba import njit
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+CELL = 0.1  # metres
+RADIUS = 0.18  # agent radius, metres (VLN-CE's LoCoBot-like agent: 0.1-0.2)
+_SAMPLE = 0.04  # metres between collision samples on a straight move
+
+
+class FreeSpace:
+    """Cells of ``CELL`` metres where the centre of the agent may be.
+
+    ``free`` is bool ``[ny, nx]``; cell (i, j) covers x in [j, j + 1) * CELL and y likewise.
+    """
+
+    def __init__(self, blocked: np.ndarray, keep: tuple[float, float] | None = None) -> None:
+        distance = cv2.distanceTransform((~blocked).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        free = distance * CELL > RADIUS + CELL / 2
+        count, labels = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
+        sizes = np.bincount(labels.ravel(), minlength=count)
+        sizes[0] = 0
+        self.share = float(sizes.max() / max(1, free.sum()))
+        self.free = labels == int(sizes.argmax())
+        self.index = np.full(free.shape, -1, np.int32)
+        self.cells = np.argwhere(self.free)
+        self.index[self.free] = np.arange(len(self.cells))
+        _, nearest = cv2.distanceTransformWithLabels(
+            (~self.free).astype(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
+        )
+        table = np.zeros(int(nearest.max()) + 1, np.int32)
+        table[nearest[self.free]] = self.index[self.free]
+        self.nearest = table[nearest]
+        self._graph: csr_matrix | None = None
+
+    @property
+    def graph(self) -> csr_matrix:
+        """8-connected graph of the free cells; edge weights in metres; no cutting of corners."""
+        if self._graph is None:
+            self._graph = _grid_graph(self.free, self.index)
+        return self._graph
+
+    def cell_of(self, xy: np.ndarray | tuple[float, float]) -> int:
+        """Index of the free cell nearest to a plan position (metres)."""
+        i = min(max(int(xy[1] / CELL), 0), self.free.shape[0] - 1)
+        j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
+        return int(self.nearest[i, j])
+
+    def cells_of(self, xy: np.ndarray) -> np.ndarray:
+        """``cell_of`` for float ``[n, 2]`` positions."""
+        i = np.clip((xy[:, 1] / CELL).astype(int), 0, self.free.shape[0] - 1)
+        j = np.clip((xy[:, 0] / CELL).astype(int), 0, self.free.shape[1] - 1)
+        return self.nearest[i, j]
+
+    def centre(self, cell: int) -> np.ndarray:
+        """Plan position (metres) of the middle of a free cell."""
+        return (self.cells[cell][::-1] + 0.5) * CELL
+
+    def distances(self, targets: list[int]) -> np.ndarray:
+        """Geodesic metres from every free cell to the nearest of the target cells: float32 [n]."""
+        return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
+
+    def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
+        """Cells' centres ``[n, 2]`` from a start cell down a ``distances`` field to its zero."""
+        path = [start]
+        while field[path[-1]] > 1e-6:
+            row = self.graph.indices[self.graph.indptr[path[-1]] : self.graph.indptr[path[-1] + 1]]
+            cost = self.graph.data[self.graph.indptr[path[-1]] : self.graph.indptr[path[-1] + 1]]
+            path.append(int(row[np.argmin(field[row] + cost)]))
+        return (self.cells[path][:, ::-1] + 0.5) * CELL
+
+    def line_free(self, a: np.ndarray, b: np.ndarray) -> bool:
+        """Whether the straight segment between two plan positions stays in free cells."""
+        length = float(np.hypot(b[0] - a[0], b[1] - a[1]))
+        return length - _march(self.free, a[0], a[1], (b[0] - a[0]), (b[1] - a[1]), length) < 1e-6
+
+    def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
+        """One straight move with sliding along walls (as VLN-CE's R2R agents): (new xy, collided)."""
+        dx, dy = -np.sin(heading), np.cos(heading)
+        gone = _march(self.free, xy[0], xy[1], dx, dy, metres)
+        new = np.array([xy[0] + dx * gone, xy[1] + dy * gone])
+        if metres - gone < 1e-6:
+            return new, False
+        rest = metres - gone
+        slides = [(np.sign(dx), 0.0, abs(dx) * rest), (0.0, np.sign(dy), abs(dy) * rest)]
+        moved = [_march(self.free, new[0], new[1], sx, sy, length) for sx, sy, length in slides]
+        best = int(np.argmax(moved))
+        return new + np.array(slides[best][:2]) * moved[best], True
+
+    def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
+        """Free metres (at most ``reach``) along ``count`` world headings 0, 360/count, ... (CCW)."""
+        return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
+
+
+def _grid_graph(free: np.ndarray, index: np.ndarray) -> csr_matrix:
+    rows, cols, data = [], [], []
+    for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):
+        a = free[: free.shape[0] - di, max(0, -dj) : free.shape[1] - max(0, dj)]
+        b = free[di:, max(0, dj) : free.shape[1] + min(0, dj)]
+        both = a & b
+        ia = index[: free.shape[0] - di, max(0, -dj) : free.shape[1] - max(0, dj)][both]
+        ib = index[di:, max(0, dj) : free.shape[1] + min(0, dj)][both]
+        rows += [ia, ib]
+        cols += [ib, ia]
+        data += [np.full(2 * len(ia), CELL * np.hypot(di, dj))]
+    n = int(index.max()) + 1
+    return csr_matrix((np.concatenate(data), (np.concatenate(rows), np.concatenate(cols))), (n, n))
+
+
+@njit(cache=True)
+def _march(free, x, y, dx, dy, length):  # type: ignore[no-untyped-def]
+    """Metres that can be gone from (x, y) along (dx, dy), at most ``length``."""
+    norm = np.hypot(dx, dy)
+    if norm < 1e-9 or length <= 0:
+        return length
+    ux, uy = dx / norm, dy / norm
+    steps = int(np.ceil(length / _SAMPLE))
+    gone = 0.0
+    for k in range(1, steps + 1):
+        t = length * k / steps
+        i, j = int((y + uy * t) / CELL), int((x + ux * t) / CELL)
+        if i < 0 or j < 0 or i >= free.shape[0] or j >= free.shape[1] or not free[i, j]:
+            return gone
+        gone = t
+    return length
+
+
+@njit(cache=True)
+def _rays(free, x, y, count, reach):  # type: ignore[no-untyped-def]
+    out = np.empty(count, np.float32)
+    for a in range(count):
+        angle = 2 * np.pi * a / count
+        out[a] = _march(free, x, y, -np.sin(angle), np.cos(angle), reach)
+    return out

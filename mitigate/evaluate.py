@@ -1,0 +1,151 @@
+"""Evaluate an agent: ``python -m mitigate.evaluate checkpoint=checkpoints/base split=val_seen``.
+
+Writes one JSON line an episode and condition to ``rows.jsonl`` in the output folder; the same
+command again only fills what is missing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from omegaconf import MISSING, DictConfig
+from torch import nn
+
+from mitigate import cli
+from mitigate.build import build_agent
+
+ROWS = "rows.jsonl"
+
+
+@dataclass
+class EvaluationConfig:
+    """The evaluation that follows a training."""
+
+    enabled: bool = True
+    split: str = "val_unseen"
+    episodes: int | None = 40
+    workers: int = 1
+
+
+@dataclass
+class EvaluateConfig:
+    """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
+
+    checkpoint: str = "checkpoints/base"
+    name: str | None = None
+    split: str = "val_unseen"
+    episodes: int | None = None
+    conditions: list[str] | None = None
+    severity: float = 0.6
+    severity_depth: float | None = None
+    seed: int = 0
+    workers: int = 1
+    out: str | None = None
+    agent: Any = MISSING
+    env: Any = MISSING
+    suite: Any = field(default=MISSING)
+
+
+ConfigStore.instance().store(name="evaluate_schema", node=EvaluateConfig)
+
+
+def run(cfg: DictConfig) -> Path:
+    """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
+
+    Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
+    """
+    from mitigate.evaluation.evaluator import evaluate
+
+    agent = build_agent(cfg.agent, weights=cfg.checkpoint, seed=cfg.seed).eval()
+    name = cfg.name or Path(cfg.checkpoint).stem
+    out = Path(cfg.out or f"runs/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
+    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
+    evaluate(
+        agent,
+        episodes(cfg.env, cfg.split, cfg.episodes),
+        conditions(names, cfg.severity, cfg.severity_depth),
+        name=name,
+        out=out / ROWS,
+        split=cfg.split,
+        seed=cfg.seed,
+        workers=cfg.workers,
+    )
+    write_table([out / ROWS], out)
+    return out
+
+
+def report_before_after(
+    cfg: DictConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
+) -> None:
+    """Evaluate both agents on the same quick subset, then write and print one table.
+
+    ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing.
+    """
+    from mitigate.evaluation.evaluator import evaluate
+
+    quick = cfg.evaluation
+    chosen = episodes(cfg.env, quick.split, quick.episodes)
+    suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+    for name, agent in (("before", base_agent), (cfg.name, trained_agent)):
+        if agent is not None:
+            evaluate(
+                agent,
+                chosen,
+                suite,
+                name=name,
+                out=folder / ROWS,
+                split=quick.split,
+                seed=cfg.seed,
+                workers=quick.workers,
+            )
+    write_table([folder / ROWS], folder)
+
+
+def episodes(env: DictConfig, split: str, count: int | None) -> list:
+    """Return the first ``count`` episodes (all, if None) of a split's shipped list."""
+    from mitigate.envs.episodes import read_episodes
+
+    if split not in env.episodes:
+        raise ValueError(cli.unknown("split", split, env.episodes))
+    return list(islice(read_episodes(env.episodes[split]), count))
+
+
+def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
+    """Return one Corruption for each name; ``clean`` has severity 0."""
+    from mitigate.corruptions import CLEAN, DEPTH, RGB, Corruption
+
+    allowed = ("clean", *RGB, *DEPTH)
+    for name in names:
+        if name not in allowed:
+            raise ValueError(cli.unknown("condition", name, allowed))
+    depth = severity if severity_depth is None else severity_depth
+    return [
+        CLEAN if name == "clean" else Corruption(name, depth if name in DEPTH else severity)
+        for name in names
+    ]
+
+
+def write_table(rows: list[Path], out: Path) -> None:
+    """Join row files into ``out/table.md`` and pictures, and print the table."""
+    from mitigate import table
+
+    written = table.run(rows, out)
+    print(written[0].read_text(encoding="utf-8"))
+    print("\n".join(f"wrote {path}" for path in written), flush=True)
+
+
+@hydra.main(version_base="1.3", config_path=str(cli.CONF), config_name="evaluate")
+def hydra_main(cfg: DictConfig) -> None:
+    """Hydra's entry."""
+    run(cfg)
+
+
+if __name__ == "__main__":
+    from mitigate import evaluate  # by name, so that its classes exist once
+
+    cli.main(evaluate.hydra_main, "evaluate")

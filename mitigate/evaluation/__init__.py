@@ -1,0 +1,1 @@
+"""Evaluation: result rows, metrics, paired bootstrap intervals and the report."""

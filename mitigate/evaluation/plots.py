@@ -1,0 +1,115 @@
+"""Pictures of the results: a heatmap like the paper's, and SR against severity."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from mitigate.evaluation import bootstrap
+from mitigate.evaluation.grid import BLOCKS, Grid
+from mitigate.evaluation.report import Section, label
+
+COLOURS = mpl.colormaps["RdYlGn"]
+LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
+DPI = 150
+
+
+def heatmap(section: Section, path: Path | str) -> Path:
+    """Draw one panel a block: rows PRS-SR, PRS-SPL, clean and the corruptions; columns agents.
+
+    A cell shows SR (%) / SPL and is coloured by SR over the best clean SR; PRS by itself.
+    """
+    width = 1.0 + len(section.blocks) * (1.6 + 1.15 * len(section.columns))
+    height = 1.9 + 0.36 * (3 + max(map(len, section.blocks.values())))
+    figure = Figure(figsize=(width, height), layout="constrained")
+    axes = figure.subplots(1, len(section.blocks), squeeze=False)[0]
+    for axis, (block, names) in zip(axes, section.blocks.items(), strict=True):
+        _panel(axis, section, block, names)
+    grid = section.grid
+    figure.suptitle(
+        f"SR (%) / SPL on {grid.split}, severity {section.severity:g}, N = {len(grid.episodes)}\n"
+        f"{grid.rule}; suite {grid.suite}",
+        fontsize=9,
+    )
+    return _save(figure, path)
+
+
+def severity_curves(grid: Grid, path: Path | str) -> Path:
+    """Draw SR (%) against severity, one panel a corruption, with 95 % bootstrap bands."""
+    measured = {name for _, name, _, _ in grid.cells if name != "clean"}
+    names = [name for block in BLOCKS.values() for name in block if name in measured]
+    names += sorted(measured.difference(names))
+    across = min(4, len(names))
+    down = math.ceil(len(names) / across)
+    figure = Figure(figsize=(2.6 * across + 0.6, 2.0 * down + 1.2), layout="constrained")
+    axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel()
+    for axis, name in zip(axes, names, strict=False):
+        for index, column in enumerate(grid.columns):
+            _curve(axis, grid, column, name, LINES[index % len(LINES)])
+        axis.set_title(label(name), fontsize=9)
+        axis.set(xlim=(0, 1), ylim=(0, 100))
+        axis.grid(alpha=0.3)
+    for axis in axes[len(names) :]:
+        axis.set_visible(False)
+    figure.supxlabel("severity", fontsize=9)
+    figure.supylabel("SR (%)", fontsize=9)
+    figure.suptitle(
+        f"SR against severity on {grid.split}, N = {len(grid.episodes)}; {grid.rule}; "
+        f"suite {grid.suite}",
+        fontsize=9,
+    )
+    handles, texts = axes[0].get_legend_handles_labels()
+    figure.legend(handles, texts, loc="outside lower center", ncols=across, fontsize=8)
+    return _save(figure, path)
+
+
+def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> None:
+    rows = ["PRS-SR", "PRS-SPL", "Clean", *map(label, names)]
+    shape = (len(rows), len(section.columns))
+    colours, texts = np.full(shape, np.nan), np.full(shape, "–", object)
+    best = max((section.value(c, "clean") for c in section.columns), default=math.nan)
+    for j, column in enumerate(section.columns):
+        for i, metric in enumerate(("SR", "SPL")):
+            found = section.retained.get((column, block, metric))
+            if found is not None and not math.isnan(found.estimate.value):
+                colours[i, j] = found.estimate.value
+                texts[i, j] = f"{found.estimate.value:.2f}"
+        for i, name in enumerate(("clean", *names), start=2):
+            rate, spl = (section.value(column, name, metric) for metric in ("SR", "SPL"))
+            if not math.isnan(rate):
+                colours[i, j] = rate / best if best else 0.0
+                texts[i, j] = f"{100 * rate:.0f} / {spl:.2f}"
+    axis.imshow(colours, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
+    for (i, j), text in np.ndenumerate(texts):
+        axis.text(j, i, text, ha="center", va="center", fontsize=8)
+    axis.axhline(1.5, color="black", linewidth=1.5)
+    axis.set_xticks(range(shape[1]), section.columns, rotation=25, ha="right", fontsize=8)
+    axis.set_yticks(range(shape[0]), rows, fontsize=8)
+    axis.set_title(block, fontsize=9)
+
+
+def _curve(axis: Axes, grid: Grid, column: str, name: str, colour: tuple) -> None:
+    points = []
+    for severity in (0.0, *grid.severities):
+        cell = grid.cell(column, "clean" if severity == 0 else name, severity, "success")
+        known = cell[~np.isnan(cell)]
+        if len(known):
+            points.append((severity, bootstrap.mean(known, resamples=1000)))
+    at = [severity for severity, _ in points]
+    values = [100 * estimate.value for _, estimate in points]
+    low = [100 * estimate.low for _, estimate in points]
+    high = [100 * estimate.high for _, estimate in points]
+    axis.plot(at, values, "o-", color=colour, markersize=3, linewidth=1.2, label=column)
+    axis.fill_between(at, low, high, color=colour, alpha=0.15, linewidth=0)
+
+
+def _save(figure: Figure, path: Path | str) -> Path:
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=DPI, facecolor="white")
+    return path

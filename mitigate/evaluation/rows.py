@@ -1,0 +1,183 @@
+"""Result rows: one JSON line an episode, saying exactly what produced it.
+
+A row holds its identity (:data:`IDENTITY`) and its measures (:data:`MEASURES`). Files end in
+``.jsonl`` (appended to during an evaluation) or ``.jsonl.gz`` (shipped). A plain file that was cut
+in the middle of its last line, as by a kill, is read up to there and mended by the next append.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from itertools import chain
+from pathlib import Path
+from typing import Any
+
+from mitigate.files import atomic_text, open_text
+
+Row = dict[str, Any]
+IDENTITY: dict[str, Any] = {
+    "agent": str,  # first 12 characters of the weights' sha256
+    "name": str,  # "base", "da_per_episode" ...: the column of a table
+    "corruption": str,  # "clean" or one of the suite
+    "severity": (int, float),
+    "split": str,
+    "episode_id": str,
+    "seed": int,
+    "suite": str,  # SUITE_VERSION of the corruptions
+    "rule": str,  # what counts as success
+}
+REQUIRED = IDENTITY | {"success": (int, float), "spl": (int, float)}
+MEASURES = (
+    *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
+    *("collisions", "decisions", "steps"),
+)
+SUFFIXES = (".jsonl", ".jsonl.gz")
+
+
+def identity(row: Row) -> tuple:
+    """Return what makes ``row`` itself: two rows with one identity are the same measurement."""
+    return tuple(float(row[key]) if key == "severity" else row[key] for key in IDENTITY)
+
+
+def read(path: Path | str) -> list[Row]:
+    """Return the rows of one file, in order.
+
+    Raises ValueError naming file, line and key if a row is not one; a last line cut short in a
+    plain file is left out.
+    """
+    rows: list[Row] = []
+    try:
+        with open_text(path) as file:
+            for number, line in enumerate(file, 1):
+                row = _parse(line)
+                if row is None and not line.endswith("\n") and not _gzipped(path):
+                    break
+                problem = _problem(row)
+                if problem:
+                    raise ValueError(
+                        f"{path}, line {number} {problem}. A result row is one JSON object a line "
+                        f"with {', '.join(REQUIRED)}. Delete the line and evaluate again."
+                    )
+                rows.append(row)
+    except (EOFError, UnicodeDecodeError, OSError) as error:
+        if isinstance(error, FileNotFoundError):
+            raise
+        raise ValueError(
+            f"{path} is damaged or not a file of result rows ({error}): fetch or evaluate it again."
+        ) from error
+    return rows
+
+
+def append(path: Path | str, rows: Iterable[Row]) -> None:
+    """Add ``rows`` to the end of ``path`` and flush them to disk; create it if need be.
+
+    A plain file grows by one write; a ``.gz`` file is rewritten whole, atomically.
+    """
+    path, rows = Path(path), list(rows)
+    text = "".join(_line(row) for row in rows)
+    if _gzipped(path):
+        write(path, chain(read(path) if path.exists() else [], rows))
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "ab+") as file:
+        _mend(file)
+        file.write(text.encode())
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def write(path: Path | str, rows: Iterable[Row]) -> None:
+    """Write ``rows`` to ``path``, atomically, in place of what was there."""
+    with atomic_text(path) as file:
+        file.writelines(_line(row) for row in rows)
+
+
+def upsert(*parts: Iterable[Row]) -> list[Row]:
+    """Return the rows of all ``parts``, one an identity: the last in the first one's place."""
+    return list({identity(row): row for row in chain(*parts)}.values())
+
+
+def missing(rows: Iterable[Row], wanted: Iterable[Row]) -> list[Row]:
+    """Return the ``wanted`` rows (identity keys are enough) that ``rows`` lacks."""
+    done = {identity(row) for row in rows}
+    return [row for row in wanted if identity(row) not in done]
+
+
+def gather(paths: Iterable[Path | str]) -> list[Row]:
+    """Return the rows of files and of all row files under folders, upserted in that order.
+
+    In a folder, JSON lines of another kind are passed over. Raises FileNotFoundError if a path
+    does not exist or a folder holds no rows.
+    """
+    return upsert(*(read(file) for path in paths for file in _files(Path(path))))
+
+
+def _files(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
+    found = [p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and _holds_rows(p)]
+    if not found:
+        raise FileNotFoundError(
+            f"No result rows under {path}: no {' or '.join(SUFFIXES)} file there begins with a "
+            "row. Name a run folder or a row file, or evaluate first with `make evaluate`."
+        )
+    return sorted(found)
+
+
+def _holds_rows(path: Path) -> bool:
+    try:
+        with open_text(path) as file:
+            first = _parse(file.readline())
+    except (EOFError, UnicodeDecodeError, OSError):
+        return True  # damaged: let read() say so
+    return isinstance(first, dict) and IDENTITY.keys() <= first.keys()
+
+
+def _parse(line: str) -> Any:
+    try:
+        return json.loads(line)
+    except ValueError:
+        return None
+
+
+def _problem(row: Any) -> str:
+    if not isinstance(row, dict):
+        return "is not a JSON object"
+    lacking = [key for key in REQUIRED if key not in row]
+    if lacking:
+        return f"lacks {', '.join(lacking)}"
+    wrong = [key for key, kind in REQUIRED.items() if not isinstance(row[key], kind)]
+    return f"has a wrong {wrong[0]}: {row[wrong[0]]!r:.60}" if wrong else ""
+
+
+def _line(row: Row) -> str:
+    problem = _problem(row)
+    if problem:
+        raise ValueError(f"A result row {problem}: {row!r:.300}. Needed: {', '.join(REQUIRED)}.")
+    try:
+        return json.dumps(row, allow_nan=False) + "\n"
+    except (ValueError, TypeError) as error:
+        raise ValueError(
+            f"A result row holds what JSON cannot ({error}): {row!r:.300}. Use plain finite "
+            "numbers and strings."
+        ) from error
+
+
+def _mend(file: Any) -> None:
+    """Make ``file`` end in a whole line: end the last one, or cut it off if it is not whole."""
+    size = file.seek(0, os.SEEK_END)
+    tail = b""
+    while b"\n" not in tail and len(tail) < size:
+        file.seek(max(0, size - len(tail) - 4096))
+        tail = file.read(size - len(tail) - file.tell()) + tail
+    last = tail[tail.rfind(b"\n") + 1 :]
+    if last and _parse(last.decode(errors="replace")) is None:
+        file.truncate(size - len(last))
+    elif last:
+        file.write(b"\n")
+
+
+def _gzipped(path: Path | str) -> bool:
+    return Path(path).suffix == ".gz"

@@ -1,0 +1,50 @@
+"""What the trainer asks of a training method: a module whose ``forward`` returns a loss."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from torch import Tensor, nn
+
+
+class Recipe(nn.Module):
+    """Base class of every training method; the trainer knows nothing else about it.
+
+    A recipe holds the module it trains and, where it needs one, a teacher, a schedule, a buffer.
+    State beyond tensors (schedule weights, counters) goes through ``get_extra_state`` and
+    ``set_extra_state`` as a JSON-able dict, so it is saved and restored with the weights.
+    Parameters with ``requires_grad`` False are never given to the optimiser.
+    """
+
+    def batch(self, step: int) -> dict[str, Any]:
+        """Return the batch of ``step`` (from 0): a pure function of (seed, step, weights).
+
+        Tensors are moved to the training device. ``episode_ids`` (list of str), if there, are
+        named when the loss is not finite. Anything built up over steps (a buffer) must be rebuilt
+        from the seed and the weights or saved as extra state, or a resumed run will differ.
+        """
+        raise NotImplementedError(f"{type(self).__name__} defines no batch(step)")
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        """Return scalars: ``loss`` (differentiable) and whatever else is worth logging."""
+        raise NotImplementedError(f"{type(self).__name__} defines no forward(batch)")
+
+    def parameter_groups(self) -> list[dict[str, Any]]:
+        """Return AdamW groups; ``lr`` and ``weight_decay`` in a group override the trainer's.
+
+        By default matrices and kernels decay; biases, norms and other vectors do not.
+        """
+        trained = [p for p in self.parameters() if p.requires_grad]
+        return [
+            {"params": [p for p in trained if p.ndim >= 2]},
+            {"params": [p for p in trained if p.ndim < 2], "weight_decay": 0.0},
+        ]
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """Return scalars measured after ``step`` updates; called every ``eval_every`` steps."""
+        return {}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        """Return pictures to log, each uint8 ``[H, W, 3]``."""
+        return {}

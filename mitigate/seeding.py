@@ -1,0 +1,60 @@
+"""Keyed random numbers: every draw is a function of a key, never of what was drawn before.
+
+A key is a tuple of integers and strings, such as ``(seed, "rollout", step)``. The same key gives
+the same numbers in any process and in any order; Python's ``hash()`` (salted per process) is
+never used.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import random
+
+import numpy as np
+import torch
+
+Key = int | str
+
+
+def digest(*key: Key) -> int:
+    """Return a 128-bit integer that depends on every part of ``key`` and on their types."""
+    text = "\x1f".join(f"{type(part).__name__}:{part}" for part in key)
+    return int.from_bytes(hashlib.blake2b(text.encode(), digest_size=16).digest(), "little")
+
+
+def generator(*key: Key) -> np.random.Generator:
+    """Return a fresh numpy generator (Philox, counter-based) for ``key``."""
+    return np.random.Generator(np.random.Philox(key=digest(*key)))
+
+
+def torch_generator(*key: Key) -> torch.Generator:
+    """Return a fresh CPU torch generator for ``key``."""
+    made = torch.Generator()
+    made.manual_seed(digest(*key) & (2**63 - 1))
+    return made
+
+
+def seed_everything(*key: Key) -> None:
+    """Set the global generators of Python, numpy and torch (all devices) from ``key``."""
+    number = digest(*key)
+    random.seed(number)
+    np.random.seed(number & (2**32 - 1))
+    torch.manual_seed(number & (2**63 - 1))
+
+
+def global_state() -> dict:
+    """Return the state of the three global generators as tensors, tuples and numbers."""
+    name, words, position, has_gauss, gauss = np.random.get_state(legacy=True)
+    return {
+        "python": random.getstate(),
+        "numpy": (name, torch.from_numpy(np.asarray(words, np.int64)), position, has_gauss, gauss),
+        "torch": torch.get_rng_state(),
+    }
+
+
+def set_global_state(state: dict) -> None:
+    """Put back what :func:`global_state` returned."""
+    name, words, position, has_gauss, gauss = state["numpy"]
+    random.setstate(state["python"])
+    np.random.set_state((name, words.numpy().astype(np.uint32), position, has_gauss, gauss))
+    torch.set_rng_state(state["torch"].cpu())

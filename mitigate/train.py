@@ -1,0 +1,177 @@
+"""Train an agent by a recipe: ``python -m mitigate.train recipe=da_per_episode severity=0.6``.
+
+A recipe config names one or more stages; one agent goes through them in order, each stage a
+:class:`~mitigate.trainer.Trainer` run in its own subfolder. The same command again goes on where
+the last one stopped. Afterwards the agent is evaluated before and after.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from hydra.core.hydra_config import HydraConfig
+from hydra.types import RunMode
+from omegaconf import MISSING, DictConfig, OmegaConf
+from torch import nn
+
+from mitigate import checkpoint, cli, seeding
+from mitigate.build import build, build_agent
+from mitigate.evaluate import EvaluationConfig, report_before_after
+from mitigate.trainer import Trainer
+
+LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
+NOT_IDENTITY = ("workers", "cache")  # settings that do not change what is trained
+
+
+@dataclass
+class TrainerConfig:
+    """Settings of a Trainer; None means "as the stage says", or else the Trainer's default."""
+
+    steps: int | None = None
+    lr: float | None = None
+    weight_decay: float | None = None
+    warmup: int | None = None
+    schedule: str | None = None
+    grad_clip: float | None = None
+    log_every: int | None = None
+    save_every: int | None = None
+    eval_every: int | None = None
+    figure_every: int | None = None
+    keep: int | None = None
+    precision: str | None = None
+    device: str | None = None
+
+
+@dataclass
+class StageConfig:
+    """One stage: what to train (a ``_target_`` node) and how."""
+
+    recipe: Any = MISSING
+    trainer: TrainerConfig = field(default_factory=TrainerConfig)
+
+
+@dataclass
+class TrainConfig:
+    """Types of ``conf/train.yaml``; the meaning of each entry is written there."""
+
+    name: str = MISSING
+    seed: int = 0
+    severity: float = 0.6
+    severity_depth: float | None = None
+    init: str | None = None
+    runs: str = "runs"
+    folder: str | None = None
+    agent: Any = MISSING
+    env: Any = MISSING
+    schedule: Any = MISSING
+    suite: Any = MISSING
+    stages: dict[str, StageConfig] = field(default_factory=dict)
+    trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    evaluation: EvaluationConfig = field(default_factory=EvaluationConfig)
+
+
+ConfigStore.instance().store(name="train_schema", node=TrainConfig)
+
+
+def run(cfg: DictConfig) -> Path:
+    """Train as ``cfg`` says, evaluate, and return the run's folder.
+
+    The folder holds ``config.yaml``, one subfolder for each stage, ``agent/model.safetensors``, and
+    what the evaluation writes. Raises ValueError or FileNotFoundError for a user's mistake.
+    """
+    check(cfg)
+    folder = Path(cfg.folder or default_folder(cfg))
+    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
+    for name, stage in cfg.stages.items():
+        train_stage(cfg, name, stage, agent, folder / name)
+    agent.cpu().eval()
+    checkpoint.save_weights(agent, folder / "agent")
+    OmegaConf.save(OmegaConf.create({"agent": _plain(cfg.agent)}), folder / "agent" / "config.yaml")
+    OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
+    if cfg.evaluation.enabled:
+        base = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed).eval() if cfg.init else None
+        report_before_after(cfg, base, agent, folder)
+    print(f"done: {folder}", flush=True)
+    return folder
+
+
+def train_stage(
+    cfg: DictConfig, name: str, stage: DictConfig, agent: nn.Module, folder: Path
+) -> None:
+    """Train ``agent`` in place through one stage; a finished stage is loaded from ``folder``."""
+    seeding.seed_everything(cfg.seed, "stage", name)
+    start = checkpoint.weights_sha(agent)
+    agent.requires_grad_(True)
+    recipe = build(stage.recipe, agent=agent)
+    identity = {
+        "agent": _plain(cfg.agent),
+        "start": start,
+        "recipe": dict(_identity(_plain(stage.recipe))),
+    }
+    settings = {**_set(stage.trainer), **_set(cfg.trainer)}
+    Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings).fit()
+
+
+def check(cfg: DictConfig) -> None:
+    """Raise ValueError for settings that are well typed but make no sense."""
+    for key in ("severity", "severity_depth"):
+        value = cfg[key]
+        if value is not None and not 0.0 <= value <= 1.0:
+            raise ValueError(
+                f"{key}={value:g} is out of range: a severity is a number from 0 (clean) to 1 "
+                f"(strongest). Write, for instance, {key}=0.6."
+            )
+    if not cfg.stages:
+        raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
+
+
+def default_folder(cfg: DictConfig, variant: str = "") -> str:
+    """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
+    depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
+    end = re.sub(r"[^A-Za-z0-9=._+-]+", "_", variant)
+    if len(end) > LONGEST:
+        end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]
+    end = f"-{end}" if end else ""
+    return f"{cfg.runs}/{cfg.name}-s{cfg.severity:g}{depth}-seed{cfg.seed}{end}"
+
+
+def _set(node: DictConfig) -> dict[str, Any]:
+    return {str(name): value for name, value in node.items() if value is not None}
+
+
+def _plain(node: DictConfig) -> dict[str, Any]:
+    plain = OmegaConf.to_container(node, resolve=True)
+    assert isinstance(plain, dict)
+    return {str(name): value for name, value in plain.items()}
+
+
+def _identity(node: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    for name, value in node.items():
+        if name not in NOT_IDENTITY:
+            yield name, dict(_identity(value)) if isinstance(value, dict) else value
+
+
+@hydra.main(version_base="1.3", config_path=str(cli.CONF), config_name="train")
+def hydra_main(cfg: DictConfig) -> None:
+    """Name the folder after the options that differ from the defaults, then run."""
+    if cfg.folder is None:
+        cfg.folder = default_folder(cfg, HydraConfig.get().job.override_dirname)
+    try:
+        run(cfg)
+    except Exception as error:
+        if HydraConfig.get().mode == RunMode.MULTIRUN:  # Hydra goes on and shows the first only
+            print(f"failed: {cfg.folder}: {error}", file=sys.stderr, flush=True)
+        raise
+
+
+if __name__ == "__main__":
+    from mitigate import train  # by name, so that a launcher's processes can import it
+
+    cli.main(train.hydra_main, "train")

@@ -1,0 +1,166 @@
+"""Imitation of the shortest-path oracle with scheduled sampling, on rendered and corrupted frames.
+
+Every step rolls out a few training episodes with the current weights under the schedule's
+corruptions, then trains on all their decisions. Loss = cross-entropy to the oracle over [stop] +
+ghosts, plus what keeps the perception honest under corruption: concepts (labels of the id pass) and
+waypoints (true free space). The same module trained in three schedules gives ``da_per_frame``,
+``da_per_episode`` and ``da_success``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from mitigate.agents.concepts import THINGS, view_labels
+from mitigate.agents.controller import Controller
+from mitigate.agents.planner import collate
+from mitigate.agents.rollout import Trace, roll_out
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.agents.waypoints import agreement, free_target, select, waypoint_loss
+from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.envs.apartments.renderer import Renderer
+from mitigate.envs.apartments.simulator import Simulator
+from mitigate.envs.apartments.tasks import draw_training_episode, landmarks
+from mitigate.envs.episodes import Episode
+from mitigate.keys import DEPTH, POSE, RGB
+from mitigate.recipe import Recipe
+from mitigate.seeding import generator
+from recipes.perception import f1
+
+PARTS = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
+_STOP_WEIGHT = 1.5  # one decision in about six is a stop
+
+
+class ImitationRecipe(Recipe):
+    """Args:
+    agent: trained in place. schedule: which frame is hurt by what.
+    train_parts: of ``PARTS``; the others stay frozen, as ETPNav's encoders and waypoints do.
+    episodes: a step. follow_oracle: share of rollout decisions taken by the oracle.
+    apartments: how many training layouts. ogn_share: of object-goal episodes.
+    w_concepts, w_waypoints: weights of the perception terms; w_distance, w_grounding: of the
+    planner's auxiliary terms (metres to the goal; which views show the goal's landmark).
+
+    Raises ValueError for an unknown part.
+    """
+
+    def __init__(self, agent: TopologicalAgent, schedule: Schedule, train_parts: tuple[str, ...] = PARTS, episodes: int = 3,
+                 follow_oracle: float = 0.5, apartments: int = 2000, ogn_share: float = 0.15, size: int = 64, seed: int = 0,
+                 w_concepts: float = 2.0, w_waypoints: float = 2.0, w_distance: float = 0.3, w_grounding: float = 0.3) -> None:  # fmt: skip
+        super().__init__()
+        unknown = sorted(set(train_parts) - set(PARTS))
+        if unknown:
+            raise ValueError(f"train_parts={unknown} is unknown; choose from {', '.join(PARTS)}.")
+        self.agent, self.schedule, self.seed = agent, schedule, seed
+        self.episodes, self.follow_oracle = episodes, follow_oracle
+        self.apartments, self.ogn_share, self.size = apartments, ogn_share, size
+        self.weights = {"concepts": w_concepts, "waypoints": w_waypoints, "distance": w_distance, "grounding": w_grounding}
+        for part in PARTS:
+            getattr(agent, part).requires_grad_(part in train_parts)
+        self._renderer: Renderer | None = None
+
+    def batch(self, step: int) -> dict[str, Any]:
+        rng = generator(self.seed, "imitation", step)
+        episodes = [draw_training_episode(rng, self.apartments, self.ogn_share) for _ in range(self.episodes)]
+        if self._renderer is None:
+            self._renderer = Renderer(self.size, scenes=64)
+        worlds = [RenderedWorld(self, e, f"{step}-{i}") for i, e in enumerate(episodes)]
+        self.agent.eval()
+        tokens = self.agent.tokens([e.instruction.text for e in episodes])
+        traces = roll_out(self.agent.planner, tokens, worlds, follow_oracle=self.follow_oracle, rng=rng)
+        self.agent.train()
+        looks = [look for world in worlds for look in world.looks]
+        stacked = {name: torch.from_numpy(np.stack([look[name] for look in looks])) for name in looks[0]}
+        return {**decisions_of(traces), **stacked, "tokens": tokens}
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        views, concepts, waypoints = self.agent.perceive(batch[RGB], batch[DEPTH])
+        values = self.planner_losses(batch, views)
+        values["concepts"] = F.binary_cross_entropy_with_logits(concepts.float(), batch["concepts"], pos_weight=torch.tensor(2.0))
+        values["waypoints"] = waypoint_loss(waypoints, batch["free"])
+        values["loss"] = values["loss"] + self.weights["concepts"] * values["concepts"] + self.weights["waypoints"] * values["waypoints"]
+        values["f1"] = f1(concepts[..., THINGS], batch["concepts"][..., THINGS])
+        values["iou"] = agreement(waypoints, batch["free"])
+        return values
+
+    def planner_losses(self, batch: dict[str, Any], views: Tensor) -> dict[str, Tensor]:
+        """Imitation and auxiliary terms from view features [P, 12, F]."""
+        planner, decisions = self.agent.planner, batch["decisions"]
+        out = planner(planner.read(batch["tokens"]), planner.look(views), decisions)
+        target, stop = batch["target"], batch["target"][:, 0]
+        log_p = out["logits"].log_softmax(-1).masked_fill(~decisions.allowed, 0.0)
+        entropy = -(target * target.clamp(min=1e-9).log()).sum(-1)
+        each = -(target * log_p).sum(-1) - entropy
+        weight = 1 + (_STOP_WEIGHT - 1) * stop
+        imitation = (each * weight).sum() / weight.sum()
+        distance = F.smooth_l1_loss(out["distance"], batch["metres"] / 5, reduction="none")
+        distance = (distance * decisions.valid).sum() / decisions.valid.sum()
+        grounding = F.binary_cross_entropy_with_logits(out["grounding"], batch["shows"], pos_weight=torch.tensor(2.0))
+        loss = imitation + self.weights["distance"] * distance + self.weights["grounding"] * grounding
+        chosen = out["logits"].argmax(-1)
+        right = target.gather(1, chosen[:, None])[:, 0] > 0.4 * target.max(1).values
+        return {"loss": loss, "imitation": imitation, "distance": distance, "grounding": grounding, "accuracy": right.float().mean(),
+                "stop_recall": ((chosen == 0) & (stop > 0)).sum() / stop.sum().clamp(min=1),
+                "false_stop": ((chosen == 0) & (stop == 0)).sum() / (stop == 0).sum().clamp(min=1)}  # fmt: skip
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.schedule.load_state_dict(state["schedule"])
+
+
+class RenderedWorld:
+    """One episode in the simulator, its frames hurt by the recipe's schedule; remembers its looks."""
+
+    def __init__(self, recipe: ImitationRecipe, episode: Episode, name: str) -> None:
+        self.recipe, self.episode, self.name = recipe, episode, name
+        self.simulator = Simulator(recipe.size, renderer=recipe._renderer)
+        self.simulator.reset(episode)
+        self.looks: list[dict[str, np.ndarray]] = []
+
+    def look(self) -> tuple[Tensor, np.ndarray]:
+        simulator = self.simulator
+        rgb, depth, ids = simulator.observe_faces()
+        concepts, seen = view_labels(simulator.apartment, ids, depth)
+        frames = {RGB: rgb, DEPTH: depth, POSE: self.pose().astype(np.float32)}
+        frames = corrupt_observation(frames, *self.recipe.schedule.draw(self.recipe.seed, self.name, len(self.looks)))
+        free = free_target(simulator.space, simulator.xy, simulator.heading)
+        self.looks.append({RGB: frames[RGB], DEPTH: frames[DEPTH], "concepts": concepts, "free": free,
+                           "shows": seen[:, landmarks(self.episode)].any(1).astype(np.float32)})  # fmt: skip
+        with torch.autocast("cpu", torch.bfloat16):
+            views, _, waypoints = self.recipe.agent.perceive(torch.from_numpy(frames[RGB])[None], torch.from_numpy(frames[DEPTH])[None])
+        return views[0].float(), select(waypoints[0].float().numpy())
+
+    def pose(self) -> np.ndarray:
+        return np.array([*self.simulator.xy, self.simulator.heading])
+
+    def go(self, route: list[np.ndarray]) -> None:
+        controller = Controller()
+        controller.follow(route)
+        while (action := controller.action(self.pose())) is not None:
+            self.simulator.step(action)
+
+    def distance(self, xy: np.ndarray) -> float:
+        return self.simulator.distance_to_goal(xy)
+
+
+def decisions_of(traces: list[Trace]) -> dict[str, Any]:
+    """Padded decisions of all traces with their targets [B, 1 + N + G] and metres [B, 1 + N + G]."""
+    steps = [(row, step) for row, trace in enumerate(traces) for step in trace.steps]
+    offsets = np.cumsum([0, *(len(trace.steps) for trace in traces)])
+    decisions = collate([s.decision for _, s in steps], [row for row, _ in steps], [int(offsets[row]) for row, _ in steps])
+    size, first = decisions.valid.shape, 1 + decisions.nodes.shape[1]
+    target, metres = np.zeros(size, np.float32), np.zeros(size, np.float32)
+    for index, (_, step) in enumerate(steps):
+        ghosts, nodes = len(step.decision.ghosts), len(step.decision.nodes)
+        target[index, 0], target[index, first : first + ghosts] = step.target[0], step.target[1:]
+        metres[index, : 1 + nodes], metres[index, first : first + ghosts] = step.metres[: 1 + nodes], step.metres[1 + nodes :]
+    return {"decisions": decisions, "target": torch.from_numpy(target), "metres": torch.from_numpy(np.minimum(metres, 25)),
+            "episode_ids": [trace.episode.episode_id for trace in traces]}  # fmt: skip
+
+

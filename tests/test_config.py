@@ -1,0 +1,121 @@
+"""Every YAML in conf/ composes, names what exists, and a wrong option is explained."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from hydra.utils import get_object
+from omegaconf import DictConfig, OmegaConf
+
+from mitigate import cli, evaluate, train
+from mitigate.corruptions import NAMES
+
+YAMLS = sorted(path.relative_to(cli.CONF) for path in cli.CONF.rglob("*.yaml"))
+PRIMARY = ("train", "evaluate")
+GROUPS = [path for path in YAMLS if len(path.parts) > 1]
+
+
+def targets(node) -> list[str]:
+    if isinstance(node, dict):
+        own = [node["_target_"]] if "_target_" in node else []
+        return own + [name for value in node.values() for name in targets(value)]
+    return []
+
+
+def resolved(cfg: DictConfig) -> dict:
+    return OmegaConf.to_container(cfg, resolve=True, throw_on_missing=True)
+
+
+def composed(path) -> dict:
+    if len(path.parts) == 1:
+        return resolved(cli.load_config(path.stem))
+    return resolved(cli.load_config("train", [f"{path.parent}={path.stem}"]))
+
+
+@pytest.mark.parametrize("path", YAMLS, ids=str)
+def test_every_yaml_composes_and_resolves(path):
+    assert len(path.parts) == 2 or path.stem in PRIMARY
+    assert composed(path)
+
+
+@pytest.mark.parametrize("path", YAMLS, ids=str)
+def test_every_target_can_be_imported(path):
+    for name in targets(composed(path)):
+        assert callable(get_object(name))
+
+
+@pytest.mark.parametrize("path", YAMLS, ids=str)
+def test_every_yaml_says_what_it_is_for(path):
+    assert "# " in (cli.CONF / path).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("path", [p for p in GROUPS if p.parts[0] == "recipe"], ids=str)
+def test_a_recipe_is_named_after_its_file_and_has_stages(path):
+    cfg = cli.load_config("train", [f"recipe={path.stem}"])
+    assert cfg.name == path.stem and len(cfg.stages) >= 1
+
+
+def test_the_full_suite_is_clean_and_all_corruptions():
+    cfg = cli.load_config("evaluate")
+    assert list(cfg.suite.conditions) == ["clean", *NAMES]
+
+
+def test_conditions_take_the_severity_of_their_modality():
+    made = evaluate.conditions(["clean", "flare", "multipath"], 0.9, 0.8)
+    assert [(c.name, c.severity) for c in made] == [
+        ("clean", 0),
+        ("flare", 0.9),
+        ("multipath", 0.8),
+    ]
+
+
+def test_an_unknown_condition_or_split_names_the_nearest():
+    with pytest.raises(ValueError, match="Did you mean flare"):
+        evaluate.conditions(["flair"], 0.5, None)
+    with pytest.raises(ValueError, match="Did you mean val_seen"):
+        evaluate.episodes(cli.load_config("evaluate").env, "val_sen", 1)
+
+
+def test_the_experiment_harsh_is_the_papers_stronger_setting():
+    cfg = cli.load_config("train", ["experiment=harsh"])
+    assert (cfg.schedule.severity, cfg.schedule.severity_depth) == (0.9, 0.8)
+
+
+def test_smoke_shortens_every_stage():
+    cfg = cli.load_config("train", ["recipe=base", "debug=smoke"])
+    assert cfg.trainer.steps == 2 and cfg.evaluation.episodes == 2
+
+
+def complaint(monkeypatch, capsys, *options: str) -> str:
+    monkeypatch.setattr(sys, "argv", ["train", *options])
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    with pytest.raises(SystemExit) as stop:
+        cli.main(train.hydra_main, "train")
+    text = str(stop.value.code)
+    assert text.startswith("error: ") and "\n" not in text
+    assert "Traceback" not in capsys.readouterr().err
+    return text
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("recipe=da_per_epsiode", ["Did you mean da_per_episode?", "base, da_per_episode"]),
+        ("recpie=base", ["Did you mean recipe?"]),
+        ("severty=0.5", ["Did you mean severity?"]),
+        ("trainer.stps=4", ["Did you mean trainer.steps?"]),
+        ("stages.imitatoin.trainer.steps=4", ["Did you mean stages.imitation"]),
+        ("trainer.steps=four", ["trainer.steps=four", "a whole number"]),
+        ("severity=high", ["severity=high", "a number"]),
+        ("evaluation.enabled=maybe", ["true or false"]),
+        ("severity=1.2", ["severity=1.2", "from 0 (clean) to 1"]),
+        ("severity_depth=-0.1", ["severity_depth=-0.1", "from 0 (clean) to 1"]),
+        ("severity==3", ["key=value"]),
+        ("init=nowhere", ["nowhere", "make train RECIPE=base"]),
+    ],
+)
+def test_a_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, option, words):
+    text = complaint(monkeypatch, capsys, option)
+    for word in words:
+        assert word in text

@@ -1,0 +1,48 @@
+"""The Makefile lists its targets, the doctor reports, and seeds are keyed."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import torch
+
+from mitigate import doctor, seeding
+
+ROOT = Path(__file__).parent.parent
+TARGETS = {
+    "train",
+    "evaluate",
+    "sweep",
+    "table",
+    "export",
+    "test",
+    "lint",
+    "bench",
+    "doctor",
+    "clean",
+}
+
+
+def test_make_help_lists_every_target_and_comes_first():
+    shown = subprocess.run(["make"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert set(re.findall(r"make (\w+)", shown)) >= TARGETS
+
+
+def test_doctor_names_versions_cores_and_the_renderer(capsys):
+    doctor.main()
+    out = capsys.readouterr().out
+    for word in ("python", "cores", "torch ", "renderer", "extra sweep"):
+        assert re.search(rf"^{word}", out, re.MULTILINE)
+
+
+def test_keyed_generators_depend_on_every_part_of_the_key_only():
+    draw = seeding.generator(1, "a", 2).random()
+    torch.manual_seed(0)
+    assert draw == seeding.generator(1, "a", 2).random()
+    others = [seeding.generator(*key).random() for key in ((2, "a", 2), (1, "b", 2), (1, "a", "2"))]
+    assert len({draw, *others}) == 4
+    assert seeding.digest("a", "b") != seeding.digest("ab")
+    one, two = (torch.rand(2, generator=seeding.torch_generator(3, "x")) for _ in range(2))
+    assert torch.equal(one, two)

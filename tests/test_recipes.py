@@ -1,0 +1,20 @@
+"""Every recipe in conf/recipe trains two steps a stage and leaves an agent that loads."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate import checkpoint, cli, train
+from mitigate.build import build
+
+RECIPES = sorted(path.stem for path in (cli.CONF / "recipe").rglob("*.yaml"))
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_every_recipe_trains_two_steps(tmp_path, name):
+    options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"folder={tmp_path}"]
+    cfg = cli.load_config("train", options)
+    train.run(cfg)
+    for stage in cfg.stages:
+        assert checkpoint.checkpoints(tmp_path / stage)[-1].name == "step-00000002.pt"
+    checkpoint.load_weights(build(cfg.agent), tmp_path / "agent")

@@ -1,0 +1,140 @@
+"""``train.run`` takes one agent through its stages, resumes, and names its folder."""
+
+from __future__ import annotations
+
+import json
+import os
+
+import pytest
+import torch
+from omegaconf import DictConfig, OmegaConf, open_dict
+from safetensors.torch import load_file
+
+from mitigate import checkpoint, cli, export, train
+from mitigate.build import build
+from tests.tiny import TinyAgent, TinyRecipe
+
+TINY = {"_target_": "tests.tiny.TinyRecipe"}
+
+
+def stage(**trainer) -> train.StageConfig:
+    return train.StageConfig(recipe=TINY, trainer=train.TrainerConfig(**trainer))
+
+
+def config(folder, *options: str, stages: dict | None = None) -> DictConfig:
+    cfg = cli.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *options])
+    with open_dict(cfg):
+        cfg.name, cfg.init = "tiny", None
+        cfg.agent = {"_target_": "tests.tiny.TinyAgent"}
+        cfg.stages = stages or {
+            "first": stage(steps=4, save_every=2),
+            "second": stage(steps=6, save_every=2),
+        }
+    return cfg
+
+
+def weights(folder) -> dict[str, torch.Tensor]:
+    return load_file(folder / "agent" / "model.safetensors")
+
+
+def same(one, two) -> bool:
+    return one.keys() == two.keys() and all(torch.equal(one[name], two[name]) for name in one)
+
+
+def test_stages_run_in_order_and_leave_agent_and_config(tmp_path):
+    assert train.run(config(tmp_path)) == tmp_path
+    steps = [checkpoint.checkpoints(tmp_path / name)[-1].name for name in ("first", "second")]
+    assert steps == ["step-00000004.pt", "step-00000006.pt"]
+    last = checkpoint.load(checkpoint.checkpoints(tmp_path / "second")[-1])["model"]
+    assert torch.equal(last["agent.body.0.weight"], weights(tmp_path)["body.0.weight"])
+    assert OmegaConf.load(tmp_path / "config.yaml").name == "tiny"
+    assert OmegaConf.load(tmp_path / "agent" / "config.yaml").agent["_target_"]
+
+
+def test_the_second_stage_goes_on_from_the_first(tmp_path):
+    train.run(config(tmp_path / "two"))
+    train.run(config(tmp_path / "one", stages={"second": stage(steps=6)}))
+    assert not same(weights(tmp_path / "one"), weights(tmp_path / "two"))
+
+
+def test_the_same_command_again_changes_nothing_and_a_broken_run_is_completed(tmp_path, capsys):
+    train.run(config(tmp_path / "whole"))
+    train.run(config(tmp_path / "broken"))
+    checkpoint.checkpoints(tmp_path / "broken" / "second")[-1].unlink()
+    (tmp_path / "broken" / "agent" / "model.safetensors").unlink()
+    capsys.readouterr()
+    train.run(config(tmp_path / "broken"))
+    out = capsys.readouterr().out
+    assert "already trained for 4 steps" in out and "resumed at step 4" in out
+    assert same(weights(tmp_path / "whole"), weights(tmp_path / "broken"))
+
+
+def test_a_stage_made_with_other_settings_is_not_resumed(tmp_path):
+    train.run(config(tmp_path))
+    with pytest.raises(ValueError, match=r"trainer\.lr"):
+        train.run(config(tmp_path, "trainer.lr=0.5"))
+
+
+def test_a_truncated_checkpoint_stops_the_run_with_advice(tmp_path):
+    train.run(config(tmp_path))
+    newest = checkpoint.checkpoints(tmp_path / "second")[-1]
+    os.truncate(newest, newest.stat().st_size // 2)
+    with pytest.raises(ValueError, match="go on from step-00000004.pt"):
+        train.run(config(tmp_path))
+
+
+def test_trainer_options_go_before_a_stages_own(tmp_path):
+    train.run(config(tmp_path, "trainer.steps=3"))
+    names = {checkpoint.checkpoints(tmp_path / stage)[-1].name for stage in ("first", "second")}
+    assert names == {"step-00000003.pt"}
+
+
+def test_training_starts_from_the_weights_of_init(tmp_path):
+    train.run(config(tmp_path / "a"))
+    cfg = config(tmp_path / "b", "trainer.lr=1e-12")
+    cfg.init = str(tmp_path / "a" / "agent")
+    train.run(cfg)
+    one, two = weights(tmp_path / "a"), weights(tmp_path / "b")
+    assert all(torch.allclose(one[name], two[name], atol=1e-6) for name in one)
+
+
+def test_the_folder_says_recipe_severity_seed_and_further_options():
+    cfg = cli.load_config("train", ["recipe=da_success", "severity=0.9", "seed=3"])
+    assert train.default_folder(cfg) == "runs/da_success-s0.9-seed3"
+    cfg.severity_depth = 0.8
+    name = train.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
+    assert name == "runs/da_success-s0.9-d0.8-seed3-init=checkpoints_mine_debug=smoke"
+
+
+def test_build_hands_the_very_object_on_and_shows_a_users_error():
+    agent = TinyAgent()
+    assert build(OmegaConf.create(TINY), agent=agent).agent is agent
+    node = OmegaConf.create(
+        {"_target_": "mitigate.corruptions.Schedule", "mode": "x", "severity": 0}
+    )
+    outer = OmegaConf.create({"_target_": "builtins.dict", "schedule": node})
+    for wrong in (node, outer):
+        with pytest.raises(ValueError, match="per_episode"):
+            build(wrong)
+
+
+def test_export_writes_weights_config_and_card_and_finds_a_changed_file(tmp_path):
+    train.run(config(tmp_path / "run"))
+    folder = export.export(tmp_path / "run", "mine", out=tmp_path / "hardened")
+    card = json.loads((folder / "card.json").read_text())
+    assert card["recipe"] == "tiny" and card["license"] == "Apache-2.0"
+    agent = TinyRecipe().agent
+    checkpoint.load_weights(agent, folder)
+    assert same(dict(agent.state_dict()), weights(tmp_path / "run"))
+    with pytest.raises(ValueError, match="exists already"):
+        export.export(tmp_path / "run", "mine", out=tmp_path / "hardened")
+    data = bytearray((folder / "model.safetensors").read_bytes())
+    data[-1] ^= 1
+    (folder / "model.safetensors").write_bytes(data)
+    with pytest.raises(ValueError, match="sha256"):
+        export.verify(folder)
+
+
+def test_export_of_an_unfinished_run_says_what_is_missing(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no finished run"):
+        export.export(tmp_path, "mine", out=tmp_path / "hardened")

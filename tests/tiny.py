@@ -1,0 +1,54 @@
+"""A recipe and an agent so small that a step takes a millisecond; the trainer's tests use them."""
+
+from __future__ import annotations
+
+import time
+
+import torch
+from torch import nn
+
+from mitigate.recipe import Recipe
+
+
+class TinyAgent(nn.Module):
+    """Dropout makes its output depend on the random state; ``frozen`` must never move."""
+
+    def __init__(self, width: int = 8) -> None:
+        super().__init__()
+        self.body = nn.Sequential(nn.Linear(4, width), nn.Dropout(0.5), nn.Linear(width, 1))
+        self.frozen = nn.Linear(4, 4)
+
+
+class TinyRecipe(Recipe):
+    """Regression on noise drawn from global state; ``count`` is state beyond tensors."""
+
+    def __init__(self, agent: nn.Module | None = None, *, bad_step: int = -1, pause: float = 0.0):
+        super().__init__()
+        self.agent = agent or TinyAgent()
+        self.agent.frozen.requires_grad_(False)
+        self.count, self.bad_step, self.pause = 0, bad_step, pause
+
+    def batch(self, step: int) -> dict:
+        if self.pause:
+            time.sleep(self.pause)
+        inputs = torch.randn(8, 4)
+        if step == self.bad_step:
+            inputs[0, 0] = float("nan")
+        return {"inputs": inputs, "episode_ids": [f"episode-{step}"]}
+
+    def forward(self, batch: dict) -> dict:
+        self.count += self.training
+        error = self.agent.body(batch["inputs"]) - batch["inputs"].sum(1, keepdim=True)
+        return {"loss": error.square().mean(), "error": error.abs().mean()}
+
+    def evaluate(self, step: int) -> dict:
+        return {"weight": float(torch.rand(()))}  # uses up global random numbers on purpose
+
+    def figures(self, step: int) -> dict:
+        return {"noise": torch.randint(0, 255, (8, 8, 3), dtype=torch.uint8).numpy()}
+
+    def get_extra_state(self) -> dict:
+        return {"count": self.count}
+
+    def set_extra_state(self, state: dict) -> None:
+        self.count = state["count"]
