@@ -104,12 +104,15 @@ def weights_file(path: str | Path) -> Path:
     return file
 
 
-def save_weights(module: nn.Module, path: str | Path) -> Path:
-    """Write the tensors of ``module.state_dict()`` to a safetensors file (or into a folder)."""
+def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> Path:
+    """Write the tensors of ``module.state_dict()`` to a safetensors file (or into a folder).
+
+    ``half`` rounds floats to float16, as in the shipped weights: half the bytes.
+    """
     given = Path(path)
     file = given if given.suffix == ".safetensors" else given / WEIGHTS
     tensors = {
-        name: value.detach().cpu().contiguous().clone()
+        name: (value.half() if half and value.is_floating_point() else value).cpu().clone()
         for name, value in module.state_dict().items()
         if isinstance(value, torch.Tensor)
     }

@@ -56,11 +56,14 @@ def explain(error: Exception, primary: str) -> str:
         group, _, name = (error.missing_cfg_file or "").rpartition("/")
         return unknown(group, name, error.options)
     if isinstance(error, OverrideParseException):
-        return f"Cannot read the option {error.override!r}: write key=value, such as severity=0.6."
+        return (
+            f"Cannot read the option {error.override!r}: write key=value, like severity=0.6, and "
+            "put a value that holds = , or spaces in quotes twice: 'checkpoint=\"my=agent\"'."
+        )
     key = _first(r"Could not override '([^']+)'", text)
     if key is not None:
         return _unknown_key(key, primary)
-    value = _first(r"Value '(.*)' (?:of type '\w+' could not be converted|is not a valid)", text)
+    value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
     if value is not None:
         key = _first(r"full_key: (\S+)", text) or _first(r"override (\S+?)=", text)
         kind = _first(r"(?:converted to|is not a valid) (\w+)", text) or ""

@@ -36,6 +36,7 @@ class EvaluationConfig:
 class EvaluateConfig:
     """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
 
+    runs: str = "runs"
     checkpoint: str = "checkpoints/base"
     name: str | None = None
     split: str = "val_unseen"
@@ -62,8 +63,8 @@ def run(cfg: DictConfig) -> Path:
     from mitigate.evaluation.evaluator import evaluate
 
     agent = build_agent(cfg.agent, weights=cfg.checkpoint, seed=cfg.seed).eval()
-    name = cfg.name or Path(cfg.checkpoint).stem
-    out = Path(cfg.out or f"runs/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
+    name = cfg.name or name_of(cfg.checkpoint)
+    out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     evaluate(
         agent,
@@ -74,36 +75,54 @@ def run(cfg: DictConfig) -> Path:
         split=cfg.split,
         seed=cfg.seed,
         workers=cfg.workers,
+        size=cfg.env.size,
     )
     write_table([out / ROWS], out)
     return out
 
 
+def name_of(weights: str) -> str:
+    """Return the name of weights by their path: of the run, for a run's ``agent`` folder."""
+    path = Path(weights.removesuffix(".safetensors"))
+    while path.name in ("model", "agent"):
+        path = path.parent
+    return path.name or "agent"
+
+
 def report_before_after(
     cfg: DictConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
 ) -> None:
-    """Evaluate both agents on the same quick subset, then write and print one table.
+    """Evaluate both agents on the same quick subset; print one table, write it and pictures.
 
-    ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing.
+    ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing. The
+    pictures in ``folder/pictures`` show episodes that the training won back.
     """
     from mitigate.evaluation.evaluator import evaluate
+    from mitigate.evaluation.trajectories import write_pictures
 
     quick = cfg.evaluation
     chosen = episodes(cfg.env, quick.split, quick.episodes)
     suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    for name, agent in (("before", base_agent), (cfg.name, trained_agent)):
-        if agent is not None:
-            evaluate(
-                agent,
-                chosen,
-                suite,
-                name=name,
-                out=folder / ROWS,
-                split=quick.split,
-                seed=cfg.seed,
-                workers=quick.workers,
-            )
+    agents: dict[str, Any] = {"before": base_agent, cfg.name: trained_agent}
+    agents = {name: agent for name, agent in agents.items() if agent is not None}
+    rows = []
+    for name, agent in agents.items():
+        rows += evaluate(
+            agent,
+            chosen,
+            suite,
+            name=name,
+            out=folder / ROWS,
+            split=quick.split,
+            seed=cfg.seed,
+            workers=quick.workers,
+            size=cfg.env.size,
+        )
     write_table([folder / ROWS], folder)
+    written = write_pictures(
+        agents, chosen, rows, folder / "pictures", seed=cfg.seed, size=cfg.env.size
+    )
+    print("\n".join(f"wrote {path}" for path in written), flush=True)
 
 
 def episodes(env: DictConfig, split: str, count: int | None) -> list:

@@ -16,6 +16,10 @@ from __future__ import annotations
 RGB = "rgb"
 DEPTH = "depth"
 POSE = "pose"
+# what torchrl environments add: text, the name of this run of an episode, low-level steps taken
+INSTRUCTION = "instruction"
+EPISODE = "episode"
+FRAME = "frame"
 
 VIEWS = 12
 VIEW_STEP_DEGREES = 30.0

@@ -15,16 +15,13 @@ OUT = Path("runs/table")
 
 
 def run(paths: Iterable[Path | str], out: Path | str = OUT) -> list[Path]:
-    """Join the rows of ``paths``, print the table, write the report to ``out``, return its files.
+    """Join the rows of ``paths``, write the report to ``out``; return its files, the table first.
 
     Raises FileNotFoundError for a path without rows, ValueError for rows that are damaged.
     """
     from mitigate.evaluation import report, rows
 
-    written = report.write(rows.gather(paths), out)
-    print(written[0].read_text(encoding="utf-8"))
-    print("\n".join(f"wrote {path}" for path in written))
-    return written
+    return report.write(rows.gather(paths), out)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -34,10 +31,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_args(argv)
     try:
-        run(options.rows, options.out)
+        written = run(options.rows, options.out)
     except (FileNotFoundError, ValueError) as error:
         print(f"table: {error}", file=sys.stderr)
         return 2
+    print(written[0].read_text(encoding="utf-8"))
+    print("\n".join(f"wrote {path}" for path in written))
     return 0
 
 

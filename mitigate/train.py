@@ -27,7 +27,7 @@ from mitigate.evaluate import EvaluationConfig, report_before_after
 from mitigate.trainer import Trainer
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
-NOT_IDENTITY = ("workers", "cache")  # settings that do not change what is trained
+NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
 
 
 @dataclass
@@ -135,7 +135,7 @@ def check(cfg: DictConfig) -> None:
 def default_folder(cfg: DictConfig, variant: str = "") -> str:
     """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
     depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
-    end = re.sub(r"[^A-Za-z0-9=._+-]+", "_", variant)
+    end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))  # Hydra splits at "="
     if len(end) > LONGEST:
         end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]
     end = f"-{end}" if end else ""

@@ -181,7 +181,9 @@ class Trainer:
             values = self.recipe.evaluate(done)
         self.recipe.train()
         if values:
-            journal.scalars(done, {f"eval/{name}": value for name, value in values.items()})
+            journal.scalars(done, {f"eval/{k}": v for k, v in values.items()}, line=False)
+            shown = "  ".join(f"{name} {value:.4g}" for name, value in values.items())
+            journal.say(f"evaluated at step {done}  {shown}")
 
     def _lr(self) -> float:
         return max(group["lr"] for group in self.optimizer.param_groups)

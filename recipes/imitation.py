@@ -23,10 +23,13 @@ from mitigate.agents.rollout import Trace, roll_out
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import agreement, free_target, select, waypoint_loss
 from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.envs.apartments.drawing import strip
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import draw_training_episode, landmarks
 from mitigate.envs.episodes import Episode
+from mitigate.evaluation.evaluator import run_episode
+from mitigate.evaluation.rows import read as read_rows
 from mitigate.keys import DEPTH, POSE, RGB
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
@@ -44,13 +47,18 @@ class ImitationRecipe(Recipe):
     apartments: how many training layouts. ogn_share: of object-goal episodes.
     w_concepts, w_waypoints: weights of the perception terms; w_distance, w_grounding: of the
     planner's auxiliary terms (metres to the goal; which views show the goal's landmark).
+    planner_lr: learning rate of the planner; None: the trainer's, as for the other parts.
+    prior: rows of an earlier evaluation, from which a success-distributed schedule starts.
+    refresh_every: steps between two measurements of the success rates that such a schedule draws by,
+    each on ``refresh_episodes`` training episodes under every corruption; 0: never.
 
     Raises ValueError for an unknown part.
     """
 
     def __init__(self, agent: TopologicalAgent, schedule: Schedule, train_parts: tuple[str, ...] = PARTS, episodes: int = 3,
                  follow_oracle: float = 0.5, apartments: int = 2000, ogn_share: float = 0.15, size: int = 64, seed: int = 0,
-                 w_concepts: float = 2.0, w_waypoints: float = 2.0, w_distance: float = 0.3, w_grounding: float = 0.3) -> None:  # fmt: skip
+                 w_concepts: float = 2.0, w_waypoints: float = 2.0, w_distance: float = 0.3, w_grounding: float = 0.3,
+                 planner_lr: float | None = None, prior: str | None = None, refresh_every: int = 0, refresh_episodes: int = 8) -> None:  # fmt: skip
         super().__init__()
         unknown = sorted(set(train_parts) - set(PARTS))
         if unknown:
@@ -59,15 +67,20 @@ class ImitationRecipe(Recipe):
         self.episodes, self.follow_oracle = episodes, follow_oracle
         self.apartments, self.ogn_share, self.size = apartments, ogn_share, size
         self.weights = {"concepts": w_concepts, "waypoints": w_waypoints, "distance": w_distance, "grounding": w_grounding}
+        self.prior = prior
+        self.planner_lr, self.refresh_every, self.refresh_episodes = planner_lr, refresh_every, refresh_episodes
         for part in PARTS:
             getattr(agent, part).requires_grad_(part in train_parts)
+        if prior is not None:
+            schedule.refresh(success_rates(read_rows(prior)))
         self._renderer: Renderer | None = None
 
     def batch(self, step: int) -> dict[str, Any]:
+        if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):
+            self.refresh(step)
         rng = generator(self.seed, "imitation", step)
         episodes = [draw_training_episode(rng, self.apartments, self.ogn_share) for _ in range(self.episodes)]
-        if self._renderer is None:
-            self._renderer = Renderer(self.size, scenes=64)
+        self._shared_renderer()
         worlds = [RenderedWorld(self, e, f"{step}-{i}") for i, e in enumerate(episodes)]
         self.agent.eval()
         tokens = self.agent.tokens([e.instruction.text for e in episodes])
@@ -75,7 +88,17 @@ class ImitationRecipe(Recipe):
         self.agent.train()
         looks = [look for world in worlds for look in world.looks]
         stacked = {name: torch.from_numpy(np.stack([look[name] for look in looks])) for name in looks[0]}
+        self._picture = strip(looks[0][RGB])
         return {**decisions_of(traces), **stacked, "tokens": tokens}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        """A panorama as the agent saw it in the last batch."""
+        return {"panorama": self._picture}
+
+    def _shared_renderer(self) -> Renderer:
+        if self._renderer is None:
+            self._renderer = Renderer(self.size, scenes=64)
+        return self._renderer
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         views, concepts, waypoints = self.agent.perceive(batch[RGB], batch[DEPTH])
@@ -106,6 +129,32 @@ class ImitationRecipe(Recipe):
         return {"loss": loss, "imitation": imitation, "distance": distance, "grounding": grounding, "accuracy": right.float().mean(),
                 "stop_recall": ((chosen == 0) & (stop > 0)).sum() / stop.sum().clamp(min=1),
                 "false_stop": ((chosen == 0) & (stop == 0)).sum() / (stop == 0).sum().clamp(min=1)}  # fmt: skip
+
+    def refresh(self, step: int) -> None:
+        """Measure the success rate under every corruption on training episodes; reweigh the schedule."""
+        rng = generator(self.seed, "refresh", step)
+        episodes = [draw_training_episode(rng, self.apartments, 0.0) for _ in range(self.refresh_episodes)]
+        simulator = Simulator(self.size, renderer=self._shared_renderer())
+        agent = self.agent.eval()
+        found = [
+            {"corruption": c.name, **run_episode(agent, simulator, e, c, self.seed)}
+            for c in map(self.schedule.corruption, self.schedule.names)
+            for e in episodes
+        ]
+        self.schedule.refresh(success_rates(found))
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """The schedule's weights, for the log."""
+        return {f"p/{name}": weight for name, weight in self.schedule.weights.items()}
+
+    def parameter_groups(self) -> list[dict[str, Any]]:
+        groups = super().parameter_groups()
+        if self.planner_lr is None:
+            return groups
+        planner = {id(p) for p in self.agent.planner.parameters()}
+        split = [{**g, "params": [p for p in g["params"] if id(p) not in planner]} for g in groups]
+        slow = [{**g, "params": [p for p in g["params"] if id(p) in planner], "lr": self.planner_lr} for g in groups]
+        return [*split, *slow]
 
     def get_extra_state(self) -> dict[str, Any]:
         return {"schedule": self.schedule.state_dict()}
@@ -147,6 +196,12 @@ class RenderedWorld:
 
     def distance(self, xy: np.ndarray) -> float:
         return self.simulator.distance_to_goal(xy)
+
+
+def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
+    """Mean success by corruption of rows or measures; clean ones are left out."""
+    names = {row["corruption"] for row in results} - {"clean"}
+    return {n: float(np.mean([r["success"] for r in results if r["corruption"] == n])) for n in sorted(names)}
 
 
 def decisions_of(traces: list[Trace]) -> dict[str, Any]:

@@ -37,6 +37,8 @@ class PlannerRecipe(ImitationRecipe):
         agent.eval()
         cache.build(agent, self.folder, range(cached), self.size)
         self.caches = [cache.load(self.folder, seed) for seed in range(cached)]
+        for stored in self.caches if agent.blind else ():
+            stored.blank(agent, self.size)
 
     def batch(self, step: int) -> dict[str, Any]:
         rng = generator(self.seed, "planner", step)
@@ -51,6 +53,9 @@ class PlannerRecipe(ImitationRecipe):
         views = torch.stack([v for trace in traces for v in trace.views])
         shows = np.stack([s for world in worlds for s in world.shown])
         return {**decisions_of(traces), "views": views, "shows": torch.from_numpy(shows), "tokens": tokens}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return {}
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         return self.planner_losses(batch, batch["views"])

@@ -70,6 +70,17 @@ def test_conditions_take_the_severity_of_their_modality():
     ]
 
 
+def test_weights_are_named_after_their_folder_or_run():
+    for path in (
+        "checkpoints/base",
+        "runs/base/agent",
+        "x/base/model.safetensors",
+        "base.safetensors",
+    ):
+        assert evaluate.name_of(path) == "base"
+    assert evaluate.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
+
+
 def test_an_unknown_condition_or_split_names_the_nearest():
     with pytest.raises(ValueError, match="Did you mean flare"):
         evaluate.conditions(["flair"], 0.5, None)

@@ -12,9 +12,9 @@ RECIPES = sorted(path.stem for path in (cli.CONF / "recipe").rglob("*.yaml"))
 
 @pytest.mark.parametrize("name", RECIPES)
 def test_every_recipe_trains_two_steps(tmp_path, name):
-    options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"folder={tmp_path}"]
+    options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
     cfg = cli.load_config("train", options)
-    train.run(cfg)
+    folder = train.run(cfg)
     for stage in cfg.stages:
-        assert checkpoint.checkpoints(tmp_path / stage)[-1].name == "step-00000002.pt"
-    checkpoint.load_weights(build(cfg.agent), tmp_path / "agent")
+        assert checkpoint.checkpoints(folder / stage)[-1].name == "step-00000002.pt"
+    checkpoint.load_weights(build(cfg.agent), folder / "agent")

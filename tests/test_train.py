@@ -103,7 +103,7 @@ def test_the_folder_says_recipe_severity_seed_and_further_options():
     assert train.default_folder(cfg) == "runs/da_success-s0.9-seed3"
     cfg.severity_depth = 0.8
     name = train.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
-    assert name == "runs/da_success-s0.9-d0.8-seed3-init=checkpoints_mine_debug=smoke"
+    assert name == "runs/da_success-s0.9-d0.8-seed3-init-checkpoints_mine_debug-smoke"
 
 
 def test_build_hands_the_very_object_on_and_shows_a_users_error():

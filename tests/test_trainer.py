@@ -135,6 +135,24 @@ def test_plain_lines_name_step_rate_and_time_left(tmp_path, capsys):
     assert "step 10/20" in out and "steps_per_s" in out and "ETA 00:" in out and "lr 0.0005" in out
 
 
+def test_a_terminal_gets_a_bar_with_the_time_left(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    trained(tmp_path, log_every=10)
+    out = capsys.readouterr().out
+    assert "20/20 [00:0" in out and "it/s" in out and "ETA" not in out
+
+
+def test_scalars_and_pictures_are_in_tensorboard(tmp_path):
+    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+    trained(tmp_path, log_every=10, eval_every=20, figure_every=20)
+    events = EventAccumulator(str(tmp_path))
+    events.Reload()
+    assert {"loss", "error", "lr", "grad_norm", "eval/weight"} <= set(events.Tags()["scalars"])
+    assert [event.step for event in events.Scalars("loss")] == [10, 20]
+    assert events.Tags()["images"] == ["noise"]
+
+
 def test_a_nan_loss_stops_with_step_recipe_and_episodes(tmp_path):
     made = recipe(bad_step=7)
     with pytest.raises(LossNotFinite) as error:

@@ -19,13 +19,15 @@ from mitigate.agents.concepts import view_labels
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import COUNT, select
 from mitigate.checkpoint import write_atomically
+from mitigate.envs.apartments.apartment import Apartment, apartment_of
 from mitigate.envs.apartments.renderer import Renderer
-from mitigate.envs.apartments.simulator import apartment_of, goal_field
+from mitigate.envs.apartments.simulator import goal_field
 from mitigate.envs.apartments.tasks import from_vlnce, heading_of, landmarks
 from mitigate.envs.episodes import Episode
 from mitigate.keys import VIEW_STEP_DEGREES, VIEWS
 
 SPACING = 0.5  # metres
+_BATCH = 16  # panoramas encoded at once
 
 
 class ApartmentCache:
@@ -36,6 +38,20 @@ class ApartmentCache:
         self.xy, self.views = arrays["xy"], torch.from_numpy(arrays["views"])
         self.waypoints, self.seen = arrays["waypoints"], arrays["seen"]
         self.tree = cKDTree(self.xy)
+
+    @torch.no_grad()
+    def blank(self, agent: TopologicalAgent, size: int) -> None:
+        """Replace what a blind agent cannot see by what it gets from blanked frames."""
+        rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8)
+        views, _, logits = agent.perceive(rgb, torch.zeros(1, VIEWS, size, size, 1))
+        depth = agent.planner.widths[-1]
+        if "rgb" in agent.blind:
+            self.views[..., :-depth] = views[0, :, :-depth].half()
+        if "depth" in agent.blind:
+            self.views[..., -depth:] = views[0, :, -depth:].half()
+            found = select(logits[0].numpy())
+            self.waypoints[:] = 0
+            self.waypoints[:, : len(found)] = found
 
 
 def lattice(cells: np.ndarray, xy: np.ndarray) -> np.ndarray:
@@ -62,8 +78,7 @@ def build(agent: TopologicalAgent, folder: Path, apartments: range, size: int = 
         renderer.load(apartment)
         xy_all = (apartment.space.cells[:, ::-1] + 0.5) * 0.1
         xy = xy_all[lattice(apartment.space.cells, xy_all)]
-        views, waypoints, seen = zip(*(_entry(agent, renderer, apartment, p) for p in xy), strict=True)
-        arrays = {"xy": xy, "views": np.stack(views), "waypoints": np.stack(waypoints), "seen": np.stack(seen)}
+        arrays = _features(agent, [_frames(renderer, apartment, p) for p in xy]) | {"xy": xy}
         write_atomically(path_of(folder, seed), partial(_save, arrays))
 
 
@@ -72,16 +87,26 @@ def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
         np.savez(file, **arrays)
 
 
-def _entry(agent: TopologicalAgent, renderer: Renderer, apartment, xy: np.ndarray) -> tuple:  # type: ignore[no-untyped-def]
+def _frames(renderer: Renderer, apartment: Apartment, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """RGB, depth and, for each view, which furniture shows (bits of a uint64)."""
     rgb, depth, ids = renderer.render(float(xy[0]), float(xy[1]), 0.0)
-    with torch.autocast("cpu", torch.bfloat16):
-        views, _, waypoints = agent.perceive(torch.from_numpy(rgb)[None], torch.from_numpy(depth)[None])
-    chosen = np.zeros((COUNT, 2), np.float32)
-    found = select(waypoints[0].float().numpy())
-    chosen[: len(found)] = found
     _, seen = view_labels(apartment, ids, depth)
     bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(1, dtype=np.uint64)
-    return views[0].half().numpy(), chosen, bits
+    return rgb, depth, bits
+
+
+def _features(agent: TopologicalAgent, frames: list[tuple]) -> dict[str, np.ndarray]:
+    views, chosen = [], np.zeros((len(frames), COUNT, 2), np.float32)
+    for first in range(0, len(frames), _BATCH):
+        part = frames[first : first + _BATCH]
+        rgb, depth = (torch.from_numpy(np.stack([frame[i] for frame in part])) for i in (0, 1))
+        with torch.autocast("cpu", torch.bfloat16):
+            features, _, logits = agent.perceive(rgb, depth)
+        views.append(features.half().numpy())
+        for row, grid in enumerate(logits.float().numpy(), first):
+            found = select(grid)
+            chosen[row, : len(found)] = found
+    return {"views": np.concatenate(views), "waypoints": chosen, "seen": np.stack([frame[2] for frame in frames])}
 
 
 def load(folder: Path, seed: int) -> ApartmentCache:

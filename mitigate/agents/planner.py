@@ -70,11 +70,13 @@ class Attention(nn.Module):
         self.heads, self.scale = heads, (width // heads) ** -0.5
         self.q, self.kv, self.out = nn.Linear(width, width), nn.Linear(width, 2 * width), nn.Linear(width, width)
 
-    def forward(self, x: Tensor, memory: Tensor, mask: Tensor | None) -> Tensor:
+    def forward(self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None) -> Tensor:
+        """x [B, n, width] looks at memory [B, m, width], or at ``memory[rows]`` (projected once)."""
         def split(t: Tensor) -> Tensor:
             return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
 
-        k, v = self.kv(memory).chunk(2, -1)
+        pairs = self.kv(memory) if rows is None else self.kv(memory)[rows]
+        k, v = pairs.chunk(2, -1)
         scores = split(self.q(x)) @ split(k).transpose(-1, -2) * self.scale
         if mask is not None:
             scores = scores.masked_fill(~mask[:, None, None, :], -1e4)
@@ -93,9 +95,10 @@ class Layer(nn.Module):
         self.ff = nn.Sequential(nn.Linear(width, 3 * width), nn.GELU(), nn.Linear(3 * width, width))
         self.dropout = nn.Dropout(dropout)
 
-    def forward(self, x: Tensor, mask: Tensor | None, text: Tensor | None = None, text_mask: Tensor | None = None) -> Tensor:
+    def forward(self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None) -> Tensor:
+        """``text``: features [E, L, width], mask [B, L] and the row of each x: int [B]."""
         if self.cross is not None and self.cross_norm is not None and text is not None:
-            x = x + self.cross(self.cross_norm(x), text, text_mask)
+            x = x + self.cross(self.cross_norm(x), *text)
         y = self.self_norm(x)
         x = x + self.attention(y, y, mask)
         return x + self.dropout(self.ff(self.ff_norm(x)))
@@ -163,9 +166,8 @@ class Planner(nn.Module):
         size = x.shape[1]
         x = torch.cat([x, views[batch.panorama] + self.view_kind], 1)
         mask = F.pad(batch.valid, (0, VIEWS), value=True)
-        words, text_mask = text[0][batch.episode], text[1][batch.episode]
         for layer in self.layers:
-            x = layer(x, mask, words, text_mask)
+            x = layer(x, mask, (text[0], text[1][batch.episode], batch.episode))
         x = self.norm(x)
         tokens, current = x[:, :size], x[:, size:]
         logits = torch.cat([self.stop(tokens[:, :1]), self.score(tokens[:, 1:])], 1).squeeze(-1).float()

@@ -158,9 +158,9 @@ def low_light_noise(
     table = tables(severity, camera)
     gain = _level_gain(key.still(), severity, height, width)
     names = [digest(key, "low_light_noise", frame=True, view=v) for v in range(count)]
-    rows = np.stack([normals(digest(key, "row_noise", frame=True, view=v), height)
-                     for v in range(count)]) * np.float32(table.row)
-    out = np.empty_like(views)
     streams = np.array(names, np.uint64)
+    names = [digest(key, "row_noise", frame=True, view=v) for v in range(count)]
+    rows = np.float32(table.row) * np.stack([normals(name, height) for name in names])
+    out = np.empty_like(views)
     _sample(views, gain, streams, rows, table.photons, table.read, table.decode, out)
     return out

@@ -1,4 +1,4 @@
-"""Keyed randomness: every draw is a pure function of (seed, episode, corruption, frame, view, pixel).
+"""Keyed randomness: a draw is a function of (seed, episode, corruption, frame, view, pixel) alone.
 
 A blake2b digest of the named parts gives 64 bits; an integer hash (splitmix64, Steele et al. 2014)
 of that digest plus a counter gives the numbers. No global state, no Python ``hash()``, no running

@@ -187,7 +187,7 @@ def _flare_mask(x: float, y: float, severity: float, height: int, width: int) ->
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Screen blend with a radial glow at a world-fixed direction; views that face away are clean."""
+    """Screen blend with a radial glow from a fixed direction in the world, where a view sees it."""
     count, height, width, _ = views.shape
     out = views.copy()
     for view, centre in enumerate(flare_centres(key, count, height, width, heading)):

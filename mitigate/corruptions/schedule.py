@@ -118,8 +118,12 @@ class Schedule:
             return CLEAN, key
         place = bisect_right(list(accumulate(self._weights)), uniform(value, 1))
         name = self.names[min(place, len(self.names) - 1)]
+        return self.corruption(name), key
+
+    def corruption(self, name: str) -> Corruption:
+        """The corruption ``name`` at this schedule's severity for its modality."""
         deep = name not in RGB and self.severity_depth is not None
-        return Corruption(name, self.severity_depth if deep else self.severity), key
+        return Corruption(name, self.severity_depth if deep else self.severity)
 
     def state_dict(self) -> dict:
         """JSON-able: what a checkpoint keeps so that the weights survive a resume."""

@@ -88,7 +88,7 @@ class Corruption:
 
     @property
     def modality(self) -> str:
-        """"rgb", "depth", or "none" for clean frames."""
+        """Which entry is hurt: "rgb", "depth", or "none" for clean frames."""
         if self.name == "clean":
             return "none"
         return "rgb" if self.name in _RGB else "depth"

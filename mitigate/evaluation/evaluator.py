@@ -52,7 +52,9 @@ class LazyObservation(Mapping[str, np.ndarray]):
         return 3
 
 
-def run_episode(agent: Agent, simulator: Simulator, episode: Episode, corruption: Corruption, seed: int) -> dict[str, Any]:
+def run_episode(
+    agent: Agent, simulator: Simulator, episode: Episode, corruption: Corruption, seed: int
+) -> dict[str, Any]:
     """Run one episode to STOP or the step limit and return its measures."""
     simulator.reset(episode)
     agent.reset(episode.instruction.text)
@@ -61,7 +63,9 @@ def run_episode(agent: Agent, simulator: Simulator, episode: Episode, corruption
     def frames() -> dict[str, np.ndarray]:
         nonlocal looks
         looks += 1
-        return corrupt_observation(simulator.observe(), corruption, Key(seed, episode.episode_id, looks - 1))
+        return corrupt_observation(
+            simulator.observe(), corruption, Key(seed, episode.episode_id, looks - 1)
+        )
 
     while not simulator.done:
         simulator.step(agent.act(LazyObservation(simulator.odometry()[POSE], frames)))
@@ -100,7 +104,16 @@ def evaluate(agent: torch.nn.Module, episodes: list[Episode], conditions: list[C
     label = {"agent": weights_sha(agent)[:12], "name": name, "split": split, "seed": seed,
              "suite": SUITE_VERSION, "rule": metrics.rule(SUCCESS_METRES)}  # fmt: skip
     jobs = [
-        (episode, condition, {**label, "corruption": condition.name, "severity": condition.severity, "episode_id": episode.episode_id})
+        (
+            episode,
+            condition,
+            {
+                **label,
+                "corruption": condition.name,
+                "severity": condition.severity,
+                "episode_id": episode.episode_id,
+            },
+        )
         for episode in episodes
         for condition in conditions
     ]
@@ -110,7 +123,9 @@ def evaluate(agent: torch.nn.Module, episodes: list[Episode], conditions: list[C
     return [row for row in rows.read(out) if rows.identity(row) in wanted]
 
 
-def _run_all(agent: torch.nn.Module, jobs: list[tuple], out: Path, workers: int, size: int, title: str) -> None:
+def _run_all(
+    agent: torch.nn.Module, jobs: list[tuple], out: Path, workers: int, size: int, title: str
+) -> None:
     """Run the jobs in order of episode and append their rows to ``out`` as they come."""
     if workers > 1 and len(jobs) > workers:
         context = multiprocessing.get_context("spawn")
@@ -144,5 +159,7 @@ def _start_worker(agent: torch.nn.Module, size: int, threads: int = 1) -> None:
 
 def _work(job: tuple[Episode, Corruption, dict[str, Any]]) -> dict[str, Any]:
     episode, condition, label = job
-    measures = run_episode(_WORKER["agent"], _WORKER["simulator"], episode, condition, label["seed"])
+    measures = run_episode(
+        _WORKER["agent"], _WORKER["simulator"], episode, condition, label["seed"]
+    )
     return {**label, **measures}

@@ -6,7 +6,7 @@ Rows of different split, suite version or success rule never share a :class:`Gri
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,6 +16,7 @@ from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation.rows import Row, upsert
 
 BLOCKS = {"RGB": RGB, "Depth": DEPTH}  # the paper's two blocks, in its order
+COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}
 
 
@@ -30,7 +31,7 @@ class Gap:
     want: int
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Retention:
     """What a PRS is made of: ``clean`` [N] and ``corrupted`` [K, N] on the same N episodes."""
 
@@ -39,7 +40,7 @@ class Retention:
     corrupted: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Grid:
     """All results of one split, suite version and success rule.
 
@@ -83,26 +84,30 @@ class Grid:
         return ~np.isnan(self.cell(label, "clean", 0.0, metric))
 
     def retention(
-        self,
-        label: str,
-        names: Iterable[str],
-        severity: float,
-        metric: str,
-        among: np.ndarray | None = None,
-    ) -> Retention | None:
-        """Return what the PRS over ``names`` is made of, or None if there is nothing.
+        self, labels: Sequence[str], names: Iterable[str], severity: float, metric: str
+    ) -> list[Retention] | None:
+        """Return what each column's PRS over ``names`` is made of, or None if there is nothing.
 
-        Taken over the episodes of the clean cell (those ``among`` [N] bool, if given) and the
-        corruptions measured on every one of them; a corruption with gaps is left out.
+        All have the same corruptions, those measured in every column on at least
+        :data:`COVERAGE` of the episodes, and the same episodes, those with no gap among these.
         """
-        known = self.measured(label, metric)
-        known = known if among is None else known & among
-        cells = {name: self.cell(label, name, severity, metric)[known] for name in names}
-        whole = tuple(name for name, values in cells.items() if not np.isnan(values).any())
-        if not known.any() or not whole:
+        known = np.all([self.measured(label, metric) for label in labels], axis=0)
+        held = {
+            name: known & ~np.isnan([self.cell(x, name, severity, metric) for x in labels]).any(0)
+            for name in names
+        }
+        kept = tuple(name for name in held if held[name].sum() >= COVERAGE * known.sum())
+        common = np.all([known, *(held[name] for name in kept)], axis=0)
+        if not kept or not common.any():
             return None
-        clean = self.cell(label, "clean", 0.0, metric)[known]
-        return Retention(whole, clean, np.stack([cells[name] for name in whole]))
+        return [
+            Retention(
+                kept,
+                self.cell(label, "clean", 0.0, metric)[common],
+                np.stack([self.cell(label, name, severity, metric)[common] for name in kept]),
+            )
+            for label in labels
+        ]
 
     def gaps(self, severity: float) -> list[Gap]:
         """Return the cells of the table at ``severity`` that lack episodes of the grid."""

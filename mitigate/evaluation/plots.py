@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.grid import BLOCKS, Grid
-from mitigate.evaluation.report import Section, label
+from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["RdYlGn"]
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
@@ -52,19 +52,23 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
         for index, column in enumerate(grid.columns):
             _curve(axis, grid, column, name, LINES[index % len(LINES)])
         axis.set_title(label(name), fontsize=9)
-        axis.set(xlim=(0, 1), ylim=(0, 100))
+        axis.set(xlim=(-0.03, 1.03), ylim=(-3, 103))
+        axis.tick_params(labelsize=8)
         axis.grid(alpha=0.3)
     for axis in axes[len(names) :]:
         axis.set_visible(False)
-    figure.supxlabel("severity", fontsize=9)
+    for axis in axes[max(0, len(names) - across) : len(names)]:
+        axis.set_xlabel("severity", fontsize=8)
+        axis.tick_params(labelbottom=True)
     figure.supylabel("SR (%)", fontsize=9)
     figure.suptitle(
         f"SR against severity on {grid.split}, N = {len(grid.episodes)}; {grid.rule}; "
         f"suite {grid.suite}",
         fontsize=9,
     )
-    handles, texts = axes[0].get_legend_handles_labels()
-    figure.legend(handles, texts, loc="outside lower center", ncols=across, fontsize=8)
+    drawn = {line.get_label(): line for axis in axes for line in axis.get_lines()}
+    handles = [drawn[column] for column in grid.columns if column in drawn]
+    figure.legend(handles=handles, loc="outside lower center", ncols=across, fontsize=8)
     return _save(figure, path)
 
 
@@ -78,15 +82,18 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
             found = section.retained.get((column, block, metric))
             if found is not None and not math.isnan(found.estimate.value):
                 colours[i, j] = found.estimate.value
-                texts[i, j] = f"{found.estimate.value:.2f}"
+                texts[i, j] = f"{found.estimate.value:.2f}{section.marks(found, block)}"
         for i, name in enumerate(("clean", *names), start=2):
             rate, spl = (section.value(column, name, metric) for metric in ("SR", "SPL"))
             if not math.isnan(rate):
                 colours[i, j] = rate / best if best else 0.0
-                texts[i, j] = f"{100 * rate:.0f} / {spl:.2f}"
+                texts[i, j] = f"{100 * rate:.0f} / {spl:.2f}" + "*" * section.partial(column, name)
     axis.imshow(colours, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
     for (i, j), text in np.ndenumerate(texts):
-        axis.text(j, i, text, ha="center", va="center", fontsize=8)
+        dark = abs(colours[i, j] - 0.5) > 0.35  # both ends of the colour map; False for NaN
+        axis.text(
+            *(j, i, text), ha="center", va="center", fontsize=8, color="white" if dark else "black"
+        )
     axis.axhline(1.5, color="black", linewidth=1.5)
     axis.set_xticks(range(shape[1]), section.columns, rotation=25, ha="right", fontsize=8)
     axis.set_yticks(range(shape[0]), rows, fontsize=8)
@@ -95,7 +102,10 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
 
 def _curve(axis: Axes, grid: Grid, column: str, name: str, colour: tuple) -> None:
     points = []
-    for severity in (0.0, *grid.severities):
+    measured = any(
+        (column, name, severity, "success") in grid.cells for severity in grid.severities
+    )
+    for severity in (0.0, *grid.severities) if measured else ():
         cell = grid.cell(column, "clean" if severity == 0 else name, severity, "success")
         known = cell[~np.isnan(cell)]
         if len(known):

@@ -7,73 +7,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
-from mitigate.evaluation.grid import METRICS, Gap, Grid, grids
+from mitigate.evaluation.grid import METRICS, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
+from mitigate.evaluation.sections import Section, label, sections
 from mitigate.files import atomic_text
-
-REFERENCES = ("base", "before")  # a column of such a name is what the others are compared with
-LABELS = {  # the paper's Table II
-    "low_light": "L-L w/o noise",
-    "low_light_noise": "L-L w/ noise",
-    "black_out": "Black-out",
-}
-
-
-@dataclass(frozen=True)
-class Retained:
-    """A PRS or a difference of two, the corruptions it covers, and if a clean value is too low."""
-
-    estimate: Estimate
-    corruptions: tuple[str, ...]
-    near_floor: bool
-
-
-@dataclass(frozen=True)
-class Section:
-    """One table: a grid at one severity (0 where only clean cells exist).
-
-    ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
-    the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
-    """
-
-    grid: Grid
-    severity: float
-    columns: tuple[str, ...]
-    blocks: dict[str, tuple[str, ...]]
-    reference: str
-    clean: dict[tuple[str, str], Estimate]
-    retained: dict[tuple[str, str, str], Retained]
-    gained: dict[tuple[str, str, str], Retained]
-    gaps: list[Gap]
-
-    def value(self, column: str, corruption: str, metric: str = "SR") -> float:
-        """Return the mean of a cell over the episodes it holds, NaN if it holds none."""
-        severity = 0.0 if corruption == "clean" else self.severity
-        return _mean(self.grid.cell(column, corruption, severity, METRICS[metric]))
-
-    def partial(self, column: str, corruption: str) -> bool:
-        """Return whether a cell lacks episodes."""
-        return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
-
-
-def sections(rows: Iterable[Row]) -> list[Section]:
-    """Return one section for each split, suite, rule and severity in ``rows``."""
-    return [
-        _section(grid, severity) for grid in grids(rows) for severity in grid.severities or [0.0]
-    ]
-
-
-def label(corruption: str) -> str:
-    """Return the name of a corruption as the paper's table prints it."""
-    return LABELS.get(corruption, corruption.replace("_", " ").capitalize())
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
@@ -97,64 +38,21 @@ def write(rows: Iterable[Row], folder: Path | str) -> list[Path]:
     folder.mkdir(parents=True, exist_ok=True)
     parts = sections(rows)
     pictures: list[list[str]] = [[] for _ in parts]
-    drawn: list[Grid] = []
-    for index, section in enumerate(parts):
+    heatmaps = 0
+    grids: list[Grid] = []
+    for section, names in zip(parts, pictures, strict=True):
         if not section.blocks:
             continue
-        pictures[index].append(_numbered("heatmap", index))
-        plots.heatmap(section, folder / pictures[index][-1])
-        if section.grid not in drawn:
-            pictures[index].append(_numbered("severity", len(drawn)))
-            plots.severity_curves(section.grid, folder / pictures[index][-1])
-            drawn.append(section.grid)
+        names.append(_numbered("heatmap", heatmaps))
+        plots.heatmap(section, folder / names[-1])
+        heatmaps += 1
+        if section.grid not in grids:
+            names.append(_numbered("severity", len(grids)))
+            plots.severity_curves(section.grid, folder / names[-1])
+            grids.append(section.grid)
     with atomic_text(folder / "table.md") as file:
         file.write(markdown(parts, pictures))
     return [folder / "table.md", *(folder / name for names in pictures for name in names)]
-
-
-def _section(grid: Grid, severity: float) -> Section:
-    columns, blocks = tuple(grid.columns_at(severity)), grid.blocks_at(severity)
-    named = [c for name in REFERENCES for c in columns if grid.columns[c][0] == name]
-    reference = (named or columns)[0]
-    clean, retained, gained = {}, {}, {}
-    for column in columns:
-        for metric, key in METRICS.items():
-            values = grid.cell(column, "clean", 0.0, key)
-            if grid.measured(column, key).any():
-                clean[column, metric] = bootstrap.mean(values[~np.isnan(values)])
-            for block, names in blocks.items():
-                place = (column, block, metric)
-                if found := _retained(grid, column, names, severity, key):
-                    retained[place] = found
-                if column != reference and (
-                    change := _gained(grid, column, reference, names, severity, key)
-                ):
-                    gained[place] = change
-    gaps = grid.gaps(severity)
-    return Section(grid, severity, columns, blocks, reference, clean, retained, gained, gaps)
-
-
-def _retained(
-    grid: Grid, column: str, names: tuple[str, ...], severity: float, key: str
-) -> Retained | None:
-    parts = grid.retention(column, names, severity, key)
-    if parts is None:
-        return None
-    estimate = bootstrap.prs(parts.clean, parts.corrupted)
-    return Retained(estimate, parts.corruptions, bool(parts.clean.mean() < FLOOR))
-
-
-def _gained(
-    grid: Grid, column: str, reference: str, names: tuple[str, ...], severity: float, key: str
-) -> Retained | None:
-    """Return PRS(column) - PRS(reference) on the episodes and corruptions that both hold."""
-    both = grid.measured(column, key) & grid.measured(reference, key)
-    theirs = grid.retention(reference, names, severity, key, both)
-    ours = grid.retention(column, theirs.corruptions, severity, key, both) if theirs else None
-    theirs = grid.retention(reference, ours.corruptions, severity, key, both) if ours else None
-    if ours is None or theirs is None:
-        return None
-    return bootstrap.prs_difference((ours.clean, ours.corrupted), (theirs.clean, theirs.corrupted))
 
 
 def _heading(section: Section) -> str:
@@ -200,7 +98,7 @@ def _notes(section: Section) -> str:
         )
     found = section.retained.items()
     if any(len(r.corruptions) < len(section.blocks[block]) for (_, block, _), r in found):
-        notes.append("† over the corruptions named k/K only: the others are not complete.")
+        notes.append("† over k of the K corruptions: the others are not complete.")
     if section.gained:
         notes.append("Differences of PRS in bold have intervals that exclude zero.")
     if section.gaps:
@@ -232,25 +130,23 @@ def _prs(section: Section, place: tuple[str, str, str]) -> str:
     found = section.retained.get(place)
     if found is None:
         return "–"
-    wanted = len(section.blocks[place[1]])
-    some = f" † {len(found.corruptions)}/{wanted}" if len(found.corruptions) < wanted else ""
-    return f"**{found.estimate.value:.2f}** [{found.estimate.low:.2f}, " + (
-        f"{found.estimate.high:.2f}]{some}{' ‡' if found.near_floor else ''}"
-    )
+    prs, marks = found.estimate, _escaped(section.marks(found, place[1]))
+    if math.isnan(prs.value):
+        return f"undefined{marks}"
+    return f"**{prs.value:.2f}** [{prs.low:.2f}, {prs.high:.2f}]{marks}"
 
 
 def _change(section: Section, place: tuple[str, str, str]) -> str:
-    change = section.gained.get(place)
-    if change is None:
+    found = section.gained.get(place)
+    if found is None or math.isnan(found.estimate.value):
         return "–"
-    text = f"{change.value:+.2f}"
-    text = f"**{text}**" if change.excludes_zero else text
-    return f"{text} [{change.low:+.2f}, {change.high:+.2f}]"
+    change, marks = found.estimate, _escaped(section.marks(found, place[1]))
+    text = f"**{change.value:+.2f}**" if change.excludes_zero else f"{change.value:+.2f}"
+    return f"{text} [{change.low:+.2f}, {change.high:+.2f}]{marks}"
 
 
-def _mean(values: np.ndarray) -> float:
-    known = values[~np.isnan(values)]
-    return float(known.mean()) if len(known) else math.nan
+def _escaped(text: str) -> str:
+    return text.replace("*", "\\*")
 
 
 def _numbered(stem: str, index: int) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 from mitigate.envs.apartments.apartment import Apartment, apartment_of
 from mitigate.envs.apartments.instructions import describe, find
 from mitigate.envs.apartments.palette import SEED_RANGES, SPLITS
-from mitigate.envs.episodes import Episode, Goal, Instruction, write_episodes
+from mitigate.envs.episodes import Episode, Goal, Instruction, read_episodes, write_episodes
 
 SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (DESIGN section 3)
 SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
@@ -144,6 +144,16 @@ def draw_training_episode(rng: np.random.Generator, apartments: int, ogn_share: 
         text = describe(apartment_of(episode.scene_id), path, heading, episode.info["landmark"], rng)
         episode = replace(episode, instruction=Instruction(text, None, "en-US", {}))
     return episode
+
+
+def episode_file(split: str, task: str = "vln") -> Path:
+    """The shipped list of a validation split."""
+    return Path(__file__).parent / "episodes" / f"{split}_{task}.json.gz"
+
+
+def load_episodes(split: str, task: str = "vln") -> list[Episode]:
+    """The shipped episodes of a validation split, in order."""
+    return list(read_episodes(episode_file(split, task)))
 
 
 def main() -> None:

@@ -1,0 +1,145 @@
+"""A contact sheet: every corruption at several severities on one instant.
+
+    python -m mitigate.corruptions.gallery --out sheet.png [--rgb FRAME.png --depth FRAME.npy]
+
+Without files the frame is rendered from an apartment.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.suite import NAMES, RGB, corrupt
+from mitigate.keys import DEPTH, Z_MAX
+from mitigate.keys import RGB as RGB_ENTRY
+
+SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
+GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
+NO_READING = (255, 255, 255)  # the colour of invalid depth
+
+
+def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
+    """uint8 RGB [H, W, 3] of depth [H, W]: near is bright, ``far`` metres dark, no reading white."""
+    valid = np.isfinite(depth) & (depth > 0)
+    near = 1.0 - np.where(valid, np.clip(depth / far, 0.0, 1.0), 0.0)
+    picture = cv2.applyColorMap(np.rint(255.0 * near).astype(np.uint8), cv2.COLORMAP_VIRIDIS)
+    picture = np.ascontiguousarray(picture[..., ::-1])
+    picture[~valid] = NO_READING
+    return picture
+
+
+def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: Key, views):
+    """The views asked for, corrupted, side by side as uint8 RGB."""
+    if name in RGB:
+        return np.hstack(corrupt(rgb, name, severity, key=key)[list(views)])
+    hurt = corrupt(depth, name, severity, key=key)[list(views)]
+    far = float(depth[list(views)].max())
+    return np.hstack([depth_picture(view[..., 0], far) for view in hurt])
+
+
+def _write(sheet: np.ndarray, text: str, x: int, y: int) -> None:
+    cv2.putText(sheet, text, (x, y), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 0), 1, cv2.LINE_AA)
+
+
+def contact_sheet(
+    rgb: np.ndarray,
+    depth: np.ndarray,
+    path: str | Path,
+    severities: tuple[float, ...] = SEVERITIES,
+    *,
+    key: Key | None = None,
+    views: tuple[int, ...] = (0,),
+) -> np.ndarray:
+    """Write the 12 corruptions (rows) at ``severities`` (columns) as a picture file.
+
+    Args:
+        rgb: uint8 [H, W, 3] or [V, H, W, 3].
+        depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same instant and size.
+        path: where the picture goes (.png); parent folders are made.
+        key: the random draw; one draw for the whole sheet.
+        views: which views of a panorama each cell shows, left to right.
+
+    Returns the picture, uint8 RGB. Raises ValueError if the frames do not match.
+    """
+    rgb = rgb if rgb.ndim == 4 else rgb[None]
+    depth = depth.reshape(*rgb.shape[:3], 1) if depth.size == rgb.size // 3 else depth
+    if depth.shape != (*rgb.shape[:3], 1):
+        raise ValueError(
+            f"RGB {rgb.shape} and depth {depth.shape} are not of the same instant and size. Pass "
+            "[V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
+        )
+    key = key or Key(0, "contact sheet")
+    high, wide = rgb.shape[1] + GUTTER, rgb.shape[2] * len(views) + GUTTER
+    shape = (TITLE + high * len(NAMES), LABEL + wide * len(severities), 3)
+    sheet = np.full(shape, 255, np.uint8)
+    for column, severity in enumerate(severities):
+        _write(sheet, f"s = {severity:g}", LABEL + column * wide, TITLE - 8)
+    for row, name in enumerate(NAMES):
+        top = TITLE + row * high
+        _write(sheet, name, 6, top + high // 2)
+        for column, severity in enumerate(severities):
+            cell = _cell(rgb, depth, name, severity, key, views)
+            left = LABEL + column * wide
+            sheet[top : top + cell.shape[0], left : left + cell.shape[1]] = cell
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not cv2.imwrite(str(path), sheet[..., ::-1]):
+        raise ValueError(f"Could not write {path}: use a file name that ends in .png or .jpg.")
+    return sheet
+
+
+def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """RGB [12, H, W, 3] and depth [12, H, W, 1] at the start of an episode in apartment ``seed``."""
+    from mitigate.envs.apartments.apartment import Apartment
+    from mitigate.envs.apartments.simulator import Simulator
+    from mitigate.envs.apartments.tasks import make_episode
+
+    simulator = Simulator(size=size)
+    simulator.reset(make_episode(Apartment(seed), "vln", 0))
+    observation = simulator.observe()
+    return observation[RGB_ENTRY], observation[DEPTH]
+
+
+def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
+    """RGB from a picture file and depth (metres) from a .npy file. Raises FileNotFoundError."""
+    for path in (rgb, depth):
+        if not path.is_file():
+            raise FileNotFoundError(
+                f"There is no file {path}. Pass --rgb PICTURE and --depth ARRAY.npy (float32 "
+                "metres, same height and width), or neither to render a frame."
+            )
+    picture = cv2.imread(str(rgb), cv2.IMREAD_COLOR)
+    if picture is None:
+        raise ValueError(f"{rgb} is not a picture that OpenCV can read: use PNG or JPEG.")
+    metres = np.load(depth, allow_pickle=False).astype(np.float32)
+    return np.ascontiguousarray(picture[..., ::-1]), metres
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Command line: see the module's first lines."""
+    parser = argparse.ArgumentParser(prog="mitigate.corruptions.gallery", description=__doc__)
+    parser.add_argument("--out", type=Path, required=True, help="picture file to write")
+    parser.add_argument("--rgb", type=Path, help="picture of one view")
+    parser.add_argument("--depth", type=Path, help=".npy with float32 metres, same size")
+    parser.add_argument("--seed", type=int, default=7, help="apartment to render (default 7)")
+    parser.add_argument("--size", type=int, default=160, help="rendered view size (default 160)")
+    parser.add_argument("--view", type=int, default=0, help="rendered view to show (default 0)")
+    options = parser.parse_args(arguments)
+    if (options.rgb is None) != (options.depth is None):
+        parser.error("--rgb and --depth go together: pass both, or neither to render a frame.")
+    if options.rgb is None:
+        rgb, depth = rendered_frame(options.seed, options.size)
+    else:
+        rgb, depth = read_frame(options.rgb, options.depth)
+    views = (options.view,) if options.rgb is None else (0,)
+    contact_sheet(rgb, depth, options.out, views=views)
+    print(f"Wrote {options.out}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,120 @@
+"""One table's worth of numbers: clean values, PRS and paired PRS differences with intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mitigate.evaluation import bootstrap
+from mitigate.evaluation.bootstrap import Estimate
+from mitigate.evaluation.grid import METRICS, Gap, Grid, Retention, grids
+from mitigate.evaluation.metrics import FLOOR
+from mitigate.evaluation.rows import Row
+
+REFERENCES = ("base", "before")  # such a column comes first; the others are compared with it
+LABELS = {  # the paper's Table II
+    "low_light": "L-L w/o noise",
+    "low_light_noise": "L-L w/ noise",
+    "black_out": "Black-out",
+}
+
+
+@dataclass(frozen=True)
+class Retained:
+    """A PRS or a difference of two, what it covers, and whether a clean value is too low."""
+
+    estimate: Estimate
+    corruptions: tuple[str, ...]
+    episodes: int
+    near_floor: bool
+
+
+@dataclass(frozen=True)
+class Section:
+    """One table: a grid at one severity (0 where only clean cells exist).
+
+    ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
+    the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
+    """
+
+    grid: Grid
+    severity: float
+    columns: tuple[str, ...]
+    blocks: dict[str, tuple[str, ...]]
+    reference: str
+    clean: dict[tuple[str, str], Estimate]
+    retained: dict[tuple[str, str, str], Retained]
+    gained: dict[tuple[str, str, str], Retained]
+    gaps: list[Gap]
+
+    def value(self, column: str, corruption: str, metric: str = "SR") -> float:
+        """Return the mean of a cell over the episodes it holds, NaN if it holds none."""
+        severity = 0.0 if corruption == "clean" else self.severity
+        return _mean(self.grid.cell(column, corruption, severity, METRICS[metric]))
+
+    def partial(self, column: str, corruption: str) -> bool:
+        """Return whether a cell lacks episodes."""
+        return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
+
+    def marks(self, found: Retained, block: str) -> str:
+        """Return the signs of a PRS that lacks corruptions or episodes, or is near the floor."""
+        held, wanted = len(found.corruptions), len(self.blocks[block])
+        fewer = "*" * (found.episodes < len(self.grid.episodes))
+        return fewer + f" † {held}/{wanted}" * (held < wanted) + " ‡" * found.near_floor
+
+
+def sections(rows: Iterable[Row]) -> list[Section]:
+    """Return one section for each split, suite, rule and severity in ``rows``.
+
+    Where a column was never corrupted (a control), a clean-only section comes first.
+    """
+    found = []
+    for grid in grids(rows):
+        corrupted = {label for label, _, severity, _ in grid.cells if severity > 0}
+        clean_only = [] if corrupted == grid.columns.keys() else [0.0]
+        found += [_section(grid, severity) for severity in clean_only + grid.severities]
+    return found
+
+
+def label(corruption: str) -> str:
+    """Return the name of a corruption as the paper's table prints it."""
+    return LABELS.get(corruption, corruption.replace("_", " ").capitalize())
+
+
+def _section(grid: Grid, severity: float) -> Section:
+    rank = {name: place for place, name in enumerate(REFERENCES)}
+    columns = sorted(
+        grid.columns_at(severity), key=lambda label: rank.get(grid.columns[label][0], len(rank))
+    )
+    blocks, reference = grid.blocks_at(severity), columns[0]
+    clean, retained, gained = {}, {}, {}
+    for column in columns:
+        for metric, key in METRICS.items():
+            values = grid.cell(column, "clean", 0.0, key)[grid.measured(column, key)]
+            if len(values):
+                clean[column, metric] = bootstrap.mean(values)
+            for block, names in blocks.items():
+                place = (column, block, metric)
+                if parts := grid.retention([column], names, severity, key):
+                    retained[place] = _retained(parts)
+                pair = () if column == reference else (column, reference)
+                if pair and (parts := grid.retention(pair, names, severity, key)):
+                    gained[place] = _retained(parts)
+    gaps = grid.gaps(severity)
+    return Section(grid, severity, tuple(columns), blocks, reference, clean, retained, gained, gaps)
+
+
+def _retained(parts: list[Retention]) -> Retained:
+    """Return the PRS of one part, or the difference of the first's to the second's."""
+    pairs = [(part.clean, part.corrupted) for part in parts]
+    estimate = bootstrap.prs(*pairs[0]) if len(pairs) == 1 else bootstrap.prs_difference(*pairs)
+    near_floor = min(part.clean.mean() for part in parts) < FLOOR
+    return Retained(estimate, parts[0].corruptions, len(parts[0].clean), bool(near_floor))
+
+
+def _mean(values: np.ndarray) -> float:
+    known = values[~np.isnan(values)]
+    return float(known.mean()) if len(known) else math.nan

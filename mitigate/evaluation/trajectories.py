@@ -1,0 +1,182 @@
+"""Pictures of walks: one episode clean, corrupted, and corrupted after training, seen from above."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
+from mitigate.corruptions.gallery import depth_picture
+from mitigate.envs.apartments.drawing import draw_path, draw_plan, strip
+from mitigate.envs.apartments.simulator import Simulator
+from mitigate.envs.apartments.tasks import from_vlnce
+from mitigate.envs.episodes import Episode
+from mitigate.evaluation.evaluator import Agent, run_episode
+from mitigate.evaluation.rows import Row
+from mitigate.evaluation.sections import label
+from mitigate.keys import DEPTH, RGB
+
+REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
+CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
+INCHES, DPI = (9.0, 10.5), 80
+
+
+@dataclass(frozen=True)
+class Walk:
+    """One agent's way through an episode: ``path`` float64 [n, 2], plan metres."""
+
+    name: str
+    path: np.ndarray
+    won: bool
+    metres_left: float
+    colour: str
+
+    @property
+    def legend(self) -> str:
+        """The name, how it ended and how far from the goal (geodesic metres)."""
+        return f"{self.name}: {'success' if self.won else 'fail'}, {self.metres_left:.1f} m from the goal"
+
+
+def draw_trajectories(
+    agents: Mapping[str, Agent],
+    episode: Episode,
+    corruption: Corruption,
+    out: Path | str,
+    seed: int = 0,
+    size: int = 64,
+) -> Path:
+    """Walk an episode and write one PNG: start panorama, plan, reference path, every walk.
+
+    The first agent walks clean and corrupted, the others corrupted. The same ``seed`` and ``size``
+    as an evaluation give the same walks as its rows.
+
+    Args:
+        agents: name -> agent; the names are the legend's.
+        corruption: what the corrupted walks meet.
+        out: the PNG to write; parent folders are made.
+        seed: of the corruption's keys. size: pixels of a view.
+    """
+    simulator = Simulator(size)
+    walks = list(_walks(agents, simulator, episode, corruption, seed))
+    simulator.reset(episode)
+    clean = simulator.observe()
+    hurt = corrupt_observation(clean, corruption, Key(seed, episode.episode_id, 0))
+    figure = Figure(figsize=INCHES, layout="constrained")
+    above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
+    entry = DEPTH if corruption.modality == "depth" else RGB
+    far = float(clean[DEPTH].max())
+    _show(above, clean[entry], far, f"start, straight ahead in the middle: {entry}, clean")
+    _show(below, hurt[entry], far, f"{label(corruption.name)}, severity {corruption.severity:g}")
+    draw_plan(plan, simulator.apartment)
+    _draw_walks(plan, simulator, episode, walks)
+    figure.suptitle("\n".join(textwrap.wrap(episode.instruction.text, 100)), fontsize=11)
+    out = Path(out)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(out, dpi=DPI, facecolor="white")
+    return out
+
+
+def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
+    """Yield (episode id, corruption) where agent ``before`` fails and ``after`` succeeds.
+
+    In the rows' order of episodes, at most one an episode, no corruption twice.
+    """
+    won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
+    done: set[str] = set()
+    for name, episode, corruption, severity in won:
+        if name != before or corruption == "clean" or {episode, corruption} & done:
+            continue
+        place = (episode, corruption, severity)
+        if not won[before, *place] and won.get((after, *place)):
+            done |= {episode, corruption}
+            yield episode, Corruption(corruption, severity)
+
+
+def write_pictures(
+    agents: Mapping[str, Agent],
+    episodes: Sequence[Episode],
+    rows: Sequence[Row],
+    folder: Path | str,
+    *,
+    seed: int = 0,
+    size: int = 64,
+    count: int = 4,
+) -> list[Path]:
+    """Draw the first ``count`` episodes won back by training, and ``sheet.png`` with all of them.
+
+    ``agents`` are before and after, by the names in ``rows`` (``won_back`` is the rule). Where
+    nothing was won back, or there is one agent alone, the first corrupted row is drawn instead.
+    """
+    known = {episode.episode_id: episode for episode in episodes}
+    place = {episode_id: index for index, episode_id in enumerate(known)}
+    rows = sorted(rows, key=lambda row: place[row["episode_id"]])
+    before, after = list(agents)[0], list(agents)[-1]
+    chosen = list(won_back(rows, before, after))[:count] or _first_corrupted(rows)
+    written = []
+    for episode_id, corruption in chosen:
+        out = Path(folder) / f"{episode_id}-{corruption.name}.png"
+        written.append(draw_trajectories(agents, known[episode_id], corruption, out, seed, size))
+    return [*written, contact_sheet(written, Path(folder) / "sheet.png")] if written else []
+
+
+def contact_sheet(pictures: Sequence[Path], out: Path, across: int = 2) -> Path:
+    """Write equally large ``pictures`` side by side, ``across`` a row, at half their size."""
+    halves = [cv2.resize(cv2.imread(str(p)), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA) for p in pictures]
+    blank = np.full_like(halves[0], 255)
+    halves += [blank] * (-len(halves) % across)
+    lines = [np.hstack(halves[i : i + across]) for i in range(0, len(halves), across)]
+    cv2.imwrite(str(out), np.vstack(lines))
+    return out
+
+
+def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
+    hurt = [row for row in rows if row["corruption"] != "clean"]
+    return [(r["episode_id"], Corruption(r["corruption"], r["severity"])) for r in hurt[:1]]
+
+
+def _walks(
+    agents: Mapping[str, Agent],
+    simulator: Simulator,
+    episode: Episode,
+    corruption: Corruption,
+    seed: int,
+) -> Iterator[Walk]:
+    plans: list[tuple[str, Agent, Corruption, str]] = []
+    for index, (name, agent) in enumerate(agents.items()):
+        if index == 0:
+            plans.append((f"{name}, clean", agent, CLEAN, CLEAN_WALK))
+        colour = CORRUPTED_WALKS[index % len(CORRUPTED_WALKS)]
+        plans.append((f"{name}, {label(corruption.name)}", agent, corruption, colour))
+    for name, agent, met, colour in plans:
+        measures: dict[str, Any] = run_episode(agent, simulator, episode, met, seed)
+        path, left = np.array(simulator.path), measures["distance_to_goal"]
+        yield Walk(name, path, bool(measures["success"]), left, colour)
+
+
+def _draw_walks(
+    axes: Axes, simulator: Simulator, episode: Episode, walks: Sequence[Walk]
+) -> None:
+    reference = np.stack([from_vlnce(point) for point in episode.reference_path])
+    draw_path(axes, reference, REFERENCE, "reference path", "--")
+    for walk in walks:
+        draw_path(axes, walk.path, walk.colour, walk.legend)
+    goals = np.stack([from_vlnce(goal.position) for goal in episode.goals])
+    axes.plot(*goals.T, "*", color="#ffbf00", mec="black", ms=15, zorder=9, label="goal")
+    ahead = 0.6 * np.array([-np.sin(simulator.heading), np.cos(simulator.heading)])
+    axes.arrow(*simulator.xy, *ahead, width=0.05, color="black", zorder=8)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, fontsize=9, frameon=False)
+
+
+def _show(axes: Axes, views: np.ndarray, far: float, title: str) -> None:
+    picture = strip(views)
+    axes.imshow(depth_picture(picture[..., 0], far) if picture.shape[-1] == 1 else picture)
+    axes.set_title(title, fontsize=9)
+    axes.axis("off")

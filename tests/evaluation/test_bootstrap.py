@@ -1,0 +1,104 @@
+"""The bootstrap is paired, seeded, and as wide as theory says."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mitigate.evaluation import bootstrap
+from mitigate.evaluation.bootstrap import mean, prs, prs_difference, resampled_means
+
+
+@pytest.fixture
+def results():
+    """Clean [300] and corrupted [8, 300] successes that share how hard an episode is."""
+    generator = np.random.default_rng(1)
+    hard = generator.random(300)
+    return (hard < 0.65).astype(float), (hard < generator.normal(0.4, 0.03, (8, 1))).astype(float)
+
+
+def test_the_same_seed_gives_the_same_interval(results):
+    clean, corrupted = results
+    assert prs(clean, corrupted) == prs(clean, corrupted)
+    assert prs(clean, corrupted, seed=1) != prs(clean, corrupted)
+
+
+def test_resamples_are_those_of_a_plain_loop(results):
+    clean, _ = results
+    draws = np.random.Generator(np.random.PCG64(5)).integers(300, size=(50, 300))
+    expected = [np.mean([clean[i] for i in row]) for row in draws]
+    assert np.allclose(resampled_means(clean, resamples=50, seed=5)[:, 0], expected)
+
+
+def test_resamples_do_not_depend_on_the_size_of_the_chunks(results, monkeypatch):
+    clean, corrupted = results
+    whole = resampled_means(corrupted, resamples=101)
+    bootstrap._times_drawn.cache_clear()
+    monkeypatch.setattr(bootstrap, "CHUNK", 7 * 300)
+    assert np.array_equal(resampled_means(corrupted, resamples=101), whole)
+    bootstrap._times_drawn.cache_clear()
+
+
+def test_the_interval_of_a_rate_is_the_binomial_one():
+    wins = np.repeat([1.0, 0.0], [240, 160])
+    found, half = mean(wins), 1.96 * math.sqrt(0.6 * 0.4 / 400)
+    assert found.value == 0.6
+    assert found.low == pytest.approx(0.6 - half, abs=0.005)
+    assert found.high == pytest.approx(0.6 + half, abs=0.005)
+
+
+def test_intervals_cover_the_truth_about_as_often_as_they_say():
+    generator = np.random.default_rng(0)
+    inside = 0
+    for _ in range(200):
+        hard = generator.random(200)
+        clean, corrupted = (hard < 0.8).astype(float), (hard < 0.4).astype(float)
+        found = prs(clean, corrupted[None], resamples=1000)
+        inside += found.low <= 0.5 <= found.high
+    assert 180 <= inside <= 199
+
+
+def test_prs_is_the_mean_ratio_to_the_own_clean_value(results):
+    clean, corrupted = results
+    found = prs(clean, corrupted)
+    assert found.value == pytest.approx(np.mean([row.mean() / clean.mean() for row in corrupted]))
+    assert found.low < found.value < found.high
+
+
+def test_clean_and_corrupted_vary_together_within_a_prs(results):
+    clean, _ = results
+    unhurt = prs(clean, np.stack([clean, clean]))
+    assert (unhurt.value, unhurt.low, unhurt.high) == pytest.approx((1.0, 1.0, 1.0))
+
+
+def test_equal_agents_differ_by_exactly_nothing(results):
+    found = prs_difference(results, results)
+    assert (found.value, found.low, found.high) == (0.0, 0.0, 0.0)
+    assert not found.excludes_zero
+
+
+def test_pairing_narrows_the_interval_of_a_difference(results):
+    clean, corrupted = results
+    better = np.maximum(corrupted, (np.arange(300) % 10 == 0) * clean)
+    paired = prs_difference((clean, better), (clean, corrupted))
+    order = np.random.default_rng(3).permutation(300)  # other episodes: nothing cancels
+    unpaired = prs_difference((clean[order], better[:, order]), (clean, corrupted))
+    assert paired.value == pytest.approx(unpaired.value)
+    assert paired.excludes_zero
+    assert paired.high - paired.low < 0.7 * (unpaired.high - unpaired.low)
+
+
+def test_without_clean_success_there_is_no_prs():
+    found = prs(np.zeros(20), np.zeros((3, 20)))
+    assert all(math.isnan(x) for x in (found.value, found.low, found.high))
+    assert not found.excludes_zero
+
+
+def test_gaps_and_unequal_episodes_are_refused(results):
+    clean, corrupted = results
+    with pytest.raises(ValueError, match="1 NaN"):
+        mean([1.0, math.nan])
+    with pytest.raises(ValueError, match=r"same episodes; counts: \[299, 300\]"):
+        prs_difference(results, (clean[1:], corrupted[:, 1:]))

@@ -1,0 +1,188 @@
+"""The table holds the paper's numbers for known rows, and says what is missing or doubtful."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from mitigate import table
+from mitigate.corruptions import DEPTH, NAMES, RGB
+from mitigate.evaluation import rows
+from mitigate.evaluation.report import markdown, sections, write
+from tests.evaluation.made_rows import cell, column, row
+
+ALL = dict.fromkeys(NAMES, 4)
+HARD = {"agent": "ffff00000000", "name": "da_per_episode"}
+
+
+def lines(made) -> dict[str, list[str]]:
+    """The table's cells by the first cell of their line; the first line of a name counts."""
+    text = markdown(sections(made))
+    table_lines = [line for line in text.splitlines() if line.startswith("| ")]
+    found: dict[str, list[str]] = {}
+    for line in table_lines:
+        first, *rest = (part.strip() for part in line.strip("|").split("|"))
+        found.setdefault(first, rest)
+    return found
+
+
+def test_the_table_has_the_papers_rows_and_their_numbers():
+    made = column(8, ALL | {"flare": 8}) + column(5, ALL, **HARD)
+    found = lines(made)
+    assert found["Corruption"] == ["base", "da_per_episode"]
+    assert [x.split(" [")[0] for x in found["Clean SR"]] == ["80.0", "50.0"]
+    assert [x.split(" [")[0] for x in found["Clean SPL"]] == ["0.40", "0.25"]
+    assert [x.split(" [")[0] for x in found["**PRS-SR (RGB)**"]] == ["**0.56**", "**0.80**"]
+    assert [x.split(" [")[0] for x in found["**PRS-SR (Depth)**"]] == ["**0.50**", "**0.80**"]
+    assert found["Flare"] == ["80.0", "40.0"]
+    assert found["L-L w/ noise"] == ["40.0", "40.0"]
+    names = list(found)
+    assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
+    assert len([n for n in names if "PRS" not in n]) == 1 + 1 + 2 + 12  # head, rule, clean, suite
+
+
+def test_the_conditions_of_the_result_are_printed():
+    text = markdown(sections(column(8, ALL)))
+    for said in ("val_unseen", "severity 0.6", "N = 10 episodes", "seed 0", "suite 1.0"):
+        assert said in text
+    assert "vln: STOP and geodesic < 2.0 m" in text
+    assert "`0123456789ab`" in text
+
+
+def test_prs_differences_are_paired_and_against_base():
+    made = column(5, ALL, **HARD) + column(8, ALL)
+    (section,) = sections(made)
+    assert (section.reference, section.columns[0]) == ("base", "base")
+    change = section.gained["da_per_episode", "RGB", "SR"].estimate
+    assert change.value == pytest.approx(4 / 5 - 4 / 8)
+    same = column(8, ALL) + column(8, ALL, **HARD)
+    (section,) = sections(same)
+    nothing = section.gained["da_per_episode", "Depth", "SPL"].estimate
+    assert (nothing.low, nothing.high) == (0.0, 0.0)
+
+
+def test_partial_rows_give_a_partial_table_that_lists_its_gaps():
+    whole = column(8, dict.fromkeys(RGB, 4))
+    cut = [r for r in whole if r["corruption"] != "flare"]
+    cut = [r for r in cut if r["corruption"] != "spatter" or int(r["episode_id"]) < 3]
+    found, text = lines(cut), markdown(sections(cut))
+    assert found["Flare"] == ["–"]
+    assert found["Spatter"] == ["100.0\\*"]
+    assert found["**PRS-SR (RGB)**"][0].endswith("† 6/8")
+    assert "- base, flare at 0.6: 0 of 10 episodes" in text
+    assert "- base, spatter at 0.6: 3 of 10 episodes" in text
+    assert "Depth" not in text
+
+
+def test_an_unfinished_episode_costs_that_episode_only():
+    """The evaluator goes by episode: the last one may lack some of its conditions."""
+    made = column(8, ALL)
+    cut = [r for r in made if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
+    (section,) = sections(cut)
+    found = section.retained["base", "RGB", "SR"]
+    assert (found.corruptions, found.episodes) == (RGB, 9)
+    assert found.estimate.value == pytest.approx(0.5)
+    assert lines(cut)["**PRS-SR (RGB)**"][0].endswith("\\*")
+
+
+def test_columns_with_other_episodes_are_compared_on_those_they_share():
+    few = [r for r in column(8, ALL, **HARD) if int(r["episode_id"]) < 5]
+    (section,) = sections(column(8, ALL) + few)
+    gained = section.gained["da_per_episode", "RGB", "SR"]
+    assert (gained.episodes, gained.estimate.value) == (5, 0.0)
+    assert section.retained["base", "RGB", "SR"].episodes == 10
+
+
+def test_a_prs_near_the_floor_is_flagged():
+    made = column(1, dict.fromkeys(NAMES, 1), **HARD) + column(0, dict.fromkeys(NAMES, 0))
+    found = lines(made)
+    assert found["**PRS-SR (RGB)**"][1].endswith("]")  # 0.10 is not below the floor
+    assert "‡" in found["**PRS-SR (RGB)**"][0]
+    assert found["**PRS-SR (RGB)**"][0].startswith("undefined")
+    assert "performance floor" in markdown(sections(made))
+
+
+@pytest.mark.parametrize("key", ["split", "suite", "rule"])
+def test_results_under_other_rules_are_not_mixed(key):
+    other = column(2, ALL, **{key: "another"})
+    first, second = sections(column(8, ALL) + other)
+    assert {first.value("base", "clean"), second.value("base", "clean")} == {0.8, 0.2}
+
+
+def test_each_severity_has_its_table_and_shares_the_clean_cell():
+    made = column(8, ALL, 0.3) + column(8, dict.fromkeys(NAMES, 2), 0.9)
+    mild, strong = sections(made)
+    assert (mild.severity, strong.severity) == (0.3, 0.9)
+    assert mild.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.5)
+    assert strong.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.25)
+
+
+def test_two_agents_of_one_name_are_told_apart():
+    made = column(8, ALL) + column(4, ALL, agent="ba9876543210")
+    assert lines(made)["Corruption"] == ["base (012345)", "base (ba9876)"]
+
+
+def test_seeds_are_averaged_within_an_episode():
+    made = column(8, ALL) + column(4, ALL, seed=1)
+    (section,) = sections(made)
+    assert section.value("base", "clean") == pytest.approx(0.6)
+    assert section.clean["base", "SR"].value == pytest.approx(0.6)
+    assert "seed 0, 1" in markdown([section])
+    gap = row(3, True, seed=1, corruption="flare", severity=0.6)
+    lacking = [r for r in made if rows.identity(r) != rows.identity(gap)]
+    (section,) = sections(lacking)
+    assert [(gap.corruption, gap.have) for gap in section.gaps] == [("flare", 9)]
+
+
+def test_controls_without_corruption_get_a_clean_table():
+    clean, full = sections(column(8, ALL) + cell(1, name="random", agent="random"))
+    assert clean.columns == ("base", "random")
+    assert full.columns == ("base",)
+    assert "clean only" in markdown([clean])
+
+
+def test_corruptions_outside_the_suite_have_their_own_block():
+    (section,) = sections(column(8, {"black_box": 2, "mask": 6}))
+    assert section.blocks == {"Other": ("black_box", "mask")}
+    assert section.retained["base", "Other", "SR"].estimate.value == pytest.approx(0.5)
+
+
+def test_pictures_show_what_was_measured(tmp_path):
+    made = column(8, ALL, 0.3) + column(8, ALL, 0.6) + column(6, ALL, 0.6, **HARD)
+    made = [r for r in made if r["corruption"] != "multipath"]
+    paths = write(made, tmp_path)
+    names = [path.name for path in paths]
+    assert names == ["table.md", "heatmap.png", "severity.png", "heatmap-2.png"]
+    for path in paths[1:]:
+        picture = cv2.imread(str(path))
+        assert min(picture.shape[:2]) > 300
+        assert np.unique(picture[::3, ::3].reshape(-1, 3), axis=0).shape[0] > 20
+        assert f"({path.name})" in paths[0].read_text("utf-8")
+
+
+def test_the_command_joins_files_and_folders(tmp_path, capsys):
+    rows.append(tmp_path / "runs/base/rows.jsonl", column(8, ALL))
+    rows.append(tmp_path / "hardened.jsonl.gz", column(7, ALL, **HARD))
+    inputs = [str(tmp_path / "runs"), str(tmp_path / "hardened.jsonl.gz")]
+    assert table.main([*inputs, "--out", str(tmp_path / "out")]) == 0
+    printed = capsys.readouterr().out
+    assert "| Corruption | base | da_per_episode |" in printed
+    assert (tmp_path / "out/table.md").read_text("utf-8") in printed
+    assert (tmp_path / "out/heatmap.png").stat().st_size > 10_000
+
+
+def test_the_command_says_what_is_wrong(tmp_path, capsys):
+    assert table.main([str(tmp_path)]) == 2
+    assert "No result rows under" in capsys.readouterr().err
+    (tmp_path / "rows.jsonl").write_text("")
+    assert table.main([str(tmp_path / "rows.jsonl")]) == 2
+    assert "no result rows to show" in capsys.readouterr().err
+
+
+def test_numbers_do_not_depend_on_the_order_of_the_rows():
+    made = column(8, ALL) + column(5, ALL, **HARD)
+    mixed = [made[i] for i in np.random.default_rng(0).permutation(len(made))]
+    assert sections(mixed)[0].retained == sections(made)[0].retained
+    assert set(DEPTH) | set(RGB) == {r["corruption"] for r in made} - {"clean"}
+    assert row(0, True)["corruption"] == "clean"

@@ -1,0 +1,107 @@
+"""Row files survive kills, join by identity, and name what is wrong with them."""
+
+from __future__ import annotations
+
+import gzip
+import json
+
+import numpy as np
+import pytest
+
+from mitigate.evaluation import rows
+from tests.evaluation.made_rows import cell, row
+
+
+@pytest.mark.parametrize("name", ["rows.jsonl", "deep/rows.jsonl.gz"])
+def test_appended_rows_are_read_back_in_order(tmp_path, name):
+    path = tmp_path / name
+    rows.append(path, cell(2, 3))
+    rows.append(path, [])
+    rows.append(path, [row(9, True, ndtw=0.25, extra="kept")])
+    assert rows.read(path) == [*cell(2, 3), row(9, True, ndtw=0.25, extra="kept")]
+
+
+@pytest.mark.parametrize("cut", [1, 40, 200])
+def test_an_interrupted_write_is_read_up_to_it_and_mended(tmp_path, cut):
+    path = tmp_path / "rows.jsonl"
+    rows.append(path, cell(2, 3))
+    path.write_bytes(path.read_bytes() + json.dumps(row(3, True)).encode()[:cut])
+    assert rows.read(path) == cell(2, 3)
+    rows.append(path, [row(3, True)])
+    assert rows.read(path) == cell(4, 4)[:2] + [row(2, False), row(3, True)]
+
+
+def test_an_interrupted_first_write_is_mended(tmp_path):
+    path = tmp_path / "rows.jsonl"
+    path.write_text('{"agent": "0123')
+    assert rows.read(path) == []
+    rows.append(path, [row(0, True)])
+    assert rows.read(path) == [row(0, True)]
+
+
+def test_a_whole_last_line_without_its_end_is_kept(tmp_path):
+    path = tmp_path / "rows.jsonl"
+    path.write_text(json.dumps(row(0, True) | {"note": "x" * 9000}))  # longer than one look back
+    rows.append(path, [row(1, False)])
+    assert [r["episode_id"] for r in rows.read(path)] == ["0", "1"]
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('{"agent": "01', "line 2 is not a JSON object"),
+        ("[1]", "line 2 is not a JSON object"),
+        (json.dumps({k: v for k, v in row(0, 1).items() if k != "seed"}), "line 2 lacks seed"),
+        (json.dumps(row(0, True, severity="0.6")), "line 2 has a wrong severity: '0.6'"),
+    ],
+)
+def test_a_wrong_line_is_named(tmp_path, line, message):
+    path = tmp_path / "rows.jsonl"
+    path.write_text("\n".join([json.dumps(row(0, True)), line, json.dumps(row(1, True)), ""]))
+    with pytest.raises(ValueError, match=message):
+        rows.read(path)
+
+
+def test_a_cut_gzip_is_refused(tmp_path):
+    path = tmp_path / "rows.jsonl.gz"
+    path.write_bytes(gzip.compress(b"".join(rows._line(r).encode() for r in cell(3)))[:-30])
+    with pytest.raises(ValueError, match="is damaged"):
+        rows.read(path)
+
+
+def test_rows_that_json_cannot_hold_are_not_written(tmp_path):
+    path = tmp_path / "rows.jsonl"
+    for bad in ({"ndtw": float("nan")}, {"ndtw": np.float32(0.5)}, {"seed": None}):
+        with pytest.raises(ValueError, match="A result row"):
+            rows.append(path, [row(0, True), row(1, True, **bad)])
+    assert not path.exists()
+
+
+def test_the_last_measurement_of_an_identity_counts():
+    old, new = cell(0, 3), [row(1, True), row(1, True, seed=1), row(1, True, suite="1.1")]
+    joined = rows.upsert(old, new)
+    assert joined == [row(0, 0), row(1, True), row(2, 0), *new[1:]]
+    assert rows.upsert([row(1, 0, severity=0)], [row(1, 1, severity=0.0)]) == [row(1, 1)]
+
+
+def test_missing_rows_are_those_not_measured():
+    wanted = [{k: r[k] for k in rows.IDENTITY} for r in cell(0, 4)]
+    assert [r["episode_id"] for r in rows.missing(cell(1, 2), wanted)] == ["2", "3"]
+
+
+def test_files_and_folders_are_gathered(tmp_path):
+    rows.append(tmp_path / "a/rows.jsonl", cell(1, 2))
+    rows.append(tmp_path / "a/b/more.jsonl.gz", [row(2, True)])
+    (tmp_path / "a/chat.jsonl").write_text('{"messages": []}\n')
+    (tmp_path / "a/empty.jsonl").write_text("")
+    rows.append(tmp_path / "c.jsonl", [row(0, False)])
+    found = rows.gather([tmp_path / "a", tmp_path / "c.jsonl"])
+    assert {r["episode_id"]: r["success"] for r in found} == {"0": 0, "1": 0, "2": 1}
+
+
+def test_a_folder_or_file_without_rows_is_named(tmp_path):
+    (tmp_path / "chat.jsonl").write_text('{"messages": []}\n')
+    with pytest.raises(FileNotFoundError, match="No result rows under"):
+        rows.gather([tmp_path])
+    with pytest.raises(FileNotFoundError, match=r"nearest names there are chat\.jsonl"):
+        rows.gather([tmp_path / "chats.jsonl"])
