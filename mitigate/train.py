@@ -23,7 +23,7 @@ from torch import nn
 
 from mitigate import checkpoint, cli, seeding
 from mitigate.build import build, build_agent
-from mitigate.evaluate import EvaluationConfig, report_before_after
+from mitigate.evaluate import EvaluationConfig, conditions, episodes, report_before_after
 from mitigate.trainer import Trainer
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
@@ -130,6 +130,9 @@ def check(cfg: DictConfig) -> None:
             )
     if not cfg.stages:
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
+    if cfg.evaluation.enabled:  # a mistake there must not show only after hours of training
+        episodes(cfg.env, cfg.evaluation.split, 1)
+        conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
 
 
 def default_folder(cfg: DictConfig, variant: str = "") -> str:

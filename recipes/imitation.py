@@ -84,12 +84,21 @@ class ImitationRecipe(Recipe):
         worlds = [RenderedWorld(self, e, f"{step}-{i}") for i, e in enumerate(episodes)]
         self.agent.eval()
         tokens = self.agent.tokens([e.instruction.text for e in episodes])
-        traces = roll_out(self.agent.planner, tokens, worlds, follow_oracle=self.follow_oracle, rng=rng)
+        traces = roll_out(self.agent.planner, tokens, worlds, self.look, follow_oracle=self.follow_oracle, rng=rng)
         self.agent.train()
         looks = [look for world in worlds for look in world.looks]
         stacked = {name: torch.from_numpy(np.stack([look[name] for look in looks])) for name in looks[0]}
         self._picture = strip(looks[0][RGB])
         return {**decisions_of(traces), **stacked, "tokens": tokens}
+
+    def look(self, worlds: list[RenderedWorld]) -> list[tuple[Tensor, np.ndarray]]:
+        """What the agent makes of the (corrupted) panorama of each world."""
+        for world in worlds:
+            world.observe()
+        rgb, depth = (torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])) for name in (RGB, DEPTH))
+        with torch.autocast("cpu", torch.bfloat16):
+            views, _, waypoints = self.agent.perceive(rgb, depth)
+        return [(v, select(w)) for v, w in zip(views.float(), waypoints.float().numpy(), strict=True)]
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
         """A panorama as the agent saw it in the last batch."""
@@ -172,7 +181,8 @@ class RenderedWorld:
         self.simulator.reset(episode)
         self.looks: list[dict[str, np.ndarray]] = []
 
-    def look(self) -> tuple[Tensor, np.ndarray]:
+    def observe(self) -> None:
+        """Render, label and corrupt the panorama at the current pose; append it to ``looks``."""
         simulator = self.simulator
         rgb, depth, ids = simulator.observe_faces()
         concepts, seen = view_labels(simulator.apartment, ids, depth)
@@ -181,9 +191,6 @@ class RenderedWorld:
         free = free_target(simulator.space, simulator.xy, simulator.heading)
         self.looks.append({RGB: frames[RGB], DEPTH: frames[DEPTH], "concepts": concepts, "free": free,
                            "shows": seen[:, landmarks(self.episode)].any(1).astype(np.float32)})  # fmt: skip
-        with torch.autocast("cpu", torch.bfloat16):
-            views, _, waypoints = self.recipe.agent.perceive(torch.from_numpy(frames[RGB])[None], torch.from_numpy(frames[DEPTH])[None])
-        return views[0].float(), select(waypoints[0].float().numpy())
 
     def pose(self) -> np.ndarray:
         return np.array([*self.simulator.xy, self.simulator.heading])

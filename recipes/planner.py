@@ -48,7 +48,7 @@ class PlannerRecipe(ImitationRecipe):
         self.agent.eval()
         tokens = self.agent.tokens([e.instruction.text for e in episodes])
         with torch.autocast("cpu", torch.bfloat16):
-            traces = roll_out(self.agent.planner, tokens, worlds, follow_oracle=self.follow_oracle + share * (1 - self.follow_oracle), rng=rng)
+            traces = roll_out(self.agent.planner, tokens, worlds, cache.look, follow_oracle=self.follow_oracle + share * (1 - self.follow_oracle), rng=rng)
         self.agent.train()
         views = torch.stack([v for trace in traces for v in trace.views])
         shows = np.stack([s for world in worlds for s in world.shown])

@@ -150,6 +150,11 @@ class CachedWorld:
         return float(self.field[self.space.cell_of(xy)])
 
 
+def look(worlds: list[CachedWorld]) -> list[tuple[torch.Tensor, np.ndarray]]:
+    """Stored views and waypoints of where each world's agent is."""
+    return [world.look() for world in worlds]
+
+
 def _turns(heading: float) -> int:
     """Heading in steps of 30 degrees, counter-clockwise."""
     return int(np.round(np.degrees(heading) / VIEW_STEP_DEGREES)) % VIEWS

@@ -6,6 +6,7 @@ frames; ``CachedWorld`` (``mitigate/agents/cache.py``) hops between poses whose 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -23,14 +24,17 @@ _TRAVEL = 0.4  # weight of the metres to a ghost against the metres from it to t
 
 
 class World(Protocol):
-    """One episode's world. ``look`` returns views [12, F] (tensor) and waypoints [n, 2]."""
+    """One episode's world: where the agent is, and what a route does to that."""
 
     episode: Episode
 
-    def look(self) -> tuple[torch.Tensor, np.ndarray]: ...
     def pose(self) -> np.ndarray: ...
     def go(self, route: list[np.ndarray]) -> None: ...
     def distance(self, xy: np.ndarray) -> float: ...
+
+
+# looks around in some worlds at once: views [12, F] (tensor) and waypoints [n, 2] of each
+Look = Callable[[list], list[tuple[torch.Tensor, np.ndarray]]]
 
 
 @dataclass
@@ -50,7 +54,6 @@ class Trace:
     episode: Episode
     steps: list[Step] = field(default_factory=list)
     views: list[torch.Tensor] = field(default_factory=list)
-    looks: list[Any] = field(default_factory=list)
 
 
 def oracle(world: World, graph: TopologicalMap, decision: Decision) -> Step:
@@ -70,7 +73,7 @@ def oracle(world: World, graph: TopologicalMap, decision: Decision) -> Step:
 
 
 @torch.no_grad()
-def roll_out(planner: Planner, tokens: torch.Tensor, worlds: list[World], *, follow_oracle: float,
+def roll_out(planner: Planner, tokens: torch.Tensor, worlds: list[World], look: Look, *, follow_oracle: float,
              rng: np.random.Generator, limit: int = 12) -> list[Trace]:  # fmt: skip
     """Run all worlds to the oracle's stop or ``limit`` decisions.
 
@@ -84,8 +87,8 @@ def roll_out(planner: Planner, tokens: torch.Tensor, worlds: list[World], *, fol
     tokens_of: list[list[torch.Tensor]] = [[] for _ in worlds]
     running = list(range(len(worlds)))
     for _ in range(limit):
-        for i in running:
-            views, waypoints = worlds[i].look()
+        seen = look([worlds[i] for i in running])
+        for i, (views, waypoints) in zip(running, seen, strict=True):
             traces[i].views.append(views)
             graphs[i].add(worlds[i].pose(), waypoints)
             traces[i].steps.append(oracle(worlds[i], graphs[i], graphs[i].decision(worlds[i].pose())))

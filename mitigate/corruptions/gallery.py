@@ -24,7 +24,7 @@ NO_READING = (255, 255, 255)  # the colour of invalid depth
 
 
 def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
-    """uint8 RGB [H, W, 3] of depth [H, W]: near is bright, ``far`` metres dark, no reading white."""
+    """uint8 RGB [H, W, 3] of depth [H, W]: near is bright, ``far`` metres dark, no value white."""
     valid = np.isfinite(depth) & (depth > 0)
     near = 1.0 - np.where(valid, np.clip(depth / far, 0.0, 1.0), 0.0)
     picture = cv2.applyColorMap(np.rint(255.0 * near).astype(np.uint8), cv2.COLORMAP_VIRIDIS)
@@ -94,7 +94,7 @@ def contact_sheet(
 
 
 def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """RGB [12, H, W, 3] and depth [12, H, W, 1] at the start of an episode in apartment ``seed``."""
+    """RGB [12, H, W, 3] and depth [12, H, W, 1] at an episode start of apartment ``seed``."""
     from mitigate.envs.apartments.apartment import Apartment
     from mitigate.envs.apartments.simulator import Simulator
     from mitigate.envs.apartments.tasks import make_episode

@@ -132,8 +132,10 @@ def _run_all(
         with context.Pool(workers, _start_worker, (agent, size)) as pool:
             _collect(pool.imap(_work, jobs, chunksize=13), len(jobs), out, title)
     elif jobs:
-        _start_worker(agent, size, torch.get_num_threads())
+        threads = torch.get_num_threads()
+        _start_worker(agent, size)
         _collect(map(_work, jobs), len(jobs), out, title)
+        torch.set_num_threads(threads)
 
 
 def _collect(results: Any, total: int, out: Path, title: str) -> None:
@@ -152,8 +154,8 @@ def _collect(results: Any, total: int, out: Path, title: str) -> None:
 _WORKER: dict[str, Any] = {}
 
 
-def _start_worker(agent: torch.nn.Module, size: int, threads: int = 1) -> None:
-    torch.set_num_threads(threads)
+def _start_worker(agent: torch.nn.Module, size: int) -> None:
+    torch.set_num_threads(1)  # sums in the same order in any number of processes
     _WORKER.update(agent=agent.eval(), simulator=Simulator(size))
 
 

@@ -1,4 +1,4 @@
-"""Pictures of walks: one episode clean, corrupted, and corrupted after training, seen from above."""
+"""Pictures of walks: one episode clean, corrupted, and corrupted after training, from above."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ class Walk:
     @property
     def legend(self) -> str:
         """The name, how it ended and how far from the goal (geodesic metres)."""
-        return f"{self.name}: {'success' if self.won else 'fail'}, {self.metres_left:.1f} m from the goal"
+        end = "success" if self.won else "fail"
+        return f"{self.name}: {end}, {self.metres_left:.1f} m from the goal"
 
 
 def draw_trajectories(
@@ -129,12 +130,18 @@ def write_pictures(
 
 def contact_sheet(pictures: Sequence[Path], out: Path, across: int = 2) -> Path:
     """Write equally large ``pictures`` side by side, ``across`` a row, at half their size."""
-    halves = [cv2.resize(cv2.imread(str(p)), None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA) for p in pictures]
+    halves = [_half(path) for path in pictures]
     blank = np.full_like(halves[0], 255)
     halves += [blank] * (-len(halves) % across)
     lines = [np.hstack(halves[i : i + across]) for i in range(0, len(halves), across)]
     cv2.imwrite(str(out), np.vstack(lines))
     return out
+
+
+def _half(path: Path) -> np.ndarray:
+    picture = cv2.imread(str(path))
+    assert picture is not None, f"{path} was just written"
+    return cv2.resize(picture, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
 
 
 def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
@@ -161,9 +168,7 @@ def _walks(
         yield Walk(name, path, bool(measures["success"]), left, colour)
 
 
-def _draw_walks(
-    axes: Axes, simulator: Simulator, episode: Episode, walks: Sequence[Walk]
-) -> None:
+def _draw_walks(axes: Axes, simulator: Simulator, episode: Episode, walks: Sequence[Walk]) -> None:
     reference = np.stack([from_vlnce(point) for point in episode.reference_path])
     draw_path(axes, reference, REFERENCE, "reference path", "--")
     for walk in walks:

@@ -23,7 +23,7 @@ def draw_plan(axes: Any, apartment: Apartment) -> None:
     for room in apartment.rooms:
         x0, y0, x1, y1 = room.rect
         axes.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, fc=_ROOMS[room.kind], ec="#333333", lw=2.5))
-        axes.text((x0 + x1) / 2, (y0 + y1) / 2, room.kind, ha="center", va="center", fontsize=8, color="#555555")
+        axes.text((x0 + x1) / 2, (y0 + y1) / 2, room.kind, ha="center", va="center", fontsize=10, color="#333333", zorder=4)
     for door in apartment.doors:
         half = (0.07, DOOR / 2) if door.axis == 0 else (DOOR / 2, 0.07)
         axes.add_patch(Rectangle((door.x - half[0], door.y - half[1]), 2 * half[0], 2 * half[1], fc="white", ec="none", zorder=2))

@@ -1,0 +1,87 @@
+"""Pictures of walks show what the rows say, of episodes chosen by rule."""
+
+from __future__ import annotations
+
+import cv2
+import pytest
+
+from mitigate.corruptions import Corruption
+from mitigate.envs.apartments.tasks import load_episodes
+from mitigate.evaluation import trajectories
+from mitigate.evaluation.trajectories import draw_trajectories, won_back, write_pictures
+from mitigate.keys import FORWARD, STOP
+from tests.evaluation.made_rows import row
+
+
+class Straight:
+    """Walks a number of steps ahead, then stops; reads no frame."""
+
+    def __init__(self, steps: int) -> None:
+        self.steps = steps
+
+    def reset(self, instruction: str) -> None:
+        self.left = self.steps
+
+    def act(self, observation) -> int:
+        self.left -= 1
+        return FORWARD if self.left >= 0 else STOP
+
+
+def cell(name: str, corruption: str, wins: str, episodes=("a", "b", "c")) -> list[dict]:
+    severity = 0.0 if corruption == "clean" else 0.6
+    return [
+        row(episode, win == "1", name=name, corruption=corruption, severity=severity)
+        for episode, win in zip(episodes, wins, strict=True)
+    ]
+
+
+def test_won_back_is_failure_before_and_success_after_each_corruption_and_episode_once():
+    before = cell("before", "flare", "101") + cell("before", "spatter", "000")
+    after = cell("x", "flare", "111") + cell("x", "spatter", "111")
+    rows = sorted(before + after, key=lambda r: r["episode_id"])
+    assert list(won_back(rows, "before", "x")) == [
+        ("a", Corruption("spatter", 0.6)),
+        ("b", Corruption("flare", 0.6)),
+    ]
+
+
+def test_clean_rows_and_rows_of_one_agent_alone_are_no_gain():
+    rows = cell("before", "clean", "000") + cell("x", "clean", "111")
+    assert not list(won_back(rows, "before", "x"))
+    assert not list(won_back(cell("before", "flare", "000"), "before", "x"))
+
+
+@pytest.mark.parametrize("name", ["low_light", "missing_data"])
+def test_a_picture_shows_the_first_agent_clean_and_all_corrupted(tmp_path, monkeypatch, name):
+    drawn = []
+    monkeypatch.setattr(
+        trajectories, "draw_path", lambda axes, path, *rest: drawn.append((path, rest))
+    )
+    agents = {"base": Straight(1), "hardened": Straight(3)}
+    corruption = Corruption(name, 0.6)
+    out = draw_trajectories(
+        agents, load_episodes("val_seen")[0], corruption, tmp_path / "a" / "b.png"
+    )
+    assert cv2.imread(str(out)).std() > 10
+    labels = [rest[1].split(":")[0] for _, rest in drawn]
+    shown = trajectories.label(name)
+    assert labels == ["reference path", "base, clean", f"base, {shown}", f"hardened, {shown}"]
+    assert [len(path) for path, _ in drawn[1:]] == [2, 2, 4]
+    assert all("fail" in rest[1] for _, rest in drawn[1:])
+
+
+def test_pictures_and_a_sheet_of_the_episodes_won_back(tmp_path):
+    episodes = load_episodes("val_seen")[:3]
+    ids = [episode.episode_id for episode in episodes]
+    rows = cell("before", "flare", "100", ids) + cell("x", "flare", "111", ids)
+    agents = {"before": Straight(1), "x": Straight(2)}
+    written = write_pictures(agents, episodes, rows, tmp_path)
+    assert [p.name for p in written] == [f"{ids[1]}-flare.png", "sheet.png"]
+
+
+def test_one_agent_alone_gets_a_picture_too_and_clean_rows_get_none(tmp_path):
+    (episode,) = load_episodes("val_seen")[:1]
+    rows = cell("x", "clean", "1", [episode.episode_id])
+    assert write_pictures({"x": Straight(1)}, [episode], rows, tmp_path) == []
+    rows += cell("x", "black_out", "1", [episode.episode_id])
+    assert len(write_pictures({"x": Straight(1)}, [episode], rows, tmp_path)) == 2

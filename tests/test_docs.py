@@ -1,0 +1,43 @@
+"""What the Markdown files name is there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PAGES = sorted(
+    [
+        *ROOT.glob("*.md"),
+        *(p for d in ("docs", "recipes", "checkpoints") for p in (ROOT / d).rglob("*.md")),
+    ]
+)
+LARGEST_PICTURE = 300_000  # bytes (ours)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_link_and_picture_is_there(page):
+    for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
+        if "://" not in target:
+            assert (page.parent / target).exists(), f"{page.name} names {target}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_source_file_named_is_there(page):
+    text = page.read_text(encoding="utf-8")
+    for name in re.findall(r"`((?:mitigate|recipes|conf|tests)/[\w/.]+)`", text):
+        assert (ROOT / name).exists(), f"{page.name} names {name}"
+
+
+def test_pictures_are_small():
+    for picture in (ROOT / "docs/pictures").iterdir():
+        assert picture.stat().st_size <= LARGEST_PICTURE, picture.name
+
+
+def test_the_recipe_menus_list_every_recipe():
+    names = [path.stem for path in (ROOT / "conf/recipe").glob("*.yaml")]
+    for page in (ROOT / "README.md", ROOT / "recipes/README.md"):
+        text = page.read_text(encoding="utf-8")
+        assert all(f"| `{name}` |" in text for name in names)
