@@ -18,6 +18,7 @@ from mitigate.envs.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 from mitigate.keys import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
 EYE = 1.25  # camera height, metres (VLN-CE)
+FARTHEST = 17.0  # metres; longer than any line through an apartment
 _COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
 _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
 
@@ -80,7 +81,7 @@ class Renderer:
         self.engine.render_frame()
         raw = np.frombuffer(self.image.get_ram_image(), np.uint8)
         frame = raw.reshape(2 * _ROWS * self.size, _COLUMNS * self.size, 4)
-        rgb, depth, ids = _split(frame, self.size, self.faces.plane, x, y, EYE, heading)
+        rgb, depth, ids = _split(frame, self.size, self.faces.plane, x, y, EYE, heading, _NEAR)
         return rgb, depth, ids
 
     def _rig(self, layer: int) -> Any:
@@ -168,7 +169,7 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def _split(frame, size, plane, x, y, z, heading):  # type: ignore[no-untyped-def]
+def _split(frame, size, plane, x, y, z, heading, near):  # type: ignore[no-untyped-def]
     """Tiles (bottom-up BGRA) into views; ids from the upper half; depth by ray-plane intersection."""
     rgb = np.empty((12, size, size, 3), np.uint8)
     depth = np.zeros((12, size, size, 1), np.float32)
@@ -197,5 +198,7 @@ def _split(frame, size, plane, x, y, z, heading):  # type: ignore[no-untyped-def
                     t = (plane[face, 1] - y) / (fy + right * ry)
                 else:
                     t = (plane[face, 1] - z) / up
+                if not near <= t <= FARTHEST:  # a face seen edge-on: take the pixel beside it
+                    t = depth[k, i, j - 1, 0] if j > 0 else 0.0
                 depth[k, i, j, 0] = t
     return rgb, depth, ids
