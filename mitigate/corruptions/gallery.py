@@ -36,9 +36,10 @@ def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
 def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: Key, views):
     """The views asked for, corrupted, side by side as uint8 RGB."""
     if name in RGB:
-        return np.hstack(corrupt(rgb, name, severity, key=key)[list(views)])
+        return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
     hurt = corrupt(depth, name, severity, key=key)[list(views)]
-    far = float(depth[list(views)].max())
+    shown = depth[list(views)]
+    far = float(np.max(shown, initial=0.0, where=np.isfinite(shown))) or Z_MAX
     return np.hstack([depth_picture(view[..., 0], far) for view in hurt])
 
 
@@ -128,16 +129,18 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--depth", type=Path, help=".npy with float32 metres, same size")
     parser.add_argument("--seed", type=int, default=7, help="apartment to render (default 7)")
     parser.add_argument("--size", type=int, default=160, help="rendered view size (default 160)")
-    parser.add_argument("--view", type=int, default=0, help="rendered view to show (default 0)")
+    parser.add_argument("--view", type=int, help="rendered view (default: the most varied depth)")
     options = parser.parse_args(arguments)
     if (options.rgb is None) != (options.depth is None):
         parser.error("--rgb and --depth go together: pass both, or neither to render a frame.")
     if options.rgb is None:
         rgb, depth = rendered_frame(options.seed, options.size)
+        varied = int(depth.std(axis=(1, 2, 3)).argmax())
+        view = varied if options.view is None else options.view % len(rgb)
+        rgb, depth = rgb[view], depth[view]
     else:
         rgb, depth = read_frame(options.rgb, options.depth)
-    views = (options.view,) if options.rgb is None else (0,)
-    contact_sheet(rgb, depth, options.out, views=views)
+    contact_sheet(rgb, depth, options.out)
     print(f"Wrote {options.out}")
 
 

@@ -95,8 +95,9 @@ def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> n
     if length < 1.0:
         return views.copy()
     angle = math.radians(BLUR_ANGLE * (2.0 * uniform(digest(key, "motion_blur")) - 1.0))
+    dy, dx, weights = line_taps(length, angle, 0.5 + 0.5 * severity)
     out = np.empty_like(views)
-    blur.convolve_taps(views, *line_taps(length, angle, 0.5 + 0.5 * severity), out)
+    blur.convolve_taps(views, dy, dx, weights, out)
     return out
 
 

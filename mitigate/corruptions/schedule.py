@@ -122,8 +122,9 @@ class Schedule:
 
     def corruption(self, name: str) -> Corruption:
         """The corruption ``name`` at this schedule's severity for its modality."""
-        deep = name not in RGB and self.severity_depth is not None
-        return Corruption(name, self.severity_depth if deep else self.severity)
+        if name in RGB or self.severity_depth is None:
+            return Corruption(name, self.severity)
+        return Corruption(name, self.severity_depth)
 
     def state_dict(self) -> dict:
         """JSON-able: what a checkpoint keeps so that the weights survive a resume."""

@@ -109,9 +109,21 @@ def test_view_k_looks_30_k_degrees_to_the_right(renderer):
         turned = renderer.render(x, y, heading - np.radians(30 * k))  # clockwise: to the right
         for before, after in zip((rgb, depth, ids), turned, strict=True):
             assert np.mean(np.roll(before, -k, axis=0) == after) > 0.99
-    edge = slice(SIZE // 2, SIZE)  # what is right of the middle moves left as one turns right
-    left_of_next = depth[1, SIZE // 2, : SIZE // 2, 0]
-    assert abs(np.median(depth[0, SIZE // 2, edge, 0]) - np.median(left_of_next)) < 1.5
+
+
+def test_what_is_30_degrees_to_the_right_in_a_view_is_in_the_middle_of_the_next(renderer):
+    apartment = Apartment(3)
+    renderer.load(apartment)
+    middle, offset = SIZE // 2, np.tan(np.radians(30)) * SIZE / 2
+    gaps = {"right": [], "left": []}
+    for number in range(5):
+        _, depth, _ = renderer.render(*pose(apartment, number))
+        metres = depth[:, middle, :, 0]
+        for k in range(VIEWS):
+            ahead = metres[(k + 1) % VIEWS, middle]
+            for side, column in (("right", middle + offset), ("left", middle - offset)):
+                gaps[side].append(abs(metres[k, int(column)] / np.cos(np.radians(30)) / ahead - 1))
+    assert np.median(gaps["right"]) < 0.05 < 0.2 < np.median(gaps["left"])
 
 
 def test_the_agent_looks_along_its_heading(renderer):

@@ -1,0 +1,33 @@
+"""Small worlds for the agents' tests: an empty room and an untrained agent that walks."""
+
+from __future__ import annotations
+
+import numpy as np
+import torch
+
+from mitigate import seeding
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.agents.waypoints import free_target
+from mitigate.envs.apartments.navigation import CELL, FreeSpace
+
+
+def room(width: float, depth: float) -> FreeSpace:
+    """An empty room, metres; its walls are one cell thick."""
+    blocked = np.ones((round(depth / CELL), round(width / CELL)), bool)
+    blocked[1:-1, 1:-1] = False
+    return FreeSpace(blocked)
+
+
+def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
+    """Logits [120, 12] of a waypoint predictor that is right about everything."""
+    return np.where(free_target(space, xy, heading) > 0.5, 20.0, -20.0)
+
+
+def wanderer(*blind: str) -> TopologicalAgent:
+    """An untrained agent that sees free space everywhere and never stops of its own accord."""
+    seeding.seed_everything(0, "wanderer")
+    agent = TopologicalAgent(16, {"heads": 2, "text_layers": 1, "layers": 1}, blind).eval()
+    with torch.no_grad():
+        agent.waypoint_head.out.bias.fill_(8.0)
+        agent.planner.stop[-1].bias.fill_(-50.0)
+    return agent

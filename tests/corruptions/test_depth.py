@@ -1,0 +1,140 @@
+"""What each depth corruption does to metres."""
+
+import numpy as np
+import pytest
+
+from mitigate.corruptions import DepthSensor, Key, corrupt
+from mitigate.corruptions.depth import echo_table
+
+WALL = np.full((12, 96, 128), 4.0, np.float32)
+
+
+@pytest.mark.parametrize("metres", [0.7, 4.0])
+@pytest.mark.parametrize("severity", [0.1, 0.6])
+def test_noise_grows_with_the_square_of_depth(metres, severity):
+    noise = corrupt(np.full_like(WALL, metres), "gaussian_noise", severity, key=Key(0, "a"))
+    noise = noise - np.float32(metres)
+    sigma = severity * (0.02 + 0.02 * metres**2)
+    assert noise.std() == pytest.approx(sigma, rel=0.02)
+    assert abs(noise.mean()) < 0.02 * sigma
+    assert np.abs(noise).max() < 4.6 * sigma
+
+
+def test_noise_is_new_for_every_frame_and_view():
+    first = corrupt(WALL, "gaussian_noise", 0.5, key=Key(0, "a", 0)) - 4
+    second = corrupt(WALL, "gaussian_noise", 0.5, key=Key(0, "a", 1)) - 4
+    pairs = (first[0], first[1]), (first[0], second[0])
+    for a, b in pairs:
+        assert abs(np.corrcoef(a.ravel(), b.ravel())[0, 1]) < 0.03
+
+
+@pytest.mark.parametrize("severity", [0.3, 0.6, 1.0])
+def test_missing_data_has_its_shares_in_every_view(severity):
+    out = corrupt(WALL, "missing_data", severity, key=Key(0, "a"))
+    holes, far = (out == 0).mean((1, 2)), (out == 10).mean((1, 2))
+    assert holes == pytest.approx(0.375 * severity, abs=0.02)
+    assert far == pytest.approx(0.125 * severity, abs=0.015)
+    assert ((out == 0) | (out == 10) | (out == 4)).all()
+
+
+def test_holes_are_blobs_that_move_every_five_frames():
+    frames = [corrupt(WALL[:2], "missing_data", 0.6, key=Key(0, "a", i)) for i in range(11)]
+    groups = [frame.tobytes() for frame in frames]
+    assert len(set(groups[:5])) == len(set(groups[5:10])) == 1 and len(set(groups)) == 3
+    hole = frames[0][0] != 4
+    assert (hole[:, 1:] != hole[:, :-1]).mean() < 0.3 * 2 * hole.mean() * (1 - hole.mean())
+    views = frames[0] != 4
+    assert (views[0] != views[1]).any()
+    rolls = {np.sort(view.sum(0)).tobytes() for view in views}
+    assert len(rolls) == 1  # one field for the episode, placed anew for each view
+
+
+def test_the_sentinel_of_the_sensor_is_written():
+    out = corrupt(
+        WALL, "missing_data", 0.6, key=Key(0, "a"), sensor=DepthSensor(0.5, 5.0, missing=-1.0)
+    )
+    assert set(np.unique(out)) == {-1.0, 4.0, 5.0}
+
+
+def corner():
+    """A box edge: 2 m on the left, 3 m on the right."""
+    depth = np.full((100, 200), 3.0, np.float32)
+    depth[:, :100] = 2.0
+    return depth
+
+
+def test_multipath_overestimates_beside_a_farther_surface_only():
+    depth = corner()
+    out = corrupt(depth, "multipath", 0.6, key=Key(0, "a"))
+    beta, scale = 0.9 * 0.6, 299792458 / (4 * np.pi * 20e6)
+    phase = 1.0 / scale
+    expected = scale * np.arctan2(beta * np.sin(phase), 1 + beta * np.cos(phase))
+    assert (out[:, 97:100] - 2.0) == pytest.approx(expected, abs=1e-4)  # 0.03 * 100 = 3 px
+    assert (out[:, :97] == 2.0).all() and (out[:, 100:] == 3.0).all()
+    assert 0.2 < expected < 1.0
+
+
+def test_an_echo_is_never_beyond_the_farther_surface(scene):
+    assert (echo_table(1.0)[:-1] <= np.arange(1025) * 2.5 / 1024 + 1e-6).all()
+    depth = scene.draw(96, 128)[1]
+    out = corrupt(depth, "multipath", 1.0, key=Key(0, "a"))
+    assert (out >= depth).all() and out.max() <= depth.max() + 1e-5
+
+
+@pytest.mark.parametrize("hole", [0.0, np.nan, np.inf, -3.0])
+def test_invalid_neighbours_cast_no_echo(hole):
+    depth = np.full((60, 60), 2.0, np.float32)
+    depth[30, 30] = hole
+    out = corrupt(depth, "multipath", 1.0, key=Key(0, "a"))
+    assert out.tobytes() == depth.tobytes()
+
+
+def test_an_echo_window_matches_a_plain_dilation(scene):
+    depth = scene.draw(77, 90)[1]
+    reach = round(0.03 * 77)
+    padded = np.pad(depth, reach)
+    side = 2 * reach + 1
+    windows = np.lib.stride_tricks.sliding_window_view(padded, (side, side))
+    gap = np.clip(windows.max((2, 3)) - depth, 0, 2.5)
+    scale = 299792458 / (4 * np.pi * 20e6)
+    phase, beta = gap / scale, 0.9 * 0.7
+    expected = depth + scale * np.arctan2(beta * np.sin(phase), 1 + beta * np.cos(phase))
+    assert corrupt(depth, "multipath", 0.7, key=Key(0, "a")) == pytest.approx(expected, abs=1e-4)
+
+
+@pytest.mark.parametrize("severity", [0.2, 0.6, 1.0])
+def test_quantization_rounds_to_its_step(severity):
+    depth = np.linspace(0.01, 10, 5000, dtype=np.float32).reshape(50, 100)
+    step = 0.5 * severity
+    out = corrupt(depth, "quantization", severity, key=Key(0, "a"))
+    expected = np.clip(np.rint(depth / step) * step, 1e-3, 10)
+    assert out == pytest.approx(expected, abs=1e-5)
+    assert len(np.unique(out)) <= 10 / step + 2
+
+
+@pytest.mark.parametrize("name", ["gaussian_noise", "missing_data", "multipath", "quantization"])
+def test_valid_depth_is_clipped_to_the_range_of_the_sensor(name):
+    depth = np.array([[1e-5, 4.9, 7.0]] * 20, np.float32)
+    out = corrupt(depth, name, 0.05, key=Key(0, "a"), sensor=DepthSensor(0.5, 5.0))
+    assert out.max() <= 5.0 and out[out != 0].min() >= np.float32(1e-3)
+
+
+def test_a_normalised_sensor_goes_through_metres_and_back():
+    sensor = DepthSensor(0.5, 5.0)
+    unit = np.array([0.0, 0.2, 1.0], np.float32)
+    assert sensor.to_metres(unit).tolist() == pytest.approx([0.0, 1.4, 5.0])
+    assert sensor.from_metres(sensor.to_metres(unit)) == pytest.approx(unit)
+    assert sensor.to_metres(unit).dtype == np.float32
+
+
+def test_half_size_depth_is_hurt_alike(scene):
+    full = scene.draw(256, 320)[1]
+    half = full[::2, ::2]
+    for name in ("missing_data", "multipath", "quantization", "gaussian_noise"):
+        errors = [
+            np.mean(
+                [np.abs(corrupt(z, name, 0.6, key=Key(0, str(i))) - z).mean() for i in range(6)]
+            )
+            for z in (full, half)
+        ]
+        assert errors[0] == pytest.approx(errors[1], rel=0.15), name

@@ -1,0 +1,63 @@
+"""Pixels are pinned: a change here is a new SUITE_VERSION.
+
+To accept new pixels: raise ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py``, look at the
+contact sheet (``python -m mitigate.corruptions.gallery --out sheet.png``), then run
+
+    python tests/corruptions/test_golden.py --write
+
+from the project root, commit ``golden.json`` and say in the changelog what changed and why: result
+rows of another suite version cannot be compared.
+"""
+
+import hashlib
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mitigate.corruptions import NAMES, RGB, SUITE_VERSION, Key, corrupt
+
+GOLDEN = Path(__file__).with_name("golden.json")
+SEVERITIES = (0.05, 0.5, 0.6, 1.0)
+
+
+def frames():
+    """An integer-made panorama, so that no maths library decides the input."""
+    k, y, x = np.mgrid[:12, :48, :64]
+    rgb = np.stack([(x * 5 + y * c + 40 * k + (x // 9) * (y // 7)) % 256 for c in (3, 4, 6)], -1)
+    depth = 0.5 + ((x // 8) * 7 + (y // 6) * 11 + k * 5) % 37 / 4 + x / 256
+    depth = np.where((x + y + k) % 41 == 0, 0.0, depth)
+    return rgb.astype(np.uint8), depth.astype(np.float32)[..., None]
+
+
+def fingerprint(name: str, severity: float) -> str:
+    """Hash of the pixels; depth is rounded to 0.1 mm first."""
+    rgb, depth = frames()
+    key = Key(2024, "golden", 13)
+    out = corrupt(rgb if name in RGB else depth, name, severity, key=key, heading=0.7)
+    if name not in RGB:
+        out = np.rint(out * np.float32(1e4)).astype(np.int32)
+    return hashlib.blake2b(out.tobytes(), digest_size=16).hexdigest()
+
+
+def current() -> dict:
+    hashes = {name: {str(s): fingerprint(name, s) for s in SEVERITIES} for name in NAMES}
+    return {"suite": SUITE_VERSION, "pixels": hashes}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_pixels_are_those_of_the_suite_version(name):
+    golden = json.loads(GOLDEN.read_text())
+    assert golden["suite"] == SUITE_VERSION, "SUITE_VERSION changed: regenerate (see the docstring)"
+    for severity in SEVERITIES:
+        found = fingerprint(name, severity)
+        assert found == golden["pixels"][name][str(severity)], (name, severity, __doc__)
+
+
+if __name__ == "__main__":
+    if sys.argv[1:] != ["--write"]:
+        sys.exit(__doc__)
+    GOLDEN.write_text(json.dumps(current(), indent=1) + "\n")
+    print(f"Wrote {GOLDEN}")

@@ -1,0 +1,167 @@
+"""What each RGB corruption does to pixels, sizes and panoramas."""
+
+import numpy as np
+import pytest
+
+from mitigate.corruptions import RGB, Key, corrupt
+from mitigate.corruptions import rgb as kernels
+
+WHITE = np.full((60, 80, 3), 255, np.uint8)
+GREY = np.full((12, 48, 64, 3), 120, np.uint8)
+TURN = np.radians(30.0)
+
+
+def halved(frame):
+    high, wide = frame.shape[0] // 2, frame.shape[1] // 2
+    return np.rint(frame.reshape(high, 2, wide, 2, 3).mean((1, 3))).astype(np.uint8)
+
+
+@pytest.mark.parametrize("name", [n for n in RGB if n != "low_light_noise"])
+@pytest.mark.parametrize("episode", ["a", "b"])
+def test_a_frame_and_its_half_size_copy_are_hurt_alike(name, episode, scene):
+    full = scene.draw(256, 320)[0]
+    key = Key(0, episode)
+    big = halved(corrupt(full, name, 0.6, key=key)).astype(int)
+    small = corrupt(halved(full), name, 0.6, key=key).astype(int)
+    effect = np.abs(small - halved(full)).mean()
+    assert np.abs(big - small).mean() < max(0.12 * effect, 0.7)
+
+
+def test_motion_blur_under_one_pixel_is_the_identity(scene):
+    frame = scene.draw(40, 50)[0]
+    assert (corrupt(frame, "motion_blur", 0.19, key=Key(0, "a")) == frame).all()
+    assert (corrupt(frame, "motion_blur", 0.25, key=Key(0, "a")) != frame).any()
+
+
+@pytest.mark.parametrize("length, angle", [(1.3, 0.1), (6.4, -0.17), (38.4, 0.05)])
+def test_the_blur_line_has_its_length_and_angle(length, angle):
+    dy, dx, weights = kernels.line_taps(length, angle, 1.0)
+    share = weights / 65536
+    assert share.sum() == 1.0
+    assert (share @ dx, share @ dy) == pytest.approx((0, 0), abs=1e-3)
+    spread = np.sqrt(12 * (share @ dx**2))
+    assert spread == pytest.approx(length * np.cos(angle), rel=0.05, abs=0.6)
+    assert (share @ (dx * dy)) == pytest.approx(np.tan(angle) * (share @ dx**2), abs=0.05)
+
+
+def test_motion_blur_keeps_half_of_a_point_at_small_severity():
+    frame = np.zeros((101, 201, 3), np.uint8)
+    frame[50, 100] = 200
+    out = corrupt(frame, "motion_blur", 0.5, key=Key(0, "a"))
+    assert out[50, 100, 0] == pytest.approx(200 * (0.25 + 0.75 / 10.05), abs=6)
+    assert out.sum() == pytest.approx(frame.sum(), rel=0.05)
+
+
+@pytest.mark.parametrize("episode", ["a", "b", "c", "d"])
+def test_low_light_leaves_the_stated_share_of_light(episode):
+    out = corrupt(WHITE, "low_light", 0.5, key=Key(0, episode)) / 255
+    low, high = 1 - 0.5 * 0.97, 1 - 0.5 * 0.60
+    assert out.min() >= low - 0.003 and out.max() <= high + 0.003
+    assert out.max() - out.min() > 0.1  # uneven: a gradient, not a dimmer
+
+
+def test_low_light_uses_ramps_and_lights():
+    kinds = [kernels.uniform(kernels.digest(Key(0, str(i)), "low_light")) < 0.5 for i in range(40)]
+    assert 8 < sum(kinds) < 32
+
+
+@pytest.mark.parametrize("name", ["low_light", "spatter", "foreign_object"])
+def test_views_of_a_panorama_share_lens_and_light(name):
+    out = corrupt(GREY, name, 0.7, key=Key(0, "a"), heading=0.4)
+    assert (out == out[:1]).all() and (out[0] != GREY[0]).any()
+
+
+@pytest.mark.parametrize("name", ["motion_blur", "low_light", "spatter", "flare", "defocus"])
+def test_episode_state_stays_over_frames_and_differs_between_episodes(name, scene):
+    frame = scene.draw(60, 80)[0]
+    first = corrupt(frame, name, 0.7, key=Key(0, "a", 0))
+    assert (first == corrupt(frame, name, 0.7, key=Key(0, "a", 9))).all()
+    assert (first != corrupt(frame, name, 0.7, key=Key(0, "b", 0))).any()
+    assert (first != corrupt(frame, name, 0.7, key=Key(1, "a", 0))).any()
+
+
+@pytest.mark.parametrize("severity", [0.2, 0.6, 1.0])
+def test_spatter_covers_its_share_in_one_of_two_colours(severity):
+    colours = set()
+    for i in range(12):
+        out = corrupt(WHITE, "spatter", severity, key=Key(0, str(i)))
+        assert (out != 255).any(-1).mean() == pytest.approx(0.45 * severity, abs=0.03)
+        colours.add(tuple(out.reshape(-1, 3)[out.sum(-1).argmin()]))
+    if severity == 1.0:
+        assert colours == {(63, 42, 20), (175, 238, 238)}
+
+
+def flared(key, heading):
+    out = corrupt(GREY, "flare", 0.8, key=key, heading=heading)
+    return out, [k for k in range(12) if (out[k] != GREY[k]).any()]
+
+
+@pytest.mark.parametrize("episode", ["a", "b", "c", "d", "e"])
+def test_only_views_that_face_the_light_flare(episode):
+    for heading in np.linspace(-3, 7, 9):
+        _, views = flared(Key(0, episode), heading)
+        assert len(views) == 3  # 90 degrees of view, a camera every 30
+        steps = {(b - a) % 12 for a, b in zip(views, views[1:], strict=False)}
+        assert steps <= {1, 10}
+
+
+def test_the_light_stays_in_the_world_when_the_agent_turns():
+    key = Key(0, "a")
+    before, _ = flared(key, 0.2)
+    left, _ = flared(key, 0.2 + TURN)  # a turn to the left: the scene moves one view to the right
+    assert np.abs(np.roll(left, -1, axis=0).astype(int) - before).max() <= 1
+    around, _ = flared(key, 0.2 + 2 * np.pi)
+    assert np.abs(around.astype(int) - before).max() <= 1
+
+
+def test_a_view_to_the_right_sees_the_light_further_left():
+    centres = kernels.flare_centres(Key(0, "a"), 12, 64, 64, 0.2)
+    seen = [k for k in range(12) if centres[k] is not None]
+    ordered = seen if seen[-1] - seen[0] == 2 else sorted(seen, key=lambda k: (k + 6) % 12)
+    columns = [centres[k][0] for k in ordered]
+    assert columns == sorted(columns, reverse=True)
+
+
+def test_without_a_heading_the_light_is_in_the_first_view_where_it_was_drawn():
+    for i in range(50):
+        x, y = kernels.flare_centres(Key(0, str(i)), 1, 50, 100, None)[0]
+        assert 10 <= x <= 90 and 0 <= y <= 25
+
+
+def test_flare_is_a_screen_blend_that_never_darkens(scene):
+    frame = scene.draw(60, 80)[0]
+    out = corrupt(frame, "flare", 1.0, key=Key(0, "a"))
+    x, y = kernels.flare_centres(Key(0, "a"), 1, 60, 80, None)[0]
+    assert (out >= frame).all() and out[int(y), int(x), 0] == 255
+
+
+def test_defocus_is_the_gaussian_blur_it_says(scene):
+    import cv2
+
+    frame = scene.draw(224, 224)[0]
+    weights = kernels.gaussian_weights(3.0)
+    assert weights[0] + 2 * weights[1:].sum() == pytest.approx(1.0, abs=1e-6)
+    out = np.empty_like(frame)[None]
+    kernels.blur.gaussian(frame[None], weights, out)
+    border = cv2.BORDER_REPLICATE
+    exact = cv2.GaussianBlur(frame.astype(np.float64), (19, 19), 3.0, borderType=border)
+    assert np.abs(out[0] - exact).max() <= 0.51
+
+
+def test_a_foreign_object_is_a_centred_disk():
+    out = corrupt(WHITE, "foreign_object", 0.5, key=Key(0, "a"))
+    assert (out == 0).mean() == pytest.approx(np.pi * 15**2 / (60 * 80), rel=0.02)
+    assert (out == out[::-1]).all() and (out == out[:, ::-1]).all()
+
+
+def test_black_out_is_drawn_for_each_frame_and_view():
+    dark = np.stack(
+        [
+            (corrupt(GREY, "black_out", 0.3, key=Key(0, "a", i)) == 0).all((1, 2, 3))
+            for i in range(200)
+        ]
+    )
+    assert dark.mean() == pytest.approx(0.3, abs=0.03)
+    assert dark.mean(0).std() < 0.08 and dark.mean(1).std() < 0.2
+    assert abs(np.corrcoef(dark[:, 0], dark[:, 1])[0, 1]) < 0.25
+    assert (corrupt(GREY, "black_out", 1.0, key=Key(0, "a")) == 0).all()

@@ -1,0 +1,173 @@
+"""What every corruption promises (SUITE section 1)."""
+
+import numpy as np
+import pytest
+
+from mitigate.corruptions import (
+    CLEAN,
+    DEPTH,
+    NAMES,
+    RGB,
+    Corruption,
+    Key,
+    corrupt,
+    corrupt_observation,
+)
+
+KEY = Key(3, "episode-7", 4)
+STRENGTHS = np.linspace(0.0, 1.0, 11)
+
+
+def frame_for(name, panorama):
+    return panorama[0] if name in RGB else panorama[1]
+
+
+def same(a, b):
+    return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
+
+
+def test_there_are_eight_rgb_and_four_depth_corruptions():
+    assert len(RGB) == 8 and len(DEPTH) == 4 and NAMES == RGB + DEPTH
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_severity_zero_returns_a_bit_exact_copy(name, panorama):
+    frame = frame_for(name, panorama)
+    out = corrupt(frame, name, 0.0, key=KEY)
+    assert same(out, frame) and not np.shares_memory(out, frame) and out.flags.writeable
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("severity", [1e-9, 0.02, 0.6, 1.0])
+def test_the_input_stays_and_the_output_has_its_shape(name, severity, panorama):
+    frame = frame_for(name, panorama)
+    before = frame.tobytes()
+    out = corrupt(frame, name, severity, key=KEY, heading=0.3)
+    assert frame.tobytes() == before and not np.shares_memory(out, frame)
+    assert out.shape == frame.shape and out.dtype == frame.dtype
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_layouts_of_one_view_agree(name, panorama):
+    frame = frame_for(name, panorama)[:1]
+    out = corrupt(frame, name, 0.7, key=KEY)
+    assert same(corrupt(frame[0], name, 0.7, key=KEY), out[0])
+    if name in DEPTH:
+        assert same(corrupt(frame[0, ..., 0], name, 0.7, key=KEY), out[0, ..., 0])
+        assert same(corrupt(frame[..., 0], name, 0.7, key=KEY), out[..., 0])
+    strided = np.repeat(frame, 2, axis=2)[:, :, ::2]
+    assert same(corrupt(strided, name, 0.7, key=KEY), out)
+
+
+@pytest.mark.parametrize("name", RGB)
+@pytest.mark.parametrize("episode", ["a", "b", "c"])
+def test_ssim_and_psnr_to_the_clean_frame_never_rise(name, episode, scene):
+    frame = scene.draw(96, 128)[0]
+    hurt = [corrupt(frame, name, s, key=Key(0, episode)) for s in STRENGTHS]
+    likeness = [scene.ssim(frame, x) for x in hurt]
+    signal = [scene.psnr(frame, x) for x in hurt]
+    assert np.diff(likeness).max() <= 1e-6, likeness
+    assert np.diff(signal).max() <= 1e-9, signal
+    assert likeness[-1] < 0.9 and signal[-1] < 30.0
+
+
+@pytest.mark.parametrize("name", DEPTH)
+@pytest.mark.parametrize("episode", ["a", "b", "c"])
+def test_mean_absolute_depth_error_never_falls(name, episode, scene):
+    frame = scene.draw(96, 128)[1]
+    hurt = [corrupt(frame, name, s, key=Key(0, episode)) for s in STRENGTHS]
+    errors = [np.abs(x - frame).mean() for x in hurt]
+    assert np.diff(errors).min() >= 0.0 and errors[-1] > 0.05, errors
+
+
+@pytest.mark.parametrize("name", DEPTH)
+@pytest.mark.parametrize("severity", [0.1, 0.6, 1.0])
+def test_invalid_depth_comes_back_as_it_was_and_valid_depth_stays_valid(name, severity, panorama):
+    depth = panorama[1]
+    invalid = ~(np.isfinite(depth) & (depth > 0))
+    out = corrupt(depth, name, severity, key=KEY)
+    assert out[invalid].tobytes() == depth[invalid].tobytes()
+    kept = out[~invalid]
+    assert np.isfinite(kept).all() and kept.max() <= 10.0
+    if name == "missing_data":
+        kept = kept[kept != 0]
+    assert kept.min() >= np.float32(1e-3)
+
+
+@pytest.mark.parametrize("name", DEPTH)
+def test_depth_without_any_valid_pixel_comes_back_unchanged(name):
+    depth = np.array([[0.0, np.nan], [np.inf, -2.0]], np.float32)
+    assert same(corrupt(depth, name, 1.0, key=KEY), depth)
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("size", [(1, 1), (1, 9), (7, 1), (5, 31)])
+def test_odd_and_tiny_frames_work(name, size):
+    frame = np.full((*size, 3), 90, np.uint8) if name in RGB else np.full(size, 3.0, np.float32)
+    assert corrupt(frame, name, 0.9, key=KEY).shape == frame.shape
+
+
+@pytest.mark.parametrize("severity", [1.2, -0.1, float("nan"), float("inf"), "much", None])
+def test_a_severity_outside_zero_to_one_is_refused(severity, panorama):
+    with pytest.raises(ValueError, match="from 0 .clean. to 1"):
+        corrupt(panorama[0], "flare", severity, key=KEY)
+    with pytest.raises(ValueError, match="from 0 .clean. to 1"):
+        Corruption("flare", severity)
+
+
+def test_an_unknown_name_is_refused_with_the_nearest_one(panorama):
+    with pytest.raises(ValueError, match="mean 'motion_blur'"):
+        corrupt(panorama[0], "motionblur", 0.5, key=KEY)
+    with pytest.raises(ValueError, match="Allowed names: clean, motion_blur"):
+        Corruption("fog", 0.5)
+    with pytest.raises(ValueError, match="severity 0"):
+        Corruption("clean", 0.5)
+
+
+def test_float_rgb_is_refused_with_the_conversion(panorama):
+    with pytest.raises(ValueError, match=r"np.rint\(frame \* 255\).astype\(np.uint8\)"):
+        corrupt(panorama[0] / np.float32(255), "flare", 0.5, key=KEY)
+
+
+def test_millimetres_and_other_depth_types_are_refused_with_the_conversion(panorama):
+    with pytest.raises(ValueError, match="divided by 1000"):
+        corrupt(np.full((4, 4), 900, np.uint16), "multipath", 0.5, key=KEY)
+    with pytest.raises(ValueError, match="astype"):
+        corrupt(np.ones((4, 4)), "multipath", 0.5, key=KEY)
+
+
+@pytest.mark.parametrize("shape", [(4, 4), (4, 4, 4), (2, 2, 4, 4, 3), (0, 4, 3)])
+def test_wrong_rgb_shapes_are_refused(shape):
+    with pytest.raises(ValueError, match="RGB frames must be"):
+        corrupt(np.zeros(shape, np.uint8), "flare", 0.5, key=KEY)
+
+
+@pytest.mark.parametrize("shape", [(4,), (2, 3, 4, 4), (2, 3, 4, 4, 1)])
+def test_wrong_depth_shapes_are_refused(shape):
+    with pytest.raises(ValueError, match="Depth must be"):
+        corrupt(np.ones(shape, np.float32), "multipath", 0.5, key=KEY)
+
+
+def test_a_key_that_is_no_key_is_refused(panorama):
+    with pytest.raises(ValueError, match="key must be a Key"):
+        corrupt(panorama[0], "flare", 0.5, key=7)
+
+
+def test_an_observation_is_hurt_in_the_modality_concerned_only(panorama):
+    rgb, depth = panorama
+    obs = {"rgb": rgb, "depth": depth, "pose": np.array([1.0, 2.0, 0.5], np.float32), "step": 3}
+    for name in NAMES:
+        corruption = Corruption(name, 1.0)
+        out = corrupt_observation(obs, corruption, KEY)
+        hurt, other = ("rgb", "depth") if corruption.modality == "rgb" else ("depth", "rgb")
+        assert out is not obs and list(out) == list(obs) and out["step"] == 3
+        assert out[other] is obs[other]
+        assert same(out[hurt], corrupt(obs[hurt], name, 1.0, key=KEY, heading=0.5))
+        assert not same(out[hurt], obs[hurt])
+    clean = corrupt_observation(obs, CLEAN, KEY)
+    assert clean is not obs and clean["rgb"] is rgb and CLEAN.modality == "none"
+
+
+def test_an_observation_without_the_modality_is_refused(panorama):
+    with pytest.raises(ValueError, match="does not hold"):
+        corrupt_observation({"rgb": panorama[0]}, Corruption("multipath", 0.5), KEY)

@@ -1,0 +1,137 @@
+"""Rows do not depend on the number of processes, and an interrupted evaluation goes on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mitigate.corruptions import CLEAN, NAMES, Corruption
+from mitigate.envs.apartments.simulator import Simulator
+from mitigate.envs.apartments.tasks import load_episodes
+from mitigate.evaluation import evaluator
+from mitigate.evaluation.controls import OracleAgent, RandomAgent
+from mitigate.evaluation.evaluator import LazyObservation, evaluate, run_episode
+from mitigate.keys import DEPTH, POSE, RGB, STOP
+from tests.agents.rooms import wanderer
+
+CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]
+SIZE = 16
+
+
+def run(folder, workers=1, episodes=2, conditions=CONDITIONS, agent=None, **options):
+    return evaluate(
+        agent or wanderer(),
+        load_episodes("val_seen")[:episodes],
+        conditions,
+        name="test",
+        out=folder / "rows.jsonl",
+        split="val_seen",
+        workers=workers,
+        size=SIZE,
+        **options,
+    )
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("one")
+    return folder, run(folder)
+
+
+def test_two_workers_give_the_rows_of_one(finished, tmp_path):
+    folder, rows = finished
+    assert run(tmp_path, workers=2) == rows
+    assert (tmp_path / "rows.jsonl").read_bytes() == (folder / "rows.jsonl").read_bytes()
+
+
+def test_a_row_says_what_it_measured(finished):
+    _, rows = finished
+    assert len(rows) == 2 * len(CONDITIONS)
+    assert {(r["corruption"], r["severity"]) for r in rows} == {(c.name, c.severity) for c in CONDITIONS}
+    for row in rows:
+        assert row["name"] == "test" and row["split"] == "val_seen" and len(row["agent"]) == 12
+        assert row["success"] in (0, 1) and 0 <= row["spl"] <= row["success"]
+        assert 0 <= row["ndtw"] <= 1 and row["decisions"] <= 15 and row["steps"] <= 500
+        assert "STOP" in row["rule"] and "2.0 m" in row["rule"]
+
+
+def test_corruptions_change_what_the_agent_does(finished):
+    _, rows = finished
+    paths = {(r["episode_id"], r["corruption"]): (r["path_length"], r["steps"]) for r in rows}
+    clean = {e: paths[e, "clean"] for e, _ in paths}
+    changed = [paths[e, name] != clean[e] for e, name in paths if name != "clean"]
+    assert sum(changed) > len(changed) / 3
+
+
+def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(finished, tmp_path, monkeypatch):
+    folder, rows = finished
+    lines = (folder / "rows.jsonl").read_text().splitlines(keepends=True)
+    (tmp_path / "rows.jsonl").write_text("".join(lines[:20]) + lines[20][:60])
+    ran, real = [], evaluator.run_episode
+
+    def counted(agent, simulator, episode, corruption, seed):
+        ran.append((episode.episode_id, corruption.name))
+        return real(agent, simulator, episode, corruption, seed)
+
+    monkeypatch.setattr(evaluator, "run_episode", counted)
+    assert run(tmp_path) == rows
+    assert ran == [(row["episode_id"], row["corruption"]) for row in rows[20:]]
+    assert run(tmp_path) == rows and len(ran) == len(rows) - 20
+
+
+def test_a_result_does_not_depend_on_what_ran_before(finished, tmp_path):
+    _, rows = finished
+    alone = run(tmp_path, conditions=[Corruption("flare", 0.6)])
+    assert alone == [row for row in rows if row["corruption"] == "flare"]
+
+
+def test_other_weights_are_another_agent(finished, tmp_path):
+    _, rows = finished
+    agent = wanderer()
+    agent.planner.stop[-1].bias.data.fill_(50.0)  # stops at once
+    others = run(tmp_path, conditions=[CLEAN], agent=agent)
+    assert others[0]["agent"] != rows[0]["agent"] and [r["steps"] for r in others] == [1, 1]
+
+
+def test_frames_are_rendered_only_if_they_are_read():
+    reads = []
+
+    def frames() -> dict[str, np.ndarray]:
+        reads.append(1)
+        return {RGB: np.zeros(1), DEPTH: np.ones(1)}
+
+    seen = LazyObservation(np.zeros(3), frames)
+    assert list(seen) == [POSE, RGB, DEPTH] and len(seen) == 3 and seen[POSE].shape == (3,)
+    assert not reads
+    assert seen[RGB].sum() == 0 and seen[DEPTH].sum() == 1 and reads == [1]
+
+
+class Watcher:
+    """Looks at every step, turns twice, stops; keeps what it saw."""
+
+    def reset(self, instruction: str) -> None:
+        self.seen = []
+
+    def act(self, observation) -> int:
+        self.seen.append({name: observation[name].copy() for name in observation})
+        return 2 if len(self.seen) < 3 else STOP
+
+
+@pytest.mark.parametrize(("name", "hurt", "whole"), [("low_light", RGB, DEPTH), ("multipath", DEPTH, RGB)])
+def test_a_corruption_hurts_its_sensor_at_every_look(name, hurt, whole):
+    episode, simulator, agent = load_episodes("val_seen")[5], Simulator(SIZE), Watcher()
+    run_episode(agent, simulator, episode, CLEAN, 0)
+    clean = agent.seen
+    measures = run_episode(agent, simulator, episode, Corruption(name, 0.8), 0)
+    assert measures["decisions"] == 3 == len(agent.seen) and measures["success"] == 0
+    for before, after in zip(clean, agent.seen, strict=True):
+        assert np.array_equal(before[whole], after[whole])
+        assert not np.array_equal(before[hurt], after[hurt])
+
+
+def test_the_random_control_repeats_itself_and_rarely_succeeds():
+    simulator, episodes = Simulator(SIZE), load_episodes("val_unseen")[::30]
+    rows = [run_episode(RandomAgent(), simulator, e, CLEAN, 0) for e in episodes]
+    assert rows == [run_episode(RandomAgent(), simulator, e, CLEAN, 0) for e in episodes]
+    oracle = [run_episode(OracleAgent(simulator), simulator, e, CLEAN, 0) for e in episodes]
+    assert sum(r["success"] for r in rows) <= 3 < 10 == sum(r["success"] for r in oracle)
