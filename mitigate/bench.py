@@ -78,7 +78,10 @@ def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
         return 1
 
     read = partial(world.obs_fb.get_depth_map, 0.04, 100.0)  # the planes of render_obs
-    return {f"MiniWorld {scene}, its public calls": partial(view, world.render_depth), f"MiniWorld {scene}, drawn once": partial(view, read)}
+    return {
+        f"MiniWorld {scene}, its public calls": partial(view, world.render_depth),
+        f"MiniWorld {scene}, drawn once": partial(view, read),
+    }
 
 
 def _placed(world: Any) -> tuple[np.ndarray, float]:
@@ -122,9 +125,14 @@ def corruption_milliseconds(size: int) -> dict[str, tuple[float, float]]:
     course of an episode, and when every frame draws a new one (the per-frame schedule)."""
     apartment, renderer = Apartment(7), Renderer(size)
     renderer.load(apartment)
-    rgb, depth, _ = renderer.render(*map(float, apartment.space.centre(len(apartment.space.cells) // 2)), 0.3)
+    rgb, depth, _ = renderer.render(
+        *map(float, apartment.space.centre(len(apartment.space.cells) // 2)), 0.3
+    )
     frames = {name: rgb if name in RGB_NAMES else depth for name in NAMES}
-    return {name: (_fastest(name, frame, False), _fastest(name, frame, True)) for name, frame in frames.items()}
+    return {
+        name: (_fastest(name, frame, False), _fastest(name, frame, True))
+        for name, frame in frames.items()
+    }
 
 
 def _fastest(name: str, frame: np.ndarray, fresh: bool) -> float:
@@ -139,7 +147,11 @@ def _fastest(name: str, frame: np.ndarray, fresh: bool) -> float:
 
 def machine() -> str:
     """Processor, cores, load, Python and date of this measurement."""
-    names = [line.split(":")[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")]
+    names = [
+        line.split(":")[1].strip()
+        for line in _lines("/proc/cpuinfo")
+        if line.startswith("model name")
+    ]
     processor = names[0] if names else platform.processor() or platform.machine()
     return f"{processor}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}, {date.today()}"
 
@@ -151,23 +163,41 @@ def _lines(path: str) -> list[str]:
         return []
 
 
-def report(size: int, rates: dict[str, tuple[float, float]], times: dict[str, tuple[float, float]]) -> str:
+def report(
+    size: int, rates: dict[str, tuple[float, float]], times: dict[str, tuple[float, float]]
+) -> str:
     """The measurements as Markdown."""
     lines = ["# Benchmarks", "", f"`make bench` on {machine()}.", "", f"## RGB-D rendering, {size} x {size} pixels", "",
              "One process, one run, in turns; the best of several rounds.", "",
              "| renderer | RGB-D views/s | per CPU second | panoramas (12 views)/s | ours is faster by |", "| --- | --- | --- | --- | --- |"]  # fmt: skip
     fastest = rates[OURS][0]
-    lines += [f"| {name} | {wall:.0f} | {cpu:.0f} | {wall / VIEWS:.0f} | {fastest / wall:.1f} |" for name, (wall, cpu) in rates.items()]
-    lines += ["", f"## Corruptions, suite {SUITE_VERSION}, severity {SEVERITY}", "", f"One panorama, 12 x {size} x {size}.", ""]
-    lines += ["| corruption | ms a panorama | ms if each starts an episode |", "| --- | --- | --- |"]
+    lines += [
+        f"| {name} | {wall:.0f} | {cpu:.0f} | {wall / VIEWS:.0f} | {fastest / wall:.1f} |"
+        for name, (wall, cpu) in rates.items()
+    ]
+    lines += [
+        "",
+        f"## Corruptions, suite {SUITE_VERSION}, severity {SEVERITY}",
+        "",
+        f"One panorama, 12 x {size} x {size}.",
+        "",
+    ]
+    lines += [
+        "| corruption | ms a panorama | ms if each starts an episode |",
+        "| --- | --- | --- |",
+    ]
     lines += [f"| {name} | {same:.2f} | {new:.2f} |" for name, (same, new) in times.items()]
     return "\n".join(lines) + "\n"
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--size", type=int, default=64, help="pixels of a view (default 64)")
-    parser.add_argument("--seconds", type=float, default=1.0, help="of a round of each renderer (default 1)")
+    parser.add_argument(
+        "--seconds", type=float, default=1.0, help="of a round of each renderer (default 1)"
+    )
     parser.add_argument("--write", action="store_true", help="write docs/benchmarks.md")
     args = parser.parse_args()
     text = report(args.size, compare(args.size, args.seconds), corruption_milliseconds(args.size))

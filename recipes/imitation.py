@@ -66,9 +66,18 @@ class ImitationRecipe(Recipe):
         self.agent, self.schedule, self.seed = agent, schedule, seed
         self.episodes, self.follow_oracle = episodes, follow_oracle
         self.apartments, self.ogn_share, self.size = apartments, ogn_share, size
-        self.weights = {"concepts": w_concepts, "waypoints": w_waypoints, "distance": w_distance, "grounding": w_grounding}
+        self.weights = {
+            "concepts": w_concepts,
+            "waypoints": w_waypoints,
+            "distance": w_distance,
+            "grounding": w_grounding,
+        }
         self.prior = prior
-        self.planner_lr, self.refresh_every, self.refresh_episodes = planner_lr, refresh_every, refresh_episodes
+        self.planner_lr, self.refresh_every, self.refresh_episodes = (
+            planner_lr,
+            refresh_every,
+            refresh_episodes,
+        )
         for part in PARTS:
             getattr(agent, part).requires_grad_(part in train_parts)
         if prior is not None:
@@ -79,15 +88,22 @@ class ImitationRecipe(Recipe):
         if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):
             self.refresh(step)
         rng = generator(self.seed, "imitation", step)
-        episodes = [draw_training_episode(rng, self.apartments, self.ogn_share) for _ in range(self.episodes)]
+        episodes = [
+            draw_training_episode(rng, self.apartments, self.ogn_share)
+            for _ in range(self.episodes)
+        ]
         self._shared_renderer()
         worlds = [RenderedWorld(self, e, f"{step}-{i}") for i, e in enumerate(episodes)]
         self.agent.eval()
         tokens = self.agent.tokens([e.instruction.text for e in episodes])
-        traces = roll_out(self.agent.planner, tokens, worlds, self.look, follow_oracle=self.follow_oracle, rng=rng)
+        traces = roll_out(
+            self.agent.planner, tokens, worlds, self.look, follow_oracle=self.follow_oracle, rng=rng
+        )
         self.agent.train()
         looks = [look for world in worlds for look in world.looks]
-        stacked = {name: torch.from_numpy(np.stack([look[name] for look in looks])) for name in looks[0]}
+        stacked = {
+            name: torch.from_numpy(np.stack([look[name] for look in looks])) for name in looks[0]
+        }
         self._picture = strip(looks[0][RGB])
         return {**decisions_of(traces), **stacked, "tokens": tokens}
 
@@ -95,10 +111,14 @@ class ImitationRecipe(Recipe):
         """What the agent makes of the (corrupted) panorama of each world."""
         for world in worlds:
             world.observe()
-        rgb, depth = (torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])) for name in (RGB, DEPTH))
+        rgb, depth = (
+            torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])) for name in (RGB, DEPTH)
+        )
         with torch.autocast("cpu", torch.bfloat16):
             views, _, waypoints = self.agent.perceive(rgb, depth)
-        return [(v, select(w)) for v, w in zip(views.float(), waypoints.float().numpy(), strict=True)]
+        return [
+            (v, select(w)) for v, w in zip(views.float(), waypoints.float().numpy(), strict=True)
+        ]
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
         """A panorama as the agent saw it in the last batch."""
@@ -112,9 +132,15 @@ class ImitationRecipe(Recipe):
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         views, concepts, waypoints = self.agent.perceive(batch[RGB], batch[DEPTH])
         values = self.planner_losses(batch, views)
-        values["concepts"] = F.binary_cross_entropy_with_logits(concepts.float(), batch["concepts"], pos_weight=torch.tensor(2.0))
+        values["concepts"] = F.binary_cross_entropy_with_logits(
+            concepts.float(), batch["concepts"], pos_weight=torch.tensor(2.0)
+        )
         values["waypoints"] = waypoint_loss(waypoints, batch["free"])
-        values["loss"] = values["loss"] + self.weights["concepts"] * values["concepts"] + self.weights["waypoints"] * values["waypoints"]
+        values["loss"] = (
+            values["loss"]
+            + self.weights["concepts"] * values["concepts"]
+            + self.weights["waypoints"] * values["waypoints"]
+        )
         values["f1"] = f1(concepts[..., THINGS], batch["concepts"][..., THINGS])
         values["iou"] = agreement(waypoints, batch["free"])
         return values
@@ -131,8 +157,12 @@ class ImitationRecipe(Recipe):
         imitation = (each * weight).sum() / weight.sum()
         distance = F.smooth_l1_loss(out["distance"], batch["metres"] / 5, reduction="none")
         distance = (distance * decisions.valid).sum() / decisions.valid.sum()
-        grounding = F.binary_cross_entropy_with_logits(out["grounding"], batch["shows"], pos_weight=torch.tensor(2.0))
-        loss = imitation + self.weights["distance"] * distance + self.weights["grounding"] * grounding
+        grounding = F.binary_cross_entropy_with_logits(
+            out["grounding"], batch["shows"], pos_weight=torch.tensor(2.0)
+        )
+        loss = (
+            imitation + self.weights["distance"] * distance + self.weights["grounding"] * grounding
+        )
         chosen = out["logits"].argmax(-1)
         right = target.gather(1, chosen[:, None])[:, 0] > 0.4 * target.max(1).values
         return {"loss": loss, "imitation": imitation, "distance": distance, "grounding": grounding, "accuracy": right.float().mean(),
@@ -142,7 +172,9 @@ class ImitationRecipe(Recipe):
     def refresh(self, step: int) -> None:
         """Measure the success rate under every corruption on training episodes; reweigh the schedule."""
         rng = generator(self.seed, "refresh", step)
-        episodes = [draw_training_episode(rng, self.apartments, 0.0) for _ in range(self.refresh_episodes)]
+        episodes = [
+            draw_training_episode(rng, self.apartments, 0.0) for _ in range(self.refresh_episodes)
+        ]
         simulator = Simulator(self.size, renderer=self._shared_renderer())
         agent = self.agent.eval()
         found = [
@@ -162,7 +194,10 @@ class ImitationRecipe(Recipe):
             return groups
         planner = {id(p) for p in self.agent.planner.parameters()}
         split = [{**g, "params": [p for p in g["params"] if id(p) not in planner]} for g in groups]
-        slow = [{**g, "params": [p for p in g["params"] if id(p) in planner], "lr": self.planner_lr} for g in groups]
+        slow = [
+            {**g, "params": [p for p in g["params"] if id(p) in planner], "lr": self.planner_lr}
+            for g in groups
+        ]
         return [*split, *slow]
 
     def get_extra_state(self) -> dict[str, Any]:
@@ -187,7 +222,9 @@ class RenderedWorld:
         rgb, depth, ids = simulator.observe_faces()
         concepts, seen = view_labels(simulator.apartment, ids, depth)
         frames = {RGB: rgb, DEPTH: depth, POSE: self.pose().astype(np.float32)}
-        frames = corrupt_observation(frames, *self.recipe.schedule.draw(self.recipe.seed, self.name, len(self.looks)))
+        frames = corrupt_observation(
+            frames, *self.recipe.schedule.draw(self.recipe.seed, self.name, len(self.looks))
+        )
         free = free_target(simulator.space, simulator.xy, simulator.heading)
         self.looks.append({RGB: frames[RGB], DEPTH: frames[DEPTH], "concepts": concepts, "free": free,
                            "shows": seen[:, landmarks(self.episode)].any(1).astype(np.float32)})  # fmt: skip
@@ -208,21 +245,29 @@ class RenderedWorld:
 def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
     """Mean success by corruption of rows or measures; clean ones are left out."""
     names = {row["corruption"] for row in results} - {"clean"}
-    return {n: float(np.mean([r["success"] for r in results if r["corruption"] == n])) for n in sorted(names)}
+    return {
+        n: float(np.mean([r["success"] for r in results if r["corruption"] == n]))
+        for n in sorted(names)
+    }
 
 
 def decisions_of(traces: list[Trace]) -> dict[str, Any]:
     """Padded decisions of all traces with their targets [B, 1 + N + G] and metres [B, 1 + N + G]."""
     steps = [(row, step) for row, trace in enumerate(traces) for step in trace.steps]
     offsets = np.cumsum([0, *(len(trace.steps) for trace in traces)])
-    decisions = collate([s.decision for _, s in steps], [row for row, _ in steps], [int(offsets[row]) for row, _ in steps])
+    decisions = collate(
+        [s.decision for _, s in steps],
+        [row for row, _ in steps],
+        [int(offsets[row]) for row, _ in steps],
+    )
     size, first = decisions.valid.shape, 1 + decisions.nodes.shape[1]
     target, metres = np.zeros(size, np.float32), np.zeros(size, np.float32)
     for index, (_, step) in enumerate(steps):
         ghosts, nodes = len(step.decision.ghosts), len(step.decision.nodes)
         target[index, 0], target[index, first : first + ghosts] = step.target[0], step.target[1:]
-        metres[index, : 1 + nodes], metres[index, first : first + ghosts] = step.metres[: 1 + nodes], step.metres[1 + nodes :]
+        metres[index, : 1 + nodes], metres[index, first : first + ghosts] = (
+            step.metres[: 1 + nodes],
+            step.metres[1 + nodes :],
+        )
     return {"decisions": decisions, "target": torch.from_numpy(target), "metres": torch.from_numpy(np.minimum(metres, 25)),
             "episode_ids": [trace.episode.episode_id for trace in traces]}  # fmt: skip
-
-

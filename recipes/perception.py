@@ -33,9 +33,18 @@ class PerceptionRecipe(Recipe):
         if modality not in ("rgb", "depth"):
             raise ValueError(f"modality={modality!r} is unknown; choose 'rgb' or 'depth'.")
         self.agent, self.modality = agent, modality
-        self.apartments, self.panoramas, self.seed, self.schedule = apartments, panoramas, seed, schedule
+        self.apartments, self.panoramas, self.seed, self.schedule = (
+            apartments,
+            panoramas,
+            seed,
+            schedule,
+        )
         agent.requires_grad_(False)
-        for part in (agent.rgb_encoder,) if modality == "rgb" else (agent.depth_encoder, agent.waypoint_head):
+        for part in (
+            (agent.rgb_encoder,)
+            if modality == "rgb"
+            else (agent.depth_encoder, agent.waypoint_head)
+        ):
             part.requires_grad_(True)
         self.renderer = Renderer(size, scenes=apartments)
 
@@ -61,7 +70,9 @@ class PerceptionRecipe(Recipe):
             frames = corrupt_observation(frames, *self.schedule.draw(self.seed, name, 0))
         if self.modality == "depth":
             return frames[DEPTH], target
-        views = np.arange(int(rng.integers(2)), VIEWS, 2)  # neighbours overlap: half of them teach as much
+        views = np.arange(
+            int(rng.integers(2)), VIEWS, 2
+        )  # neighbours overlap: half of them teach as much
         return frames[RGB][views], target[views]
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
@@ -69,11 +80,20 @@ class PerceptionRecipe(Recipe):
         if self.modality == "depth":
             features = self.agent.depth_encoder(frames).unflatten(0, (-1, VIEWS))
             logits = self.agent.waypoint_head(features)
-            return {"loss": waypoint_loss(logits, batch["targets"]), "iou": agreement(logits, batch["targets"])}
+            return {
+                "loss": waypoint_loss(logits, batch["targets"]),
+                "iou": agreement(logits, batch["targets"]),
+            }
         _, logits = self.agent.rgb_encoder(frames)
         targets = batch["targets"].flatten(0, 1)
-        loss = F.binary_cross_entropy_with_logits(logits.float(), targets, pos_weight=torch.tensor(2.0))
-        return {"loss": loss, "f1": f1(logits[:, THINGS], targets[:, THINGS]), "f1_all": f1(logits, targets)}
+        loss = F.binary_cross_entropy_with_logits(
+            logits.float(), targets, pos_weight=torch.tensor(2.0)
+        )
+        return {
+            "loss": loss,
+            "f1": f1(logits[:, THINGS], targets[:, THINGS]),
+            "f1_all": f1(logits, targets),
+        }
 
 
 def f1(logits: Tensor, targets: Tensor) -> Tensor:

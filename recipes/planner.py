@@ -31,8 +31,18 @@ class PlannerRecipe(ImitationRecipe):
 
     def __init__(self, agent: TopologicalAgent, folder: str, steps: int, cached: int = 250, episodes: int = 40,
                  follow_oracle: float = 0.25, **others: Any) -> None:  # fmt: skip
-        super().__init__(agent, Schedule("clean", 0.0), ("planner",), episodes, follow_oracle, apartments=cached, **others)
-        encoders = torch.nn.ModuleList([agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head])
+        super().__init__(
+            agent,
+            Schedule("clean", 0.0),
+            ("planner",),
+            episodes,
+            follow_oracle,
+            apartments=cached,
+            **others,
+        )
+        encoders = torch.nn.ModuleList(
+            [agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head]
+        )
         self.folder, self.steps = Path(folder) / weights_sha(encoders)[:12], steps
         agent.eval()
         cache.build(agent, self.folder, range(cached), self.size)
@@ -42,17 +52,32 @@ class PlannerRecipe(ImitationRecipe):
 
     def batch(self, step: int) -> dict[str, Any]:
         rng = generator(self.seed, "planner", step)
-        episodes = [draw_training_episode(rng, self.apartments, self.ogn_share) for _ in range(self.episodes)]
+        episodes = [
+            draw_training_episode(rng, self.apartments, self.ogn_share)
+            for _ in range(self.episodes)
+        ]
         worlds = [cache.CachedWorld(e, self.caches[int(e.scene_id[-6:])]) for e in episodes]
         share = max(0.0, 1 - step / (_DECAY * self.steps))
         self.agent.eval()
         tokens = self.agent.tokens([e.instruction.text for e in episodes])
         with torch.autocast("cpu", torch.bfloat16):
-            traces = roll_out(self.agent.planner, tokens, worlds, cache.look, follow_oracle=self.follow_oracle + share * (1 - self.follow_oracle), rng=rng)
+            traces = roll_out(
+                self.agent.planner,
+                tokens,
+                worlds,
+                cache.look,
+                follow_oracle=self.follow_oracle + share * (1 - self.follow_oracle),
+                rng=rng,
+            )
         self.agent.train()
         views = torch.stack([v for trace in traces for v in trace.views])
         shows = np.stack([s for world in worlds for s in world.shown])
-        return {**decisions_of(traces), "views": views, "shows": torch.from_numpy(shows), "tokens": tokens}
+        return {
+            **decisions_of(traces),
+            "views": views,
+            "shows": torch.from_numpy(shows),
+            "tokens": tokens,
+        }
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
         return {}

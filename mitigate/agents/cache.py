@@ -73,7 +73,11 @@ def build(agent: TopologicalAgent, folder: Path, apartments: range, size: int = 
     """Fill the cache of some training apartments; those already there are kept."""
     renderer = Renderer(size, scenes=2)
     folder.mkdir(parents=True, exist_ok=True)
-    for seed in tqdm([s for s in apartments if not path_of(folder, s).exists()], desc="feature cache", disable=None):
+    for seed in tqdm(
+        [s for s in apartments if not path_of(folder, s).exists()],
+        desc="feature cache",
+        disable=None,
+    ):
         apartment = apartment_of(f"apartments/train/{seed:06d}")
         renderer.load(apartment)
         xy_all = (apartment.space.cells[:, ::-1] + 0.5) * 0.1
@@ -87,11 +91,15 @@ def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
         np.savez(file, **arrays)
 
 
-def _frames(renderer: Renderer, apartment: Apartment, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _frames(
+    renderer: Renderer, apartment: Apartment, xy: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """RGB, depth and, for each view, which furniture shows (bits of a uint64)."""
     rgb, depth, ids = renderer.render(float(xy[0]), float(xy[1]), 0.0)
     _, seen = view_labels(apartment, ids, depth)
-    bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(1, dtype=np.uint64)
+    bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(
+        1, dtype=np.uint64
+    )
     return rgb, depth, bits
 
 
@@ -106,7 +114,11 @@ def _features(agent: TopologicalAgent, frames: list[tuple]) -> dict[str, np.ndar
         for row, grid in enumerate(logits.float().numpy(), first):
             found = select(grid)
             chosen[row, : len(found)] = found
-    return {"views": np.concatenate(views), "waypoints": chosen, "seen": np.stack([frame[2] for frame in frames])}
+    return {
+        "views": np.concatenate(views),
+        "waypoints": chosen,
+        "seen": np.stack([frame[2] for frame in frames]),
+    }
 
 
 def load(folder: Path, seed: int) -> ApartmentCache:
@@ -132,7 +144,9 @@ class CachedWorld:
     def look(self) -> tuple[torch.Tensor, np.ndarray]:
         waypoints = self.cache.waypoints[self.index]
         waypoints = waypoints[waypoints[:, 1] > 0].copy()
-        waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (2 * np.pi)
+        waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (
+            2 * np.pi
+        )
         shows = (self.cache.seen[self.index] & self.landmarks) > 0
         self.shown.append(np.roll(shows.astype(np.float32), self.turn))
         return self.cache.views[self.index].float().roll(self.turn, 0), waypoints

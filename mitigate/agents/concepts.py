@@ -37,7 +37,9 @@ def band(size: int) -> tuple[int, int]:
     return int(round(size / 2 - half)), int(round(size / 2 + half))
 
 
-def view_labels(apartment: Apartment, ids: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def view_labels(
+    apartment: Apartment, ids: np.ndarray, depth: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Labels of a panorama from its face ids.
 
     Returns concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1} and seen bool ``[12, furniture]``:
@@ -45,21 +47,38 @@ def view_labels(apartment: Apartment, ids: np.ndarray, depth: np.ndarray) -> tup
     """
     low, high = band(ids.shape[2])
     instance, room, category, colour, kind = _tables(apartment.scene_id, apartment)
-    return _label(ids, depth[..., 0], low, high, instance, room, category, colour, kind, len(CATEGORIES), len(COLOUR_NAMES), len(CONCEPTS))
+    return _label(
+        ids,
+        depth[..., 0],
+        low,
+        high,
+        instance,
+        room,
+        category,
+        colour,
+        kind,
+        len(CATEGORIES),
+        len(COLOUR_NAMES),
+        len(CONCEPTS),
+    )
 
 
 @lru_cache(maxsize=1024)
 def _tables(scene_id: str, apartment: Apartment) -> tuple[np.ndarray, ...]:
     furniture = apartment.furniture
     category = np.array([CATEGORIES.index(p.category) for p in furniture], np.int64)
-    colour = np.array([COLOUR_NAMES.index(p.colour) if p.colour else -1 for p in furniture], np.int64)
+    colour = np.array(
+        [COLOUR_NAMES.index(p.colour) if p.colour else -1 for p in furniture], np.int64
+    )
     kind = np.array([ROOM_KINDS.index(r.kind) for r in apartment.rooms], np.int64)
     faces = apartment.faces
     return faces.instance.astype(np.int64), faces.room.astype(np.int64), category, colour, kind
 
 
 @njit(cache=True)
-def _label(ids, depth, low, high, instance, room, category, colour, kind, things, colours, concepts):  # type: ignore[no-untyped-def]
+def _label(
+    ids, depth, low, high, instance, room, category, colour, kind, things, colours, concepts
+):  # type: ignore[no-untyped-def]
     views, rows = ids.shape[0], ids.shape[1]
     out = np.zeros((views, concepts), np.float32)
     seen = np.zeros((views, category.shape[0]), np.bool_)

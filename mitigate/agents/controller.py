@@ -31,7 +31,9 @@ class Controller:
         if self._last is not None:
             self._blocked = self._blocked + 1 if np.hypot(*(xy - self._last)) < _STUCK else 0
             self._last = None
-        while self.route and (np.hypot(*(self.route[0] - xy)) < _ARRIVED or self._blocked >= _PATIENCE):
+        while self.route and (
+            np.hypot(*(self.route[0] - xy)) < _ARRIVED or self._blocked >= _PATIENCE
+        ):
             self.route.pop(0)
             self._blocked = 0
         self._budget -= 1

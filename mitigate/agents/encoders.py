@@ -39,7 +39,9 @@ class Encoder(nn.Module):
 
     def __init__(self, channels: int, stem: int, widths: tuple[int, ...]) -> None:
         super().__init__()
-        self.stem = nn.Sequential(nn.Conv2d(channels, stem, 3, 2, 1, bias=False), nn.GroupNorm(8, stem), nn.ReLU())
+        self.stem = nn.Sequential(
+            nn.Conv2d(channels, stem, 3, 2, 1, bias=False), nn.GroupNorm(8, stem), nn.ReLU()
+        )
         blocks = [Block(a, b, 2) for a, b in zip((stem, *widths[:-1]), widths, strict=True)]
         self.stages = nn.ModuleList(blocks)
 
@@ -54,7 +56,9 @@ class Encoder(nn.Module):
 class RGBEncoder(Encoder):
     """uint8 ``[n, H, W, 3]`` to (features ``[n, width]``, concept logits ``[n, len(CONCEPTS)]``)."""
 
-    def __init__(self, stem: int = 32, widths: tuple[int, ...] = (48, 96, 160), width: int = 128) -> None:
+    def __init__(
+        self, stem: int = 32, widths: tuple[int, ...] = (48, 96, 160), width: int = 128
+    ) -> None:
         super().__init__(3, stem, tuple(widths))
         self.gather = nn.Conv2d(widths[-1], 2 * widths[-1], _GRID, groups=widths[-1])
         self.embed = nn.Linear(2 * widths[-1], width)
@@ -73,7 +77,9 @@ class DepthEncoder(Encoder):
     Invalid depth (0, NaN, infinite) enters as 0 with its own mask channel.
     """
 
-    def __init__(self, stem: int = 24, widths: tuple[int, ...] = (32, 64, 96), width: int = 128) -> None:
+    def __init__(
+        self, stem: int = 24, widths: tuple[int, ...] = (32, 64, 96), width: int = 128
+    ) -> None:
         super().__init__(2, stem, tuple(widths))
         self.rows = nn.Conv2d(widths[-1], widths[-1], (_GRID, 1))
         self.embed = nn.Linear(_GRID * widths[-1], width)

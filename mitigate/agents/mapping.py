@@ -83,8 +83,15 @@ class TopologicalMap:
         """The choice at a pose, after ``add``."""
         distance, _ = self._dijkstra()
         ids = list(self.ghosts)
-        travel = np.array([min(distance[p] + self._gap(p, g) for p in self.ghosts[g].parents) for g in ids], np.float32)
-        places = [self.positions[self.current], *self.positions, *(self.ghosts[g].position for g in ids)]
+        travel = np.array(
+            [min(distance[p] + self._gap(p, g) for p in self.ghosts[g].parents) for g in ids],
+            np.float32,
+        )
+        places = [
+            self.positions[self.current],
+            *self.positions,
+            *(self.ghosts[g].position for g in ids),
+        ]
         kinds = [_STOP, *[_NODE] * len(self.positions), *[_GHOST] * len(ids)]
         routes = np.concatenate([[0.0], distance, travel])
         sightings = np.full((len(ids), SIGHTINGS, 2), -1, np.int64)
@@ -92,9 +99,13 @@ class TopologicalMap:
             seen = self.ghosts[g].sightings[-SIGHTINGS:]
             sightings[row, : len(seen)] = seen
         geometry = self._geometry(pose, np.array(places), np.array(kinds), routes)
-        return Decision(self.panoramas - 1, np.array(self.node_panorama), sightings, geometry, ids, travel)
+        return Decision(
+            self.panoramas - 1, np.array(self.node_panorama), sightings, geometry, ids, travel
+        )
 
-    def _geometry(self, pose: np.ndarray, places: np.ndarray, kinds: np.ndarray, routes: np.ndarray) -> np.ndarray:
+    def _geometry(
+        self, pose: np.ndarray, places: np.ndarray, kinds: np.ndarray, routes: np.ndarray
+    ) -> np.ndarray:
         assert self.start is not None
         out = np.zeros((len(places), GEOMETRY), np.float32)
         for column, origin in ((0, pose), (4, self.start)):
@@ -102,7 +113,9 @@ class TopologicalMap:
             length = np.hypot(offset[:, 0], offset[:, 1])
             angle = np.arctan2(-offset[:, 0], offset[:, 1]) - origin[2]
             near = np.minimum(length / 0.3, 1.0)
-            out[:, column : column + 4] = np.stack([np.sin(angle) * near, np.cos(angle) * near, length / 3, length < 0.3], 1)
+            out[:, column : column + 4] = np.stack(
+                [np.sin(angle) * near, np.cos(angle) * near, length / 3, length < 0.3], 1
+            )
         out[:, 8] = routes / 5
         out[np.arange(len(places)), 9 + kinds] = 1.0
         return out
@@ -120,7 +133,9 @@ class TopologicalMap:
         if self.current >= 0 and node != self.current:
             self._join(self.current, node)
         self.current = node
-        for ghost in [g for g, item in self.ghosts.items() if np.hypot(*(item.position - position)) < MERGE]:
+        for ghost in [
+            g for g, item in self.ghosts.items() if np.hypot(*(item.position - position)) < MERGE
+        ]:
             for parent in self.ghosts[ghost].parents:
                 self._join(parent, node)
             del self.ghosts[ghost]

@@ -53,7 +53,10 @@ def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) 
         nodes[row, :a] = d.nodes + offset
         flat = (d.sightings[..., 0] + offset) * VIEWS + d.sightings[..., 1]
         sightings[row, :c] = np.where(d.sightings[..., 0] >= 0, flat, -1)
-        geometry[row, : 1 + a], geometry[row, 1 + n : 1 + n + c] = d.geometry[: 1 + a], d.geometry[1 + a :]
+        geometry[row, : 1 + a], geometry[row, 1 + n : 1 + n + c] = (
+            d.geometry[: 1 + a],
+            d.geometry[1 + a :],
+        )
         valid[row, : 1 + a] = valid[row, 1 + n : 1 + n + c] = True
         allowed[row, 0] = allowed[row, 1 + n : 1 + n + c] = True
     current = np.array([d.panorama + o for d, o in zip(decisions, offsets, strict=True)])
@@ -68,10 +71,17 @@ class Attention(nn.Module):
     def __init__(self, width: int, heads: int) -> None:
         super().__init__()
         self.heads, self.scale = heads, (width // heads) ** -0.5
-        self.q, self.kv, self.out = nn.Linear(width, width), nn.Linear(width, 2 * width), nn.Linear(width, width)
+        self.q, self.kv, self.out = (
+            nn.Linear(width, width),
+            nn.Linear(width, 2 * width),
+            nn.Linear(width, width),
+        )
 
-    def forward(self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None) -> Tensor:
+    def forward(
+        self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
+    ) -> Tensor:
         """x [B, n, width] looks at memory [B, m, width], or at ``memory[rows]`` (projected once)."""
+
         def split(t: Tensor) -> Tensor:
             return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
 
@@ -95,7 +105,9 @@ class Layer(nn.Module):
         self.ff = nn.Sequential(nn.Linear(width, 3 * width), nn.GELU(), nn.Linear(3 * width, width))
         self.dropout = nn.Dropout(dropout)
 
-    def forward(self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None) -> Tensor:
+    def forward(
+        self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None
+    ) -> Tensor:
         """``text``: features [E, L, width], mask [B, L] and the row of each x: int [B]."""
         if self.cross is not None and self.cross_norm is not None and text is not None:
             x = x + self.cross(self.cross_norm(x), *text)
@@ -123,7 +135,9 @@ class Planner(nn.Module):
         self.yaw = nn.Linear(4, width)
         self.panorama = nn.ModuleList([Layer(width, heads, False, dropout)])
         self.view_norm = nn.LayerNorm(width)
-        self.geometry = nn.Sequential(nn.Linear(GEOMETRY, width), nn.GELU(), nn.Linear(width, width))
+        self.geometry = nn.Sequential(
+            nn.Linear(GEOMETRY, width), nn.GELU(), nn.Linear(width, width)
+        )
         self.view_kind = nn.Parameter(torch.zeros(width))
         self.layers = nn.ModuleList([Layer(width, heads, True, dropout) for _ in range(layers)])
         self.norm = nn.LayerNorm(width)
@@ -132,7 +146,11 @@ class Planner(nn.Module):
         self.distance = nn.Linear(width, 1)
         self.grounding = nn.Linear(width, 1)
         yaws = torch.arange(VIEWS) * math.radians(VIEW_STEP_DEGREES)
-        self.register_buffer("yaws", torch.stack([yaws.sin(), yaws.cos(), (2 * yaws).sin(), (2 * yaws).cos()], 1), persistent=False)
+        self.register_buffer(
+            "yaws",
+            torch.stack([yaws.sin(), yaws.cos(), (2 * yaws).sin(), (2 * yaws).cos()], 1),
+            persistent=False,
+        )
 
     def read(self, tokens: Tensor) -> tuple[Tensor, Tensor]:
         """Token ids [E, L] to (text features [E, L, width], mask [E, L])."""
@@ -149,12 +167,21 @@ class Planner(nn.Module):
         seen = concepts[..., THINGS] @ meaning[THINGS]
         close = concepts[..., NEAR] @ meaning[NEAR]
         others = concepts[..., NEAR.stop :] @ meaning[NEAR.stop :]
-        x = self.seen(seen) + self.close(close) + self.kinds(others) + self.rgb(rgb) + self.depth(depth) + self.yaw(self.yaws)
+        x = (
+            self.seen(seen)
+            + self.close(close)
+            + self.kinds(others)
+            + self.rgb(rgb)
+            + self.depth(depth)
+            + self.yaw(self.yaws)
+        )
         for layer in self.panorama:
             x = layer(x, None)
         return self.view_norm(x)
 
-    def forward(self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch) -> dict[str, Tensor]:
+    def forward(
+        self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch
+    ) -> dict[str, Tensor]:
         """Scores of every token.
 
         Args: text from ``read``; views [P, 12, width] from ``look``; the padded decisions.
@@ -170,7 +197,9 @@ class Planner(nn.Module):
             x = layer(x, mask, (text[0], text[1][batch.episode], batch.episode))
         x = self.norm(x)
         tokens, current = x[:, :size], x[:, size:]
-        logits = torch.cat([self.stop(tokens[:, :1]), self.score(tokens[:, 1:])], 1).squeeze(-1).float()
+        logits = (
+            torch.cat([self.stop(tokens[:, :1]), self.score(tokens[:, 1:])], 1).squeeze(-1).float()
+        )
         logits = logits.masked_fill(~batch.allowed, float("-inf"))
         return {"logits": logits, "distance": self.distance(tokens).squeeze(-1).float(),
                 "grounding": self.grounding(current).squeeze(-1).float(), "nodes": tokens}  # fmt: skip

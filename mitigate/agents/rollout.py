@@ -91,7 +91,9 @@ def roll_out(planner: Planner, tokens: torch.Tensor, worlds: list[World], look: 
         for i, (views, waypoints) in zip(running, seen, strict=True):
             traces[i].views.append(views)
             graphs[i].add(worlds[i].pose(), waypoints)
-            traces[i].steps.append(oracle(worlds[i], graphs[i], graphs[i].decision(worlds[i].pose())))
+            traces[i].steps.append(
+                oracle(worlds[i], graphs[i], graphs[i].decision(worlds[i].pose()))
+            )
         running = [i for i in running if traces[i].steps[-1].target[0] < 1.0]
         own = [i for i in running if rng.random() >= follow_oracle]
         chosen = {i: _draw(traces[i].steps[-1].target[1:], rng) for i in running}
@@ -100,7 +102,9 @@ def roll_out(planner: Planner, tokens: torch.Tensor, worlds: list[World], look: 
             for row, i in enumerate(running):
                 tokens_of[i].append(fresh[row])
         if own:
-            chosen.update(zip(own, _planned(planner, text, own, traces, tokens_of, rng), strict=True))
+            chosen.update(
+                zip(own, _planned(planner, text, own, traces, tokens_of, rng), strict=True)
+            )
         for i in running:
             ghost = traces[i].steps[-1].decision.ghosts[chosen[i]]
             route = graphs[i].route(ghost)

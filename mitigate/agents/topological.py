@@ -35,11 +35,15 @@ class TopologicalAgent(nn.Module):
     Raises ValueError for an unknown name in ``blind``.
     """
 
-    def __init__(self, width: int = 128, planner: dict[str, Any] | None = None, blind: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, width: int = 128, planner: dict[str, Any] | None = None, blind: tuple[str, ...] = ()
+    ) -> None:
         super().__init__()
         unknown = set(blind) - set(SENSORS)
         if unknown:
-            raise ValueError(f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSORS)}.")
+            raise ValueError(
+                f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSORS)}."
+            )
         self.blind = tuple(blind)
         self.rgb_encoder = RGBEncoder(width=width)
         self.depth_encoder = DepthEncoder(width=width)
@@ -64,7 +68,9 @@ class TopologicalAgent(nn.Module):
         rgb_features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
         depth_features = self.depth_encoder(depth.flatten(0, 1)).unflatten(0, (-1, VIEWS))
         concepts = concepts.unflatten(0, (-1, VIEWS))
-        views = torch.cat([rgb_features.unflatten(0, (-1, VIEWS)), concepts.sigmoid(), depth_features], -1)
+        views = torch.cat(
+            [rgb_features.unflatten(0, (-1, VIEWS)), concepts.sigmoid(), depth_features], -1
+        )
         return views, concepts, self.waypoint_head(depth_features)
 
     def tokens(self, instructions: list[str]) -> Tensor:
@@ -103,7 +109,9 @@ class TopologicalAgent(nn.Module):
         pose = np.asarray(observation[POSE], np.float64)
         self.map.add(pose, select(waypoints[0].float().cpu().numpy()))
         decision = self.map.decision(pose)
-        logits = self.planner(self._text, torch.cat(self._views), _to(collate([decision], [0], [0]), self.device))["logits"][0]
+        logits = self.planner(
+            self._text, torch.cat(self._views), _to(collate([decision], [0], [0]), self.device)
+        )["logits"][0]
         self.decisions += 1
         self._stop_scores.append((float(logits.softmax(0)[0]), self.map.current))
         best = int(logits.argmax())

@@ -35,7 +35,9 @@ class CorruptObservation(Transform):
     def _call(self, next_tensordict: TensorDictBase) -> TensorDictBase:
         return self._corrupt(next_tensordict)
 
-    def _reset(self, tensordict: TensorDictBase | None, tensordict_reset: TensorDictBase) -> TensorDictBase:
+    def _reset(
+        self, tensordict: TensorDictBase | None, tensordict_reset: TensorDictBase
+    ) -> TensorDictBase:
         return self._corrupt(tensordict_reset)
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
@@ -56,7 +58,12 @@ class CorruptObservation(Transform):
         flat = data.select(RGB, DEPTH, POSE, EPISODE, FRAME, strict=False).reshape(-1)
         hurt = [self._instant(instant) for instant in flat.unbind(0)]
         for name in hurt[0]:
-            data.set(name, torch.stack([frames[name] for frames in hurt]).reshape(data[name].shape).to(data[name].device))
+            data.set(
+                name,
+                torch.stack([frames[name] for frames in hurt])
+                .reshape(data[name].shape)
+                .to(data[name].device),
+            )
         return data
 
     def _instant(self, instant: TensorDictBase) -> dict[str, torch.Tensor]:

@@ -44,7 +44,9 @@ class OracleAgent:
             return STOP
         turns = sorted(range(-12, 13), key=abs)
         headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
-        ends = [simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings]
+        ends = [
+            simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings
+        ]
         best = turns[int(np.argmin([simulator.distance_to_goal(end) for end in ends]))]
         return FORWARD if best == 0 else LEFT if best > 0 else RIGHT
 
@@ -62,7 +64,9 @@ class RandomAgent:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--split", default="val_unseen", choices=["val_seen", "val_unseen"])
     parser.add_argument("--task", default="vln", choices=["vln", "ogn"])
     parser.add_argument("--episodes", type=int, default=300)
@@ -74,9 +78,14 @@ def main() -> None:
     for name, agent in controls.items():
         label = {"agent": name, "name": name, "corruption": "clean", "severity": 0.0, "split": args.split,
                  "seed": 0, "suite": SUITE_VERSION, "rule": metrics.rule(SUCCESS_METRES)}  # fmt: skip
-        found = [label | {"episode_id": e.episode_id} | run_episode(agent, simulator, e, CLEAN, 0) for e in tqdm(episodes, desc=name)]
+        found = [
+            label | {"episode_id": e.episode_id} | run_episode(agent, simulator, e, CLEAN, 0)
+            for e in tqdm(episodes, desc=name)
+        ]
         rows.append(args.out, found)
-        print(f"{name}: SR {np.mean([r['success'] for r in found]):.3f}  SPL {np.mean([r['spl'] for r in found]):.3f}  N {len(found)}")
+        print(
+            f"{name}: SR {np.mean([r['success'] for r in found]):.3f}  SPL {np.mean([r['spl'] for r in found]):.3f}  N {len(found)}"
+        )
 
 
 if __name__ == "__main__":

@@ -115,7 +115,9 @@ def test_a_world_turned_in_the_cache_is_the_one_rendered_at_that_heading(stored)
 
 def test_waypoints_in_the_cache_point_to_the_same_places_at_every_heading(stored):
     _, features, _ = stored
-    world = cache.CachedWorld(make_episode(apartment_of("apartments/train/000000"), "vln", 1), features)
+    world = cache.CachedWorld(
+        make_episode(apartment_of("apartments/train/000000"), "vln", 1), features
+    )
 
     def ends() -> np.ndarray:
         _, waypoints = world.look()

@@ -47,7 +47,9 @@ def test_two_workers_give_the_rows_of_one(finished, tmp_path):
 def test_a_row_says_what_it_measured(finished):
     _, rows = finished
     assert len(rows) == 2 * len(CONDITIONS)
-    assert {(r["corruption"], r["severity"]) for r in rows} == {(c.name, c.severity) for c in CONDITIONS}
+    assert {(r["corruption"], r["severity"]) for r in rows} == {
+        (c.name, c.severity) for c in CONDITIONS
+    }
     for row in rows:
         assert row["name"] == "test" and row["split"] == "val_seen" and len(row["agent"]) == 12
         assert row["success"] in (0, 1) and 0 <= row["spl"] <= row["success"]
@@ -63,7 +65,9 @@ def test_corruptions_change_what_the_agent_does(finished):
     assert sum(changed) > len(changed) / 3
 
 
-def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(finished, tmp_path, monkeypatch):
+def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(
+    finished, tmp_path, monkeypatch
+):
     folder, rows = finished
     lines = (folder / "rows.jsonl").read_text().splitlines(keepends=True)
     (tmp_path / "rows.jsonl").write_text("".join(lines[:20]) + lines[20][:60])
@@ -117,7 +121,9 @@ class Watcher:
         return 2 if len(self.seen) < 3 else STOP
 
 
-@pytest.mark.parametrize(("name", "hurt", "whole"), [("low_light", RGB, DEPTH), ("multipath", DEPTH, RGB)])
+@pytest.mark.parametrize(
+    ("name", "hurt", "whole"), [("low_light", RGB, DEPTH), ("multipath", DEPTH, RGB)]
+)
 def test_a_corruption_hurts_its_sensor_at_every_look(name, hurt, whole):
     episode, simulator, agent = load_episodes("val_seen")[5], Simulator(SIZE), Watcher()
     run_episode(agent, simulator, episode, CLEAN, 0)

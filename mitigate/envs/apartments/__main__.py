@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
+from mitigate.envs.apartments.apartment import Apartment
 from mitigate.envs.apartments.drawing import draw_path, draw_plan, strip
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import TASKS, from_vlnce, make_episode
-from mitigate.envs.apartments.apartment import Apartment
 from mitigate.keys import DEPTH, RGB
 
 
@@ -30,35 +30,54 @@ def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
     figure = Figure(figsize=(10, 11.5), layout="constrained")
     axes = figure.subplots(3, 1, height_ratios=(1, 1, 3.2))
     axes[0].imshow(strip(seen[RGB]))
-    axes[0].set_title(f"panorama at the start, straight ahead in the middle ({made.scene_id})", fontsize=10)
+    axes[0].set_title(
+        f"panorama at the start, straight ahead in the middle ({made.scene_id})", fontsize=10
+    )
     depth = axes[1].imshow(strip(seen[DEPTH])[..., 0], cmap="viridis_r")
     figure.colorbar(depth, ax=list(axes[:2]), label="depth [m]", fraction=0.03, pad=0.01)
     for axis in axes[:2]:
         axis.axis("off")
     draw_plan(axes[2], simulator.apartment)
-    draw_path(axes[2], np.stack([from_vlnce(p) for p in made.reference_path]), "#d62728", "reference path")
+    draw_path(
+        axes[2], np.stack([from_vlnce(p) for p in made.reference_path]), "#d62728", "reference path"
+    )
     arrow = 0.6 * np.array([-np.sin(simulator.heading), np.cos(simulator.heading)])
     axes[2].arrow(*simulator.xy, *arrow, width=0.05, color="#1f77b4", zorder=8)
     figure.suptitle("\n".join(textwrap.wrap(made.instruction.text, 100)), fontsize=11)
     out.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=80, facecolor="white")
-    print(f"{made.episode_id}: {made.geodesic_distance:.1f} m. {made.instruction.text}\nwrote {out}")
+    print(
+        f"{made.episode_id}: {made.geodesic_distance:.1f} m. {made.instruction.text}\nwrote {out}"
+    )
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(prog="python -m mitigate.envs.apartments", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python -m mitigate.envs.apartments",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("command", choices=["show"])
-    parser.add_argument("settings", nargs="*", metavar="key=value", help="seed=7 episode=0 task=vln size=192 out=runs/show.png")
+    parser.add_argument(
+        "settings",
+        nargs="*",
+        metavar="key=value",
+        help="seed=7 episode=0 task=vln size=192 out=runs/show.png",
+    )
     args = parser.parse_args()
     values = {"seed": "7", "episode": "0", "task": "vln", "size": "192", "out": ""}
     for setting in args.settings:
         key, _, value = setting.partition("=")
         if key not in values or not value:
-            parser.error(f"{setting!r} is not a setting; write key=value with a key of {', '.join(values)}")
+            parser.error(
+                f"{setting!r} is not a setting; write key=value with a key of {', '.join(values)}"
+            )
         values[key] = value
     if values["task"] not in TASKS:
         parser.error(f"task={values['task']} is unknown; choose one of {', '.join(TASKS)}")
-    out = Path(values["out"] or f"runs/show/{values['task']}-{values['seed']}-{values['episode']}.png")
+    out = Path(
+        values["out"] or f"runs/show/{values['task']}-{values['seed']}-{values['episode']}.png"
+    )
     try:
         show(int(values["seed"]), int(values["episode"]), values["task"], int(values["size"]), out)
     except ValueError as error:

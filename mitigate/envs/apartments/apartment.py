@@ -9,7 +9,18 @@ import numpy as np
 
 from mitigate.envs.apartments.furniture import CATALOGUE, CATEGORIES, ROOM_KINDS
 from mitigate.envs.apartments.layout import (
-    HEIGHT, LINTEL, WALL, DOOR, Door, Furniture, Rect, Room, furnish, name_rooms, place_doors, split_rooms,
+    DOOR,
+    HEIGHT,
+    LINTEL,
+    WALL,
+    Door,
+    Furniture,
+    Rect,
+    Room,
+    furnish,
+    name_rooms,
+    place_doors,
+    split_rooms,
 )  # fmt: skip
 from mitigate.envs.apartments.navigation import CELL, FreeSpace
 from mitigate.envs.apartments.palette import COLOUR_NAMES, PATTERNS, Palette, palette, split_of
@@ -67,7 +78,9 @@ class Apartment:
         for index, room in enumerate(self.rooms):
             if room.holds(xy[0], xy[1]):
                 return index
-        centres = np.array([((r.rect[0] + r.rect[2]) / 2, (r.rect[1] + r.rect[3]) / 2) for r in self.rooms])
+        centres = np.array(
+            [((r.rect[0] + r.rect[2]) / 2, (r.rect[1] + r.rect[3]) / 2) for r in self.rooms]
+        )
         return int(np.argmin(((centres - xy) ** 2).sum(1)))
 
     @cached_property
@@ -89,7 +102,11 @@ class Apartment:
                 _fill(blocked, _pad(rect, WALL / 2), True)
         for door in self.doors:
             half = (WALL, DOOR / 2) if door.axis == 0 else (DOOR / 2, WALL)
-            _fill(blocked, (door.x - half[0], door.y - half[1], door.x + half[0], door.y + half[1]), False)
+            _fill(
+                blocked,
+                (door.x - half[0], door.y - half[1], door.x + half[0], door.y + half[1]),
+                False,
+            )
         for piece in self.furniture:
             if CATALOGUE[piece.category].solid:
                 _fill(blocked, piece.rect, True)
@@ -107,7 +124,9 @@ def apartment_of(scene_id: str) -> Apartment:
         )
     apartment = Apartment(int(parts[2]))
     if apartment.split != parts[1]:
-        raise ValueError(f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}, not {parts[1]!r}.")
+        raise ValueError(
+            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}, not {parts[1]!r}."
+        )
     return apartment
 
 
@@ -141,7 +160,16 @@ class _FaceBuilder:
         for instance, piece in enumerate(self.apartment.furniture):
             self._piece(instance, piece)
         columns = list(zip(*self.rows, strict=True))
-        kinds = (np.float32, np.float32, np.float32, np.int16, np.float32, np.int16, np.int16, np.int16)
+        kinds = (
+            np.float32,
+            np.float32,
+            np.float32,
+            np.int16,
+            np.float32,
+            np.int16,
+            np.int16,
+            np.int16,
+        )
         return Faces(*(np.array(c, k) for c, k in zip(columns, kinds, strict=True)))
 
     def _add(self, axis: int, sign: int, at: float, low: tuple[float, float], high: tuple[float, float], colour: np.ndarray,
@@ -164,14 +192,26 @@ class _FaceBuilder:
     def _room(self, index: int) -> None:
         room, rng, paint = self.apartment.rooms[index], self.rng, self.paint
         x0, y0, x1, y1 = room.rect
-        walls, floors = paint.walls[rng.integers(len(paint.walls))], paint.floors[rng.integers(len(paint.floors))]
+        walls, floors = (
+            paint.walls[rng.integers(len(paint.walls))],
+            paint.floors[rng.integers(len(paint.floors))],
+        )
         wet = room.kind in ("bathroom", "kitchen")
-        wall_pattern = PATTERNS.index(str(rng.choice(["tiles", "plain"] if wet else ["plain", "noise", "stripes"])))
-        floor_pattern = PATTERNS.index(str(rng.choice(["tiles", "checks"] if wet else ["planks", "noise", "speckle"])))
+        wall_pattern = PATTERNS.index(
+            str(rng.choice(["tiles", "plain"] if wet else ["plain", "noise", "stripes"]))
+        )
+        floor_pattern = PATTERNS.index(
+            str(rng.choice(["tiles", "checks"] if wet else ["planks", "noise", "speckle"]))
+        )
         self._add(2, 1, 0.0, (x0, y0), (x1, y1), floors, floor_pattern, index)
         self._add(2, -1, HEIGHT, (x0, y0), (x1, y1), np.ones(3), PATTERNS.index("plain"), index)
         inset = WALL / 2
-        for axis, sign, at in ((0, 1, x0 + inset), (0, -1, x1 - inset), (1, 1, y0 + inset), (1, -1, y1 - inset)):
+        for axis, sign, at in (
+            (0, 1, x0 + inset),
+            (0, -1, x1 - inset),
+            (1, 1, y0 + inset),
+            (1, -1, y1 - inset),
+        ):
             low, high = (y0, y1) if axis == 0 else (x0, x1)
             gaps = sorted(self._gaps(index, axis, at))
             edges = [low, *(e for gap in gaps for e in gap), high]
@@ -190,10 +230,28 @@ class _FaceBuilder:
         centre, along = (door.x, door.y)[door.axis], (door.x, door.y)[1 - door.axis]
         thick = (centre - WALL / 2, centre + WALL / 2)
         for sign, at in ((1, along - DOOR / 2), (-1, along + DOOR / 2)):
-            self._add(1 - door.axis, sign, at, (thick[0], 0.0), (thick[1], LINTEL), wood, plain, door.rooms[0])
+            self._add(
+                1 - door.axis,
+                sign,
+                at,
+                (thick[0], 0.0),
+                (thick[1], LINTEL),
+                wood,
+                plain,
+                door.rooms[0],
+            )
         low, high = [thick[0], along - DOOR / 2], [thick[1], along + DOOR / 2]
         order = (0, 1) if door.axis == 0 else (1, 0)
-        self._add(2, -1, LINTEL, (low[order[0]], low[order[1]]), (high[order[0]], high[order[1]]), wood, plain, door.rooms[0])
+        self._add(
+            2,
+            -1,
+            LINTEL,
+            (low[order[0]], low[order[1]]),
+            (high[order[0]], high[order[1]]),
+            wood,
+            plain,
+            door.rooms[0],
+        )
 
     def _piece(self, instance: int, piece: Furniture) -> None:
         category = CATALOGUE[piece.category]

@@ -57,7 +57,9 @@ class ApartmentsEnv(EnvBase):
                  ogn_share: float = 0.15, worker: int = 0, workers: int = 1, size: int = 64) -> None:  # fmt: skip
         super().__init__(device="cpu", batch_size=[])
         if not 0 <= worker < workers:
-            raise ValueError(f"worker={worker} of workers={workers}: worker counts from 0 to {workers - 1}.")
+            raise ValueError(
+                f"worker={worker} of workers={workers}: worker counts from 0 to {workers - 1}."
+            )
         self.episodes = None if episodes is None else _listed(episodes)
         self.seed, self.apartments, self.ogn_share = seed, apartments, ogn_share
         self.worker, self.workers, self.size = worker, workers, size
@@ -87,7 +89,9 @@ class ApartmentsEnv(EnvBase):
         )
         self.action_spec = Categorical(ACTIONS, shape=(), dtype=torch.int64)
         self.reward_spec = Unbounded(shape=(1,), dtype=torch.float32)
-        self.done_spec = Composite({name: flag.clone() for name in ("done", "terminated", "truncated")})
+        self.done_spec = Composite(
+            {name: flag.clone() for name in ("done", "terminated", "truncated")}
+        )
 
     def _reset(self, tensordict: TensorDictBase | None = None, **kwargs: object) -> TensorDictBase:
         episode, self._name = self._episode(self._number)
@@ -117,7 +121,11 @@ class ApartmentsEnv(EnvBase):
     def _state(self) -> TensorDictBase:
         simulator = self.simulator
         seen = {name: torch.from_numpy(array) for name, array in simulator.observe().items()}
-        over = {"done": simulator.done, "terminated": simulator.stopped, "truncated": simulator.done and not simulator.stopped}
+        over = {
+            "done": simulator.done,
+            "terminated": simulator.stopped,
+            "truncated": simulator.done and not simulator.stopped,
+        }
         return TensorDict(
             {
                 **seen,
@@ -134,5 +142,7 @@ def _listed(episodes: Path | str | Sequence[Episode]) -> list[Episode]:
     named = isinstance(episodes, Path | str)
     found = list(read_episodes(episodes)) if named else list(episodes)
     if not found:
-        raise ValueError(f"There is no episode in {episodes if named else 'the list'}: give at least one, or None to draw from the training seeds.")
+        raise ValueError(
+            f"There is no episode in {episodes if named else 'the list'}: give at least one, or None to draw from the training seeds."
+        )
     return found

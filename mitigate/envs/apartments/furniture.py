@@ -9,8 +9,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-WOOD, DARK, STEEL, PORCELAIN = (0.55, 0.38, 0.22), (0.07, 0.07, 0.08), (0.62, 0.66, 0.70), (0.95, 0.95, 0.97)
-LEAF, LINEN, GLASS, SOIL = (0.16, 0.50, 0.15), (0.93, 0.92, 0.88), (0.20, 0.25, 0.35), (0.60, 0.30, 0.18)
+WOOD, DARK, STEEL, PORCELAIN = (
+    (0.55, 0.38, 0.22),
+    (0.07, 0.07, 0.08),
+    (0.62, 0.66, 0.70),
+    (0.95, 0.95, 0.97),
+)
+LEAF, LINEN, GLASS, SOIL = (
+    (0.16, 0.50, 0.15),
+    (0.93, 0.92, 0.88),
+    (0.20, 0.25, 0.35),
+    (0.60, 0.30, 0.18),
+)
 
 Part = tuple[float, float, float, float, float, float, object]
 
@@ -40,7 +50,9 @@ def _slats(w: float, d: float, levels: int, height: float) -> list[Part]:
         z = 0.12 + level * (height - 0.1) / levels
         for i in range(4):
             x = 0.06 + i * (w - 0.12) / 4
-            rows.append((x, x + (w - 0.16) / 4, 0.05, d + 0.01, z, z + 0.24, paints[(i + level) % 4]))
+            rows.append(
+                (x, x + (w - 0.16) / 4, 0.05, d + 0.01, z, z + 0.24, paints[(i + level) % 4])
+            )
     return rows
 
 
@@ -89,7 +101,10 @@ CATEGORIES = tuple(CATALOGUE)
 
 # room kind -> (always present, chosen from); at most one of a category in a room except chairs
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
-    "bedroom": (("bed", "wardrobe"), ("lamp", "plant", "painting", "rug", "desk", "armchair", "tv")),
+    "bedroom": (
+        ("bed", "wardrobe"),
+        ("lamp", "plant", "painting", "rug", "desk", "armchair", "tv"),
+    ),
     "bathroom": (("toilet", "bathtub"), ("sink", "washing machine", "plant", "cabinet")),
     "kitchen": (("fridge", "stove"), ("sink", "cabinet", "table", "chair", "painting")),
     "living room": (("sofa", "tv"), ("armchair", "bookshelf", "plant", "lamp", "rug", "painting")),

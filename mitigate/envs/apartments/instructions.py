@@ -83,9 +83,13 @@ def name_of(apartment: Apartment, instance: int, coloured: bool = True) -> str:
     return f"{piece.colour} {piece.category}" if coloured and piece.colour else piece.category
 
 
-def describe(apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator) -> str:
+def describe(
+    apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
+) -> str:
     """An instruction for a path (float [n, 2], plan metres) that ends beside furniture ``target``."""
-    clauses = [_clause(apartment, event, rng) for event in _events(apartment, path, heading, target, rng)]
+    clauses = [
+        _clause(apartment, event, rng) for event in _events(apartment, path, heading, target, rng)
+    ]
     words = TEMPLATES[apartment.split]
     final = "stop_room" if rng.random() < 0.6 else "stop"
     room = apartment.rooms[apartment.furniture[target].room].kind
@@ -104,7 +108,9 @@ def _pick(options: tuple[str, ...], rng: np.random.Generator) -> str:
     return options[int(rng.integers(len(options)))]
 
 
-def _sentence(opener: str, clauses: list[str], joins: tuple[str, ...], rng: np.random.Generator) -> str:
+def _sentence(
+    opener: str, clauses: list[str], joins: tuple[str, ...], rng: np.random.Generator
+) -> str:
     text = opener + clauses[0]
     for clause in clauses[1:]:
         text += _pick(joins, rng) + clause
@@ -119,11 +125,15 @@ def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str
         return _pick(words[event.kind], rng)
     if event.kind in ("door", "enter"):
         here = apartment.rooms[event.thing].kind
-        return _pick(words[event.kind], rng).format(room=apartment.rooms[event.room].kind, here=here)
+        return _pick(words[event.kind], rng).format(
+            room=apartment.rooms[event.room].kind, here=here
+        )
     return _pick(words[event.kind], rng).format(thing=name_of(apartment, event.thing))
 
 
-def _events(apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator) -> list[Event]:
+def _events(
+    apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
+) -> list[Event]:
     """First turn, room changes with the turn before them, and one or two passed landmarks, in order."""
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -160,17 +170,30 @@ def turn_word(to: float, heading: float) -> str:
     return "left" if angle > 0 else "right"
 
 
-def _landmarks(apartment: Apartment, path: np.ndarray, along: np.ndarray, target: int, rng: np.random.Generator) -> list[Event]:
+def _landmarks(
+    apartment: Apartment, path: np.ndarray, along: np.ndarray, target: int, rng: np.random.Generator
+) -> list[Event]:
     found = []
     for instance, piece in enumerate(apartment.furniture):
         if instance == target:
             continue
         x0, y0, x1, y1 = piece.rect
-        gap = np.hypot(np.maximum(np.maximum(x0 - path[:, 0], path[:, 0] - x1), 0), np.maximum(np.maximum(y0 - path[:, 1], path[:, 1] - y1), 0))
+        gap = np.hypot(
+            np.maximum(np.maximum(x0 - path[:, 0], path[:, 0] - x1), 0),
+            np.maximum(np.maximum(y0 - path[:, 1], path[:, 1] - y1), 0),
+        )
         i = int(gap.argmin())
         same_room = apartment.room_at(path[i]) == piece.room
         if gap[i] < _NEAR_PATH and same_room and 0.8 < along[i] < along[-1] - 1.5:
-            found.append(Event(float(along[i]), _side(path, i, piece.centre, rng) if CATALOGUE[piece.category].solid else "past", thing=instance))
+            found.append(
+                Event(
+                    float(along[i]),
+                    _side(path, i, piece.centre, rng)
+                    if CATALOGUE[piece.category].solid
+                    else "past",
+                    thing=instance,
+                )
+            )
     keep = rng.permutation(len(found))[: int(rng.integers(0, 3))]
     return [found[k] for k in keep]
 

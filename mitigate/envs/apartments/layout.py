@@ -118,7 +118,9 @@ def name_rooms(rects: list[Rect], rng: np.random.Generator) -> list[Room]:
     return [Room(rect, kind) for rect, kind in zip(rects, kinds, strict=False)]
 
 
-def furnish(rooms: list[Room], doors: list[Door], colours: tuple[str, ...], rng: np.random.Generator) -> list[Furniture]:
+def furnish(
+    rooms: list[Room], doors: list[Door], colours: tuple[str, ...], rng: np.random.Generator
+) -> list[Furniture]:
     """Furniture of every room: its signature pieces first, then a few of the others."""
     placed: list[Furniture] = []
     for index, room in enumerate(rooms):
@@ -138,14 +140,24 @@ def furnish(rooms: list[Room], doors: list[Door], colours: tuple[str, ...], rng:
 def _place(category: Category, room: Room, index: int, taken: list[Rect], colours: tuple[str, ...],
            rng: np.random.Generator) -> Furniture | None:  # fmt: skip
     colour = str(rng.choice(colours)) if category.coloured else None
-    x0, y0, x1, y1 = (room.rect[0] + WALL / 2, room.rect[1] + WALL / 2, room.rect[2] - WALL / 2, room.rect[3] - WALL / 2)
+    x0, y0, x1, y1 = (
+        room.rect[0] + WALL / 2,
+        room.rect[1] + WALL / 2,
+        room.rect[2] - WALL / 2,
+        room.rect[3] - WALL / 2,
+    )
     for _ in range(24):
         turn = int(rng.integers(4))
-        w, d = (category.width, category.depth) if turn % 2 == 0 else (category.depth, category.width)
+        w, d = (
+            (category.width, category.depth) if turn % 2 == 0 else (category.depth, category.width)
+        )
         if w > x1 - x0 - 0.1 or d > y1 - y0 - 0.1:
             continue
         if category.name in ("rug", "table"):
-            x, y = (x0 + x1 - w) / 2 + rng.uniform(-0.3, 0.3), (y0 + y1 - d) / 2 + rng.uniform(-0.3, 0.3)
+            x, y = (
+                (x0 + x1 - w) / 2 + rng.uniform(-0.3, 0.3),
+                (y0 + y1 - d) / 2 + rng.uniform(-0.3, 0.3),
+            )
         else:
             along_x, along_y = rng.uniform(x0, x1 - w), rng.uniform(y0, y1 - d)
             x, y = [(along_x, y0), (x1 - w, along_y), (along_x, y1 - d), (x0, along_y)][turn]

@@ -20,7 +20,9 @@ class FreeSpace:
     """
 
     def __init__(self, blocked: np.ndarray, keep: tuple[float, float] | None = None) -> None:
-        distance = cv2.distanceTransform((~blocked).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        distance = cv2.distanceTransform(
+            (~blocked).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE
+        )
         free = distance * CELL > RADIUS + CELL / 2
         count, labels = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
         sizes = np.bincount(labels.ravel(), minlength=count)

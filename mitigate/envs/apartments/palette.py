@@ -13,7 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 SPLITS = ("train", "val_seen", "val_unseen")
-SEED_RANGES = {"train": (0, 100_000), "val_seen": (100_000, 110_000), "val_unseen": (200_000, 210_000)}
+SEED_RANGES = {
+    "train": (0, 100_000),
+    "val_seen": (100_000, 110_000),
+    "val_unseen": (200_000, 210_000),
+}
 _VARIANTS = {"train": 24, "val_seen": 8, "val_unseen": 8}
 
 # name -> (hue centre, hue spread, saturation range, value range); HSV in [0, 1]
@@ -82,7 +86,9 @@ def texture(pattern: str, variant: int) -> np.ndarray:
         cell = int(rng.choice([4, 8]))
         base -= 60.0 * ((x // cell + y // cell) % 2)
     elif pattern == "planks":
-        base -= rng.uniform(0, 60, n // 8)[y // 8] + 40.0 * (y % 8 == 0) + rng.uniform(0, 15, (n, n))
+        base -= (
+            rng.uniform(0, 60, n // 8)[y // 8] + 40.0 * (y % 8 == 0) + rng.uniform(0, 15, (n, n))
+        )
     elif pattern == "tiles":
         cell = int(rng.choice([8, 16]))
         base -= 90.0 * ((x % cell == 0) | (y % cell == 0))

@@ -50,7 +50,9 @@ class Renderer:
         flags = core.GraphicsPipe.BF_refuse_window
         self.buffer = self.engine.make_output(self.pipe, "panorama", 0, properties, window, flags)
         if self.buffer is None:
-            raise RuntimeError(f"Panda3D could not open an off-screen buffer with the {pipe} pipe; run `make doctor`.")
+            raise RuntimeError(
+                f"Panda3D could not open an off-screen buffer with the {pipe} pipe; run `make doctor`."
+            )
         self.image = core.Texture()
         self.buffer.add_render_texture(self.image, core.GraphicsOutput.RTM_copy_ram)
         self.buffer.set_clear_color((0, 0, 0, 1))
@@ -73,7 +75,9 @@ class Renderer:
         self.rig_ids.reparent_to(ids)
         self.current = apartment.seed
 
-    def render(self, x: float, y: float, heading: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def render(
+        self, x: float, y: float, heading: float
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """(rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], face ids int32 [12, S, S])."""
         for rig in (self.rig_rgb, self.rig_ids):
             rig.set_pos(x, y, EYE)
@@ -95,7 +99,9 @@ class Renderer:
             camera.set_h(-VIEW_STEP_DEGREES * k)
             column, row = k % _COLUMNS, layer * _ROWS + k // _COLUMNS
             left, bottom = column / _COLUMNS, row / (2 * _ROWS)
-            region = self.buffer.make_display_region(left, left + 1 / _COLUMNS, bottom, bottom + 0.5 / _ROWS)
+            region = self.buffer.make_display_region(
+                left, left + 1 / _COLUMNS, bottom, bottom + 0.5 / _ROWS
+            )
             region.set_camera(camera)
             region.set_clear_depth_active(True)
         return rig
@@ -103,7 +109,9 @@ class Renderer:
     def _texture(self, pattern: str) -> Any:
         core = self.core
         image = core.Texture(pattern)
-        image.setup_2d_texture(TEXTURE_PIXELS, TEXTURE_PIXELS, core.Texture.T_unsigned_byte, core.Texture.F_rgb)
+        image.setup_2d_texture(
+            TEXTURE_PIXELS, TEXTURE_PIXELS, core.Texture.T_unsigned_byte, core.Texture.F_rgb
+        )
         image.set_ram_image(np.repeat(texture(pattern, 0)[:, :, None], 3, 2).tobytes())
         image.set_minfilter(core.SamplerState.FT_nearest)
         image.set_magfilter(core.SamplerState.FT_nearest)
@@ -126,18 +134,27 @@ class Renderer:
         n = len(chosen)
         packed = np.zeros((n * 4, 6), np.float32)
         packed[:, :3] = faces.corners[chosen].reshape(-1, 3)
-        packed[:, 4:] = (np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)[None] * faces.repeat[chosen][:, None]).reshape(-1, 2)
+        packed[:, 4:] = (
+            np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)[None]
+            * faces.repeat[chosen][:, None]
+        ).reshape(-1, 2)
         bytes_ = np.zeros((n * 4, 4), np.uint8)
         bytes_[:, :3] = np.rint(colour.reshape(-1, 3) * 255)
         bytes_[:, 3] = 255
         packed[:, 3] = np.ascontiguousarray(bytes_).view(np.float32)[:, 0]
         layout = core.GeomVertexArrayFormat()
-        layout.add_column(core.InternalName.get_vertex(), 3, core.Geom.NT_float32, core.Geom.C_point)
+        layout.add_column(
+            core.InternalName.get_vertex(), 3, core.Geom.NT_float32, core.Geom.C_point
+        )
         layout.add_column(core.InternalName.get_color(), 4, core.Geom.NT_uint8, core.Geom.C_color)
-        layout.add_column(core.InternalName.get_texcoord(), 2, core.Geom.NT_float32, core.Geom.C_texcoord)
+        layout.add_column(
+            core.InternalName.get_texcoord(), 2, core.Geom.NT_float32, core.Geom.C_texcoord
+        )
         form = core.GeomVertexFormat()
         form.add_array(layout)
-        data = core.GeomVertexData("faces", core.GeomVertexFormat.register_format(form), core.Geom.UH_static)
+        data = core.GeomVertexData(
+            "faces", core.GeomVertexFormat.register_format(form), core.Geom.UH_static
+        )
         data.unclean_set_num_rows(n * 4)
         data.modify_array_handle(0).copy_data_from(packed.tobytes())
         triangles = core.GeomTriangles(core.Geom.UH_static)
@@ -186,7 +203,11 @@ def _split(frame, size, plane, x, y, z, heading, near):  # type: ignore[no-untyp
                 for c in range(3):
                     rgb[k, i, j, c] = frame[r1, column0 + j, 2 - c]
                 r2, c2 = r1 + 3 * size, column0 + j
-                code = (frame[r2, c2, 2] >> 3) + 32 * (frame[r2, c2, 1] >> 3) + 1024 * (frame[r2, c2, 0] >> 3)
+                code = (
+                    (frame[r2, c2, 2] >> 3)
+                    + 32 * (frame[r2, c2, 1] >> 3)
+                    + 1024 * (frame[r2, c2, 0] >> 3)
+                )
                 face = np.int32(code) - 1
                 ids[k, i, j] = face
                 if face < 0 or face >= plane.shape[0]:

@@ -10,7 +10,18 @@ from mitigate.envs.apartments.apartment import apartment_of
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.tasks import from_vlnce, heading_of
 from mitigate.envs.episodes import Episode
-from mitigate.keys import DEPTH, FORWARD, FORWARD_METRES, LEFT, MAX_STEPS, POSE, RGB, RIGHT, STOP, TURN_DEGREES
+from mitigate.keys import (
+    DEPTH,
+    FORWARD,
+    FORWARD_METRES,
+    LEFT,
+    MAX_STEPS,
+    POSE,
+    RGB,
+    RIGHT,
+    STOP,
+    TURN_DEGREES,
+)
 
 
 @lru_cache(maxsize=30_000)
@@ -23,7 +34,9 @@ def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> 
 class Simulator:
     """One agent in one apartment. Low-level actions and step limits are VLN-CE's (``mitigate.keys``)."""
 
-    def __init__(self, size: int = 64, pipe: str = "p3tinydisplay", renderer: Renderer | None = None) -> None:
+    def __init__(
+        self, size: int = 64, pipe: str = "p3tinydisplay", renderer: Renderer | None = None
+    ) -> None:
         self.size, self.pipe = size, pipe
         self._renderer = renderer  # several simulators may share one
 
@@ -38,7 +51,10 @@ class Simulator:
         self.episode, self.apartment = episode, apartment_of(episode.scene_id)
         self.space = self.apartment.space
         self.field = goal_field(episode.scene_id, tuple(goal.position for goal in episode.goals))
-        self.xy, self.heading = from_vlnce(episode.start_position), heading_of(episode.start_rotation)
+        self.xy, self.heading = (
+            from_vlnce(episode.start_position),
+            heading_of(episode.start_rotation),
+        )
         self.path = [self.xy.copy()]
         self.steps = self.collisions = 0
         self.stopped = False
@@ -72,7 +88,9 @@ class Simulator:
         elif action == STOP:
             self.stopped = True
         else:
-            raise ValueError(f"Unknown action {action}; allowed: 0 STOP, 1 FORWARD, 2 LEFT, 3 RIGHT.")
+            raise ValueError(
+                f"Unknown action {action}; allowed: 0 STOP, 1 FORWARD, 2 LEFT, 3 RIGHT."
+            )
         self.steps += 1
 
     def distance_to_goal(self, xy: np.ndarray | None = None) -> float:

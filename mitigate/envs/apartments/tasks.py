@@ -7,9 +7,9 @@ fixed validation lists; training episodes are generated on the fly from (seed, i
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -60,15 +60,24 @@ def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> 
         field = apartment.space.distances(goals)
         starts = np.flatnonzero((field > SHORTEST) & (field < LONGEST))
         if len(starts):
-            return _episode(apartment, task, index, seed, goals, target, field, int(rng.choice(starts)), rng)
-    raise RuntimeError(f"Apartment {apartment.seed} offers no {task} episode of {SHORTEST}-{LONGEST} m.")
+            return _episode(
+                apartment, task, index, seed, goals, target, field, int(rng.choice(starts)), rng
+            )
+    raise RuntimeError(
+        f"Apartment {apartment.seed} offers no {task} episode of {SHORTEST}-{LONGEST} m."
+    )
 
 
 def _draw_vln(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
     target = int(rng.integers(len(apartment.furniture)))
     piece = apartment.furniture[target]
     kind = apartment.rooms[piece.room].kind
-    twins = [p for p in apartment.furniture if (p.category, p.colour) == (piece.category, piece.colour) and apartment.rooms[p.room].kind == kind]
+    twins = [
+        p
+        for p in apartment.furniture
+        if (p.category, p.colour) == (piece.category, piece.colour)
+        and apartment.rooms[p.room].kind == kind
+    ]
     cells = _beside(apartment, target)
     if len(twins) > 1 or not len(cells):
         return [], target
@@ -87,7 +96,10 @@ def _beside(apartment: Apartment, instance: int) -> np.ndarray:
     space, piece = apartment.space, apartment.furniture[instance]
     xy = (space.cells[:, ::-1] + 0.5) * 0.1
     x0, y0, x1, y1 = piece.rect
-    gap = np.hypot(np.maximum(np.maximum(x0 - xy[:, 0], xy[:, 0] - x1), 0), np.maximum(np.maximum(y0 - xy[:, 1], xy[:, 1] - y1), 0))
+    gap = np.hypot(
+        np.maximum(np.maximum(x0 - xy[:, 0], xy[:, 0] - x1), 0),
+        np.maximum(np.maximum(y0 - xy[:, 1], xy[:, 1] - y1), 0),
+    )
     rx0, ry0, rx1, ry1 = apartment.rooms[piece.room].rect
     inside = (xy[:, 0] > rx0) & (xy[:, 0] < rx1) & (xy[:, 1] > ry0) & (xy[:, 1] < ry1)
     return np.flatnonzero((gap < 0.8) & inside)
@@ -98,9 +110,18 @@ def _episode(apartment: Apartment, task: str, index: int, seed: int, goals: list
     path = apartment.space.shortest_path(start, field)
     heading = float(np.radians(15.0 * rng.integers(24)))
     piece = apartment.furniture[target]
-    text = describe(apartment, path, heading, target, rng) if task == "vln" else find(apartment, piece.category, rng)
+    text = (
+        describe(apartment, path, heading, target, rng)
+        if task == "vln"
+        else find(apartment, piece.category, rng)
+    )
     thinned = np.concatenate([path[:-1:5], path[-1:]])
-    info = {"geodesic_distance": round(float(field[start]), 4), "task": task, "category": piece.category, "landmark": target}
+    info = {
+        "geodesic_distance": round(float(field[start]), 4),
+        "task": task,
+        "category": piece.category,
+        "landmark": target,
+    }
     return Episode(
         episode_id=f"{apartment.seed:06d}-{task}-{index}" + (f"-{seed}" if seed else ""), trajectory_id=f"{apartment.seed:06d}-{index}",
         scene_id=apartment.scene_id, start_position=to_vlnce(path[0]), start_rotation=rotation_of(heading),
@@ -141,7 +162,9 @@ def draw_training_episode(rng: np.random.Generator, apartments: int, ogn_share: 
     if task == "vln":
         path = np.stack([from_vlnce(p) for p in episode.reference_path])
         heading = heading_of(episode.start_rotation)
-        text = describe(apartment_of(episode.scene_id), path, heading, episode.info["landmark"], rng)
+        text = describe(
+            apartment_of(episode.scene_id), path, heading, episode.info["landmark"], rng
+        )
         episode = replace(episode, instruction=Instruction(text, None, "en-US", {}))
     return episode
 
@@ -157,7 +180,9 @@ def load_episodes(split: str, task: str = "vln") -> list[Episode]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="Write the fixed episode list of a split as a VLN-CE file.")
+    parser = argparse.ArgumentParser(
+        description="Write the fixed episode list of a split as a VLN-CE file."
+    )
     parser.add_argument("out", type=Path)
     parser.add_argument("--split", choices=SPLITS, default="val_unseen")
     parser.add_argument("--task", choices=TASKS, default="vln")
@@ -169,4 +194,3 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
-

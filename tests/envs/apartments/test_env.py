@@ -111,7 +111,9 @@ def test_drawn_episodes_are_a_function_of_the_seed():
 @pytest.mark.parametrize("mode", ["per_episode", "per_frame"])
 def test_one_and_four_environments_see_the_same_corrupted_pixels(episodes, mode):
     schedule = Schedule(mode, 0.8, clean_share=0.2)
-    one = walk(TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(schedule)), 120)
+    one = walk(
+        TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(schedule)), 120
+    )
     many = walk(TransformedEnv(four(episodes=episodes), CorruptObservation(schedule)), 30)
     clean = walk(ApartmentsEnv(episodes, size=SIZE), 120)
     common = one.keys() & many.keys()
@@ -126,7 +128,9 @@ def test_the_transform_does_what_the_suite_does(episodes):
     env = TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(HURT, seed=5))
     for _ in range(4):
         data = env.reset()
-        frames = {k: v for k, v in env.base_env.simulator.observe().items() if k in (RGB, DEPTH, POSE)}
+        frames = {
+            k: v for k, v in env.base_env.simulator.observe().items() if k in (RGB, DEPTH, POSE)
+        }
         corruption, key = HURT.draw(5, data["episode"], 0)
         assert key == Key(5, data["episode"], 0)
         wanted = corrupt_observation(frames, corruption, key)

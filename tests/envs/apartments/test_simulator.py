@@ -137,7 +137,9 @@ def test_a_scene_that_is_not_there_is_explained(episodes, scene, words):
 @pytest.mark.parametrize("seed", [0, 1, 100_000, 200_000])
 def test_every_room_and_door_can_be_reached(seed):
     apartment = Apartment(seed)
-    rooms = {apartment.room_at(apartment.space.centre(c)) for c in range(len(apartment.space.cells))}
+    rooms = {
+        apartment.room_at(apartment.space.centre(c)) for c in range(len(apartment.space.cells))
+    }
     assert rooms == set(range(len(apartment.rooms)))
     assert 4 <= len(apartment.rooms) <= 8
     assert all(free_at(apartment.space, np.array([door.x, door.y])) for door in apartment.doors)
