@@ -40,7 +40,7 @@ _FRAMES = 7  # panoramas whose corruption is timed
 
 
 def ours(size: int, pipe: str = "p3tinydisplay") -> Callable[[], int]:
-    """A function that renders one panorama at a random free pose and returns its number of views."""
+    """A function that renders a panorama at a random free pose and returns its number of views."""
     apartment, renderer = Apartment(7), Renderer(size, pipe)
     renderer.load(apartment)
     space, rng = apartment.space, generator("bench", "apartments")
@@ -115,8 +115,11 @@ def _miniworld_or_reason(scene: str, size: int) -> dict[str, Callable[[], int]]:
     try:
         return miniworld(scene, size)
     except Exception as error:  # whatever pyglet, EGL or the driver raise
-        print(f"MiniWorld's {scene} is not measured: {type(error).__name__}: {error}. Install it with `pip install -e .[bench]`; it "
-              "draws with libEGL, libGL and libGLU of the system (Debian: libegl1 libgl1 libglu1-mesa libgl1-mesa-dri).")  # fmt: skip
+        print(
+            f"MiniWorld's {scene} is not measured: {type(error).__name__}: {error}. Install it "
+            "with `pip install -e .[bench]`; it draws with libEGL, libGL and libGLU of the system "
+            "(Debian: libegl1 libgl1 libglu1-mesa libgl1-mesa-dri)."
+        )
         return {}
 
 
@@ -125,9 +128,8 @@ def corruption_milliseconds(size: int) -> dict[str, tuple[float, float]]:
     course of an episode, and when every frame draws a new one (the per-frame schedule)."""
     apartment, renderer = Apartment(7), Renderer(size)
     renderer.load(apartment)
-    rgb, depth, _ = renderer.render(
-        *map(float, apartment.space.centre(len(apartment.space.cells) // 2)), 0.3
-    )
+    x, y = apartment.space.centre(len(apartment.space.cells) // 2)
+    rgb, depth, _ = renderer.render(float(x), float(y), 0.3)
     frames = {name: rgb if name in RGB_NAMES else depth for name in NAMES}
     return {
         name: (_fastest(name, frame, False), _fastest(name, frame, True))
@@ -153,7 +155,8 @@ def machine() -> str:
         if line.startswith("model name")
     ]
     processor = names[0] if names else platform.processor() or platform.machine()
-    return f"{processor}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}, {date.today()}"
+    software = f"load {os.getloadavg()[0]:.1f}, Python {platform.python_version()}"
+    return f"{processor}, {os.cpu_count()} cores, {software}, {date.today()}"
 
 
 def _lines(path: str) -> list[str]:
@@ -167,12 +170,16 @@ def report(
     size: int, rates: dict[str, tuple[float, float]], times: dict[str, tuple[float, float]]
 ) -> str:
     """The measurements as Markdown."""
-    lines = ["# Benchmarks", "", f"`make bench` on {machine()}.", "", f"## RGB-D rendering, {size} x {size} pixels", "",
-             "One process, one run, in turns; the best of several rounds.", "",
-             "| renderer | RGB-D views/s | per CPU second | panoramas (12 views)/s | ours is faster by |", "| --- | --- | --- | --- | --- |"]  # fmt: skip
+    lines = ["# Benchmarks", "", f"`make bench` on {machine()}.", ""]
+    lines += [f"## RGB-D rendering, {size} x {size} pixels", ""]
+    lines += ["One process, one run, in turns; the best of several rounds.", ""]
+    lines += [
+        "| renderer | RGB-D views/s | per CPU second | panoramas (12 views)/s | ours is faster |",
+        "| --- | --- | --- | --- | --- |",
+    ]
     fastest = rates[OURS][0]
     lines += [
-        f"| {name} | {wall:.0f} | {cpu:.0f} | {wall / VIEWS:.0f} | {fastest / wall:.1f} |"
+        f"| {name} | {wall:.0f} | {cpu:.0f} | {wall / VIEWS:.0f} | {fastest / wall:.1f} times |"
         for name, (wall, cpu) in rates.items()
     ]
     lines += [

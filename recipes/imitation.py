@@ -49,16 +49,32 @@ class ImitationRecipe(Recipe):
     planner's auxiliary terms (metres to the goal; which views show the goal's landmark).
     planner_lr: learning rate of the planner; None: the trainer's, as for the other parts.
     prior: rows of an earlier evaluation, from which a success-distributed schedule starts.
-    refresh_every: steps between two measurements of the success rates that such a schedule draws by,
-    each on ``refresh_episodes`` training episodes under every corruption; 0: never.
+    refresh_every: steps between two measurements of the success rates that such a schedule draws
+    by, each on ``refresh_episodes`` training episodes under every corruption; 0: never.
 
     Raises ValueError for an unknown part.
     """
 
-    def __init__(self, agent: TopologicalAgent, schedule: Schedule, train_parts: tuple[str, ...] = PARTS, episodes: int = 3,
-                 follow_oracle: float = 0.5, apartments: int = 2000, ogn_share: float = 0.15, size: int = 64, seed: int = 0,
-                 w_concepts: float = 2.0, w_waypoints: float = 2.0, w_distance: float = 0.3, w_grounding: float = 0.3,
-                 planner_lr: float | None = None, prior: str | None = None, refresh_every: int = 0, refresh_episodes: int = 8) -> None:  # fmt: skip
+    def __init__(
+        self,
+        agent: TopologicalAgent,
+        schedule: Schedule,
+        train_parts: tuple[str, ...] = PARTS,
+        episodes: int = 3,
+        follow_oracle: float = 0.5,
+        apartments: int = 2000,
+        ogn_share: float = 0.15,
+        size: int = 64,
+        seed: int = 0,
+        w_concepts: float = 2.0,
+        w_waypoints: float = 2.0,
+        w_distance: float = 0.3,
+        w_grounding: float = 0.3,
+        planner_lr: float | None = None,
+        prior: str | None = None,
+        refresh_every: int = 0,
+        refresh_episodes: int = 8,
+    ) -> None:
         super().__init__()
         unknown = sorted(set(train_parts) - set(PARTS))
         if unknown:
@@ -165,12 +181,18 @@ class ImitationRecipe(Recipe):
         )
         chosen = out["logits"].argmax(-1)
         right = target.gather(1, chosen[:, None])[:, 0] > 0.4 * target.max(1).values
-        return {"loss": loss, "imitation": imitation, "distance": distance, "grounding": grounding, "accuracy": right.float().mean(),
-                "stop_recall": ((chosen == 0) & (stop > 0)).sum() / stop.sum().clamp(min=1),
-                "false_stop": ((chosen == 0) & (stop == 0)).sum() / (stop == 0).sum().clamp(min=1)}  # fmt: skip
+        return {
+            "loss": loss,
+            "imitation": imitation,
+            "distance": distance,
+            "grounding": grounding,
+            "accuracy": right.float().mean(),
+            "stop_recall": ((chosen == 0) & (stop > 0)).sum() / stop.sum().clamp(min=1),
+            "false_stop": ((chosen == 0) & (stop == 0)).sum() / (stop == 0).sum().clamp(min=1),
+        }
 
     def refresh(self, step: int) -> None:
-        """Measure the success rate under every corruption on training episodes; reweigh the schedule."""
+        """Measure the success under every corruption on training episodes, for the schedule."""
         rng = generator(self.seed, "refresh", step)
         episodes = [
             draw_training_episode(rng, self.apartments, 0.0) for _ in range(self.refresh_episodes)
@@ -208,7 +230,7 @@ class ImitationRecipe(Recipe):
 
 
 class RenderedWorld:
-    """One episode in the simulator, its frames hurt by the recipe's schedule; remembers its looks."""
+    """One episode in the simulator, its frames hurt by the recipe's schedule; keeps its looks."""
 
     def __init__(self, recipe: ImitationRecipe, episode: Episode, name: str) -> None:
         self.recipe, self.episode, self.name = recipe, episode, name
@@ -226,8 +248,15 @@ class RenderedWorld:
             frames, *self.recipe.schedule.draw(self.recipe.seed, self.name, len(self.looks))
         )
         free = free_target(simulator.space, simulator.xy, simulator.heading)
-        self.looks.append({RGB: frames[RGB], DEPTH: frames[DEPTH], "concepts": concepts, "free": free,
-                           "shows": seen[:, landmarks(self.episode)].any(1).astype(np.float32)})  # fmt: skip
+        self.looks.append(
+            {
+                RGB: frames[RGB],
+                DEPTH: frames[DEPTH],
+                "concepts": concepts,
+                "free": free,
+                "shows": np.asarray(seen[:, landmarks(self.episode)].any(1), np.float32),
+            }
+        )
 
     def pose(self) -> np.ndarray:
         return np.array([*self.simulator.xy, self.simulator.heading])
@@ -252,7 +281,7 @@ def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
 
 
 def decisions_of(traces: list[Trace]) -> dict[str, Any]:
-    """Padded decisions of all traces with their targets [B, 1 + N + G] and metres [B, 1 + N + G]."""
+    """Padded decisions of all traces with their targets and metres, each [B, 1 + N + G]."""
     steps = [(row, step) for row, trace in enumerate(traces) for step in trace.steps]
     offsets = np.cumsum([0, *(len(trace.steps) for trace in traces)])
     decisions = collate(
@@ -269,5 +298,9 @@ def decisions_of(traces: list[Trace]) -> dict[str, Any]:
             step.metres[: 1 + nodes],
             step.metres[1 + nodes :],
         )
-    return {"decisions": decisions, "target": torch.from_numpy(target), "metres": torch.from_numpy(np.minimum(metres, 25)),
-            "episode_ids": [trace.episode.episode_id for trace in traces]}  # fmt: skip
+    return {
+        "decisions": decisions,
+        "target": torch.from_numpy(target),
+        "metres": torch.from_numpy(np.minimum(metres, 25)),
+        "episode_ids": [trace.episode.episode_id for trace in traces],
+    }

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import torch
 import torch.nn.functional as F
-from torch import Tensor, nn
+from torch import Tensor
 
 from mitigate.agents.concepts import THINGS, view_labels
+from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import agreement, free_target, waypoint_loss
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.envs.apartments.renderer import Renderer
@@ -25,10 +26,19 @@ from mitigate.seeding import generator
 
 
 class PerceptionRecipe(Recipe):
-    """Args: agent; modality "rgb" or "depth"; apartments: how many training layouts; panoramas: a batch."""
+    """Args: agent; modality "rgb" or "depth"; apartments: how many training layouts; panoramas: a
+    batch."""
 
-    def __init__(self, agent: nn.Module, modality: str, apartments: int = 400, panoramas: int = 12, size: int = 64,
-                 seed: int = 0, schedule: Schedule | None = None) -> None:  # fmt: skip
+    def __init__(
+        self,
+        agent: TopologicalAgent,
+        modality: str,
+        apartments: int = 400,
+        panoramas: int = 12,
+        size: int = 64,
+        seed: int = 0,
+        schedule: Schedule | None = None,
+    ) -> None:
         super().__init__()
         if modality not in ("rgb", "depth"):
             raise ValueError(f"modality={modality!r} is unknown; choose 'rgb' or 'depth'.")

@@ -1,7 +1,8 @@
 """Planner training on stored features: imitation without rendering, hundreds of decisions a step.
 
-The encoders are frozen; features of a lattice of poses of ``cached`` training apartments are computed
-once (``mitigate/agents/cache.py``). Otherwise as ``recipes/imitation.py``, whose losses it uses.
+The encoders are frozen; features of a lattice of poses of ``cached`` training apartments are
+computed once (``mitigate/agents/cache.py``). Otherwise as ``recipes/imitation.py``, whose losses it
+uses.
 """
 
 from __future__ import annotations
@@ -26,11 +27,19 @@ _DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the d
 
 
 class PlannerRecipe(ImitationRecipe):
-    """Args: as ``ImitationRecipe``; cached: apartments; folder: of the feature caches; steps: over which
-    the oracle's share of rollout decisions falls from 1 to ``follow_oracle`` (0.6 of them)."""
+    """Args: as ``ImitationRecipe``; cached: apartments; folder: of the feature caches; steps: over
+    0.6 of them the oracle's share of rollout decisions falls from 1 to ``follow_oracle``."""
 
-    def __init__(self, agent: TopologicalAgent, folder: str, steps: int, cached: int = 250, episodes: int = 40,
-                 follow_oracle: float = 0.25, **others: Any) -> None:  # fmt: skip
+    def __init__(
+        self,
+        agent: TopologicalAgent,
+        folder: str,
+        steps: int,
+        cached: int = 250,
+        episodes: int = 40,
+        follow_oracle: float = 0.25,
+        **others: Any,
+    ) -> None:
         super().__init__(
             agent,
             Schedule("clean", 0.0),

@@ -1,1 +1,1 @@
-"""Agents: modules with ``reset``, ``needs_frames`` and ``act``; the reference one is ``topological``."""
+"""Agents: modules with ``reset`` and ``act``; the reference one is ``topological``."""

@@ -1,8 +1,8 @@
 """Stored features of lattice poses of training apartments: planner training without rendering.
 
-Poses lie about ``SPACING`` metres apart and look along heading 0. Headings are multiples of 30 degrees,
-where a panorama is the heading-0 one with its views rolled. Built once, in order, resumable: each
-apartment is one file written atomically.
+Poses lie about ``SPACING`` metres apart and look along heading 0. Headings are multiples of 30
+degrees, where a panorama is the heading-0 one with its views rolled. Built once, in order,
+resumable: each apartment is one file written atomically.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def build(agent: TopologicalAgent, folder: Path, apartments: range, size: int = 
 
 def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
     with open(path, "wb") as file:
-        np.savez(file, **arrays)
+        np.savez(file, **arrays)  # type: ignore[arg-type]
 
 
 def _frames(

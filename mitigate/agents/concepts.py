@@ -78,7 +78,7 @@ def _tables(scene_id: str, apartment: Apartment) -> tuple[np.ndarray, ...]:
 @njit(cache=True)
 def _label(
     ids, depth, low, high, instance, room, category, colour, kind, things, colours, concepts
-):  # type: ignore[no-untyped-def]
+):
     views, rows = ids.shape[0], ids.shape[1]
     out = np.zeros((views, concepts), np.float32)
     seen = np.zeros((views, category.shape[0]), np.bool_)

@@ -54,7 +54,7 @@ class Encoder(nn.Module):
 
 
 class RGBEncoder(Encoder):
-    """uint8 ``[n, H, W, 3]`` to (features ``[n, width]``, concept logits ``[n, len(CONCEPTS)]``)."""
+    """uint8 ``[n, H, W, 3]`` to features ``[n, width]`` and concept logits ``[n, C]``."""
 
     def __init__(
         self, stem: int = 32, widths: tuple[int, ...] = (48, 96, 160), width: int = 128

@@ -55,7 +55,7 @@ class TopologicalMap:
     _born: int = 0
 
     def add(self, pose: np.ndarray, waypoints: np.ndarray) -> None:
-        """Enter a panorama taken at ``pose`` [3] with ``waypoints`` [n, 2] (yaw clockwise, metres)."""
+        """Enter a panorama at ``pose`` [3] with ``waypoints`` [n, 2] (yaw clockwise, metres)."""
         self.start = pose.copy() if self.start is None else self.start
         node = self._visit(pose[:2].astype(np.float64))
         for yaw, metres in waypoints:

@@ -25,9 +25,9 @@ from mitigate.keys import VIEW_STEP_DEGREES, VIEWS
 class DecisionBatch:
     """Padded decisions: token order [stop], nodes (N), ghosts (G).
 
-    episode, panorama: int [B]. nodes: int [B, N] panorama index or -1. sightings: int [B, G, 4] flat
-    view index (panorama * 12 + view) or -1. geometry: float [B, 1 + N + G, GEOMETRY]. valid: bool
-    [B, 1 + N + G]. allowed: bool [B, 1 + N + G], what may be chosen: stop and ghosts.
+    episode, panorama: int [B]. nodes: int [B, N] panorama index or -1. sightings: int [B, G, 4]
+    flat view index (panorama * 12 + view) or -1. geometry: float [B, 1 + N + G, GEOMETRY]. valid:
+    bool [B, 1 + N + G]. allowed: bool [B, 1 + N + G], what may be chosen: stop and ghosts.
     """
 
     episode: Tensor
@@ -80,7 +80,7 @@ class Attention(nn.Module):
     def forward(
         self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
     ) -> Tensor:
-        """x [B, n, width] looks at memory [B, m, width], or at ``memory[rows]`` (projected once)."""
+        """x [B, n, width] looks at memory [B, m, width], or at ``memory[rows]`` projected once."""
 
         def split(t: Tensor) -> Tensor:
             return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
@@ -119,8 +119,19 @@ class Layer(nn.Module):
 class Planner(nn.Module):
     """See the module's docstring. ``view_width`` is the length of a view's feature vector."""
 
-    def __init__(self, rgb_width: int = 128, depth_width: int = 128, width: int = 128, heads: int = 4,
-                 text_layers: int = 2, layers: int = 3, dropout: float = 0.1) -> None:  # fmt: skip
+    concept_words: Tensor
+    yaws: Tensor
+
+    def __init__(
+        self,
+        rgb_width: int = 128,
+        depth_width: int = 128,
+        width: int = 128,
+        heads: int = 4,
+        text_layers: int = 2,
+        layers: int = 3,
+        dropout: float = 0.1,
+    ) -> None:
         super().__init__()
         self.widths = (rgb_width, len(CONCEPTS), depth_width)
         self.words = nn.Embedding(len(vocabulary()), width, padding_idx=PAD)
@@ -201,8 +212,12 @@ class Planner(nn.Module):
             torch.cat([self.stop(tokens[:, :1]), self.score(tokens[:, 1:])], 1).squeeze(-1).float()
         )
         logits = logits.masked_fill(~batch.allowed, float("-inf"))
-        return {"logits": logits, "distance": self.distance(tokens).squeeze(-1).float(),
-                "grounding": self.grounding(current).squeeze(-1).float(), "nodes": tokens}  # fmt: skip
+        return {
+            "logits": logits,
+            "distance": self.distance(tokens).squeeze(-1).float(),
+            "grounding": self.grounding(current).squeeze(-1).float(),
+            "nodes": tokens,
+        }
 
     def _tokens(self, views: Tensor, batch: DecisionBatch) -> Tensor:
         means = views.mean(1)

@@ -6,7 +6,7 @@ frames; ``CachedWorld`` (``mitigate/agents/cache.py``) hops between poses whose 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -39,8 +39,8 @@ Look = Callable[[list], list[tuple[torch.Tensor, np.ndarray]]]
 
 @dataclass
 class Step:
-    """One decision with the oracle's answer: target float32 [1 + g] over [stop] + ghosts (sums to 1)
-    and the geodesic metres from the stop token's place, each node and each ghost: [1 + n + g]."""
+    """One decision with the oracle's answer: target float32 [1 + g] over [stop] + ghosts, adding
+    up to 1, and the geodesic metres from the stop token's place, each node and each ghost."""
 
     decision: Decision
     target: np.ndarray
@@ -73,8 +73,16 @@ def oracle(world: World, graph: TopologicalMap, decision: Decision) -> Step:
 
 
 @torch.no_grad()
-def roll_out(planner: Planner, tokens: torch.Tensor, worlds: list[World], look: Look, *, follow_oracle: float,
-             rng: np.random.Generator, limit: int = 12) -> list[Trace]:  # fmt: skip
+def roll_out(
+    planner: Planner,
+    tokens: torch.Tensor,
+    worlds: Sequence[World],
+    look: Look,
+    *,
+    follow_oracle: float,
+    rng: np.random.Generator,
+    limit: int = 12,
+) -> list[Trace]:
     """Run all worlds to the oracle's stop or ``limit`` decisions.
 
     Each decision follows the oracle with probability ``follow_oracle``, else the planner's own
@@ -115,8 +123,14 @@ def roll_out(planner: Planner, tokens: torch.Tensor, worlds: list[World], look: 
     return traces
 
 
-def _planned(planner: Planner, text: Any, own: list[int], traces: list[Trace], tokens_of: list[list[torch.Tensor]],
-             rng: np.random.Generator) -> list[int]:  # fmt: skip
+def _planned(
+    planner: Planner,
+    text: Any,
+    own: list[int],
+    traces: list[Trace],
+    tokens_of: list[list[torch.Tensor]],
+    rng: np.random.Generator,
+) -> list[int]:
     offsets = np.cumsum([0, *(len(tokens_of[i]) for i in own)])[:-1]
     batch = collate([traces[i].steps[-1].decision for i in own], own, list(offsets))
     views = torch.stack([t for i in own for t in tokens_of[i]])

@@ -42,7 +42,7 @@ def pad(rows: list[list[int]]) -> torch.Tensor:
 
 
 def concept_words() -> torch.Tensor:
-    """Mean-of-words matrix float32 [concepts, vocabulary]: row c averages the words of concept c."""
+    """Matrix float32 [concepts, vocabulary]: row c averages the words of concept c."""
     out = torch.zeros(len(CONCEPTS), len(vocabulary()))
     for row, concept in enumerate(CONCEPTS):
         ids = [vocabulary()[word] for word in concept.removeprefix("near ").split()]

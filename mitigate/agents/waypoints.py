@@ -58,7 +58,7 @@ def select(logits: np.ndarray) -> np.ndarray:
     soft = STEP * np.cumprod(sure, axis=1).sum(1)
     score = (soft + 0.5 * (np.roll(soft, 1) + np.roll(soft, -1))) / 2
     left = np.where(length - _MARGIN >= SHORTEST, score, -1.0)
-    chosen = []
+    chosen: list[tuple[float, float]] = []
     while len(chosen) < COUNT and left.max() > 0:
         best = int(left.argmax())
         chosen.append((YAWS[best], min(float(length[best]) - _MARGIN, LONGEST)))

@@ -43,17 +43,20 @@ class CorruptObservation(Transform):
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
         """Corrupt stored data of any batch shape in place of their clean frames."""
         self._corrupt(tensordict)
-        if "next" in tensordict.keys():
-            self._corrupt(tensordict["next"])
+        following = tensordict.get("next", None)
+        if following is not None:
+            self._corrupt(following)
         return tensordict
 
     def _corrupt(self, data: TensorDictBase) -> TensorDictBase:
-        missing = [name for name in _NEEDED if name not in data.keys()]
+        present = set(data.keys())  # a tensordict has no `in` of its own
+        missing = [name for name in _NEEDED if name not in present]
         if missing:
             raise ValueError(
-                f"CorruptObservation finds no {' and no '.join(map(repr, missing))} in the data, only {sorted(data.keys())}. "
-                "The environment must give 'episode' (a string unique to each run of an episode) and 'frame' (int64 [1]), "
-                "as ApartmentsEnv does, because every random draw is keyed by them."
+                f"CorruptObservation finds no {' and no '.join(map(repr, missing))} in the data, "
+                f"only {sorted(map(str, present))}. The environment must give 'episode' (a string "
+                "unique to each run of an episode) and 'frame' (int64 [1]), as ApartmentsEnv does, "
+                "because every random draw is keyed by them."
             )
         flat = data.select(RGB, DEPTH, POSE, EPISODE, FRAME, strict=False).reshape(-1)
         hurt = [self._instant(instant) for instant in flat.unbind(0)]
@@ -67,8 +70,8 @@ class CorruptObservation(Transform):
         return data
 
     def _instant(self, instant: TensorDictBase) -> dict[str, torch.Tensor]:
-        present = [name for name in (RGB, DEPTH, POSE) if name in instant.keys()]
-        frames = {name: instant[name].cpu().numpy() for name in present}
+        found = {name: instant.get(name, None) for name in (RGB, DEPTH, POSE)}
+        frames = {name: value.cpu().numpy() for name, value in found.items() if value is not None}
         drawn = self.schedule.draw(self.seed, instant[EPISODE], int(instant[FRAME]))
         hurt = corrupt_observation(frames, *drawn)
-        return {name: torch.from_numpy(hurt[name]) for name in present if name != POSE}
+        return {name: torch.from_numpy(hurt[name]) for name in frames if name != POSE}

@@ -1,8 +1,8 @@
 """Controls that frame every result: the shortest-path oracle and a random walker.
 
 ``python -m mitigate.evaluation.controls --split val_unseen --out runs/controls.jsonl`` runs both on
-the shipped episodes, clean. The oracle shows that episodes can be solved with the low-level actions;
-the random walker shows what chance gives.
+the shipped episodes, clean. The oracle shows that episodes can be solved with the low-level
+actions; the random walker shows what chance gives.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class OracleAgent:
 
 
 class RandomAgent:
-    """Uniform over forward, left and right, with a small chance of STOP; keyed by the instruction."""
+    """Forward, left and right at random, with a small chance of STOP; keyed by the text."""
 
     def reset(self, instruction: str) -> None:
         self.rng = generator("random agent", instruction)
@@ -76,15 +76,24 @@ def main() -> None:
     episodes = load_episodes(args.split, args.task)[: args.episodes]
     controls: dict[str, Agent] = {"oracle": OracleAgent(simulator), "random": RandomAgent()}
     for name, agent in controls.items():
-        label = {"agent": name, "name": name, "corruption": "clean", "severity": 0.0, "split": args.split,
-                 "seed": 0, "suite": SUITE_VERSION, "rule": metrics.rule(SUCCESS_METRES)}  # fmt: skip
+        label = {
+            "agent": name,
+            "name": name,
+            "corruption": "clean",
+            "severity": 0.0,
+            "split": args.split,
+            "seed": 0,
+            "suite": SUITE_VERSION,
+            "rule": metrics.rule(SUCCESS_METRES),
+        }
         found = [
             label | {"episode_id": e.episode_id} | run_episode(agent, simulator, e, CLEAN, 0)
             for e in tqdm(episodes, desc=name)
         ]
         rows.append(args.out, found)
         print(
-            f"{name}: SR {np.mean([r['success'] for r in found]):.3f}  SPL {np.mean([r['spl'] for r in found]):.3f}  N {len(found)}"
+            f"{name}: SR {np.mean([r['success'] for r in found]):.3f}  "
+            f"SPL {np.mean([r['spl'] for r in found]):.3f}  N {len(found)}"
         )
 
 

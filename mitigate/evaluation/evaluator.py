@@ -92,8 +92,18 @@ def _measures(simulator: Simulator, episode: Episode, decisions: int) -> dict[st
     }
 
 
-def evaluate(agent: torch.nn.Module, episodes: list[Episode], conditions: list[Corruption], *, name: str, out: Path,
-             split: str, seed: int = 0, workers: int = 1, size: int = 64) -> list[dict[str, Any]]:  # fmt: skip
+def evaluate(
+    agent: torch.nn.Module,
+    episodes: list[Episode],
+    conditions: list[Corruption],
+    *,
+    name: str,
+    out: Path,
+    split: str,
+    seed: int = 0,
+    workers: int = 1,
+    size: int = 64,
+) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
     Args: conditions: corruptions to meet, ``CLEAN`` among them for PRS. name: the table's column.
@@ -101,8 +111,14 @@ def evaluate(agent: torch.nn.Module, episodes: list[Episode], conditions: list[C
     depend on it. size: pixels of a view.
     """
     known = {rows.identity(row) for row in rows.read(out)} if Path(out).exists() else set()
-    label = {"agent": weights_sha(agent)[:12], "name": name, "split": split, "seed": seed,
-             "suite": SUITE_VERSION, "rule": metrics.rule(SUCCESS_METRES)}  # fmt: skip
+    label = {
+        "agent": weights_sha(agent)[:12],
+        "name": name,
+        "split": split,
+        "seed": seed,
+        "suite": SUITE_VERSION,
+        "rule": metrics.rule(SUCCESS_METRES),
+    }
     jobs = [
         (
             episode,

@@ -77,19 +77,19 @@ def test_coming_back_to_a_node_renews_its_panorama():
 def test_a_route_leads_back_over_the_visited_nodes():
     graph = corridor()
     ghost = next(i for i, g in graph.ghosts.items() if g.position[0] > 1)
-    assert np.allclose(graph.route(ghost), [[0, 2], [0, 0], [1.5, 0]])
+    assert np.allclose(graph.route(ghost), [[0, 2], [0, 0], [1.5, 0]], atol=1e-6)
     assert np.allclose(graph.route_to_node(0), [[0, 2], [0, 0]])
     assert graph.route_to_node(2) == []
 
 
 def test_a_route_takes_the_shorter_way():
     graph = corridor()
-    graph.add(pose(1.5, 4), waypoints())
-    graph.add(pose(1.5, 0), waypoints((0, 4)))  # sees node 3 straight: a way past the corridor
-    ghost = graph._born
-    graph.add(pose(1.5, 0), waypoints((RIGHT, 2)))
-    assert np.allclose(graph.route(ghost), [[3.5, 0]])
-    assert np.allclose(graph.route_to_node(2), [[1.5, 4], [0, 4]])
+    graph.add(pose(1.5, 3), waypoints())
+    graph.add(pose(1.5, 0), waypoints((RIGHT, 2)))  # where the first ghost was: joined to node 0
+    assert 0 in graph.edges[4]
+    assert np.allclose(graph.route_to_node(2), [[1.5, 3], [0, 4]])  # 4.8 m, not 5.5 m
+    assert np.allclose(graph.route_to_node(1), [[0, 0], [0, 2]])
+    assert np.allclose(graph.route(max(graph.ghosts)), [[3.5, 0]], atol=1e-6)
 
 
 def test_a_decision_lists_stop_nodes_and_ghosts_with_metres_to_travel():

@@ -83,7 +83,8 @@ def test_waypoints_are_free_apart_and_within_reach(heading):
         angle = heading - yaw
         end = xy + metres * np.array([-np.sin(angle), np.cos(angle)])
         assert space.free[int(end[1] / CELL), int(end[0] / CELL)]
-    gaps = np.diff(np.sort(np.degrees(chosen[:, 0]) % 360), append=0) % 360
+    yaws = np.sort(np.degrees(chosen[:, 0]) % 360)
+    gaps = np.diff(yaws, append=yaws[0] + 360)
     assert gaps.min() > 24
 
 

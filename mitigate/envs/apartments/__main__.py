@@ -20,7 +20,7 @@ from mitigate.keys import DEPTH, RGB
 
 
 def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
-    """Write a PNG with the panorama, the depth, the plan with the reference path, the instruction."""
+    """Write a PNG with the panorama, its depth, the plan with the reference path, the text."""
     from matplotlib.figure import Figure
 
     made = make_episode(Apartment(seed), task, episode)

@@ -21,7 +21,7 @@ from mitigate.envs.apartments.layout import (
     name_rooms,
     place_doors,
     split_rooms,
-)  # fmt: skip
+)
 from mitigate.envs.apartments.navigation import CELL, FreeSpace
 from mitigate.envs.apartments.palette import COLOUR_NAMES, PATTERNS, Palette, palette, split_of
 
@@ -35,7 +35,8 @@ class Faces:
 
     corners float32 [n, 4, 3] metres; plane float32 [n, 2] = (axis 0-2, coordinate in metres);
     colour float32 [n, 4, 3] per corner; pattern int [n]; repeat float32 [n, 2] texture repeats;
-    category, room, instance int16 [n]: semantic label (``STRUCTURE`` = -1), room and furniture index.
+    category, room, instance int16 [n]: semantic label (``STRUCTURE`` = -1), indices of room and
+    furniture.
     """
 
     corners: np.ndarray
@@ -120,12 +121,14 @@ def apartment_of(scene_id: str) -> Apartment:
     if len(parts) != 3 or parts[0] != "apartments" or not parts[2].isdigit():
         raise ValueError(
             f"Scene {scene_id!r} is not an apartment; expected 'apartments/<split>/<seed>'. "
-            "Episodes of Matterport3D scans need the Habitat simulator, which this environment is not."
+            "Episodes of Matterport3D scans need the Habitat simulator, which this environment is "
+            "not."
         )
     apartment = Apartment(int(parts[2]))
     if apartment.split != parts[1]:
         raise ValueError(
-            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}, not {parts[1]!r}."
+            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}, "
+            f"not {parts[1]!r}."
         )
     return apartment
 
@@ -172,9 +175,21 @@ class _FaceBuilder:
         )
         return Faces(*(np.array(c, k) for c, k in zip(columns, kinds, strict=True)))
 
-    def _add(self, axis: int, sign: int, at: float, low: tuple[float, float], high: tuple[float, float], colour: np.ndarray,
-             pattern: int, room: int, category: int = STRUCTURE, instance: int = -1, tile: float = 1.0) -> None:  # fmt: skip
-        """One rectangle on plane ``axis = at`` seen from side ``sign``; low/high on the other axes."""
+    def _add(
+        self,
+        axis: int,
+        sign: int,
+        at: float,
+        low: tuple[float, float],
+        high: tuple[float, float],
+        colour: np.ndarray,
+        pattern: int,
+        room: int,
+        category: int = STRUCTURE,
+        instance: int = -1,
+        tile: float = 1.0,
+    ) -> None:
+        """One rectangle on plane ``axis = at`` seen from side ``sign``; low/high: other axes."""
         a, b = [k for k in range(3) if k != axis]
         corners = np.zeros((4, 3), np.float32)
         corners[:, axis] = at

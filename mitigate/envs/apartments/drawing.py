@@ -103,7 +103,7 @@ def draw_path(
 def strip(
     views: np.ndarray, order: Sequence[int] = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
 ) -> np.ndarray:
-    """The 12 views side by side, each cropped to its own 30 degrees, straight ahead in the middle."""
+    """The 12 views side by side, each cropped to its own 30 degrees, ahead in the middle."""
     size = views.shape[2]
     half = int(round(np.tan(np.radians(15)) * size / 2))
     low, high = size // 2 - half, size // 2 + half

@@ -1,6 +1,6 @@
 """The apartments as a torchrl environment: ``ApartmentsEnv``, one agent, low-level actions.
 
-This file alone imports torchrl (about 4 s); the simulator below it needs no torch at all.
+Only this file and ``mitigate/envs/transforms.py`` import torchrl (4 s); the simulator needs none.
 """
 
 from __future__ import annotations
@@ -53,8 +53,17 @@ class ApartmentsEnv(EnvBase):
     episode of a scene that is not an apartment.
     """
 
-    def __init__(self, episodes: Path | str | Sequence[Episode] | None = None, *, seed: int = 0, apartments: int = 2000,
-                 ogn_share: float = 0.15, worker: int = 0, workers: int = 1, size: int = 64) -> None:  # fmt: skip
+    def __init__(
+        self,
+        episodes: Path | str | Sequence[Episode] | None = None,
+        *,
+        seed: int = 0,
+        apartments: int = 2000,
+        ogn_share: float = 0.15,
+        worker: int = 0,
+        workers: int = 1,
+        size: int = 64,
+    ) -> None:
         super().__init__(device="cpu", batch_size=[])
         if not 0 <= worker < workers:
             raise ValueError(
@@ -109,7 +118,7 @@ class ApartmentsEnv(EnvBase):
         self.seed, self._number = 0 if seed is None else int(seed), self.worker
 
     def _episode(self, number: int) -> tuple[Episode, str]:
-        """Episode ``number`` of the run and its unique name: a function of (list or seed, number)."""
+        """Episode ``number`` and its unique name: a function of (list or seed, number)."""
         if self.episodes is None:
             rng = generator(self.seed, "apartments env", number)
             episode, again = draw_training_episode(rng, self.apartments, self.ogn_share), number
@@ -139,10 +148,13 @@ class ApartmentsEnv(EnvBase):
 
 
 def _listed(episodes: Path | str | Sequence[Episode]) -> list[Episode]:
-    named = isinstance(episodes, Path | str)
-    found = list(read_episodes(episodes)) if named else list(episodes)
+    if isinstance(episodes, Path | str):
+        found, place = list(read_episodes(episodes)), str(episodes)
+    else:
+        found, place = list(episodes), "the list"
     if not found:
         raise ValueError(
-            f"There is no episode in {episodes if named else 'the list'}: give at least one, or None to draw from the training seeds."
+            f"There is no episode in {place}: give at least one, or None to draw from the "
+            "training seeds."
         )
     return found

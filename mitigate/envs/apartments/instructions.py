@@ -15,20 +15,29 @@ from mitigate.envs.apartments.furniture import CATALOGUE
 
 TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
     "train": {
-        "ahead": ("walk straight ahead", "go straight", "head forward", "keep going straight ahead", "move forward"),
+        "ahead": ("walk straight ahead", "go straight", "head forward",
+            "keep going straight ahead", "move forward"),
         "left": ("turn left", "take a left", "go to your left", "make a turn to the left"),
         "right": ("turn right", "take a right", "go to your right", "make a turn to the right"),
         "around": ("turn around", "make a full turn and go back", "turn back the other way"),
-        "door": ("go through the doorway", "walk through the door", "leave the {here} through the doorway", "exit the {here}", "pass through the door"),
-        "enter": ("enter the {room}", "go into the {room}", "walk into the {room}", "head through the door into the {room}", "continue to the {room}"),
-        "past": ("walk past the {thing}", "go past the {thing}", "pass the {thing}", "keep going past the {thing}", "move along the {thing}"),
-        "pass_left": ("walk past the {thing} on your left", "keep the {thing} on the left", "pass the {thing} on your left side"),
-        "pass_right": ("walk past the {thing} on your right", "keep the {thing} on the right", "pass the {thing} on your right side"),
-        "stop": ("stop next to the {thing}", "stop in front of the {thing}", "wait by the {thing}", "stop at the {thing}", "wait near the {thing}",
-                 "walk to the {thing} and stop", "go to the {thing} and wait there", "you are done when you reach the {thing}"),
-        "stop_room": ("stop next to the {thing} in the {room}", "wait by the {thing} in the {room}", "go to the {thing} in the {room} and stop there",
-                      "stop at the {thing} of the {room}", "in the {room} walk to the {thing} and wait"),
-        "find": ("find a {thing}", "go to a {thing}", "look for a {thing} and stop next to it", "walk to the {thing} and wait"),
+        "door": ("go through the doorway", "walk through the door",
+            "leave the {here} through the doorway", "exit the {here}", "pass through the door"),
+        "enter": ("enter the {room}", "go into the {room}", "walk into the {room}",
+            "head through the door into the {room}", "continue to the {room}"),
+        "past": ("walk past the {thing}", "go past the {thing}", "pass the {thing}",
+            "keep going past the {thing}", "move along the {thing}"),
+        "pass_left": ("walk past the {thing} on your left", "keep the {thing} on the left",
+            "pass the {thing} on your left side"),
+        "pass_right": ("walk past the {thing} on your right", "keep the {thing} on the right",
+            "pass the {thing} on your right side"),
+        "stop": ("stop next to the {thing}", "stop in front of the {thing}", "wait by the {thing}",
+            "stop at the {thing}", "wait near the {thing}", "walk to the {thing} and stop",
+            "go to the {thing} and wait there", "you are done when you reach the {thing}"),
+        "stop_room": ("stop next to the {thing} in the {room}",
+            "wait by the {thing} in the {room}", "go to the {thing} in the {room} and stop there",
+            "stop at the {thing} of the {room}", "in the {room} walk to the {thing} and wait"),
+        "find": ("find a {thing}", "go to a {thing}", "look for a {thing} and stop next to it",
+            "walk to the {thing} and wait"),
         "join": (" and ", " , then ", ". ", ". then ", " , "),
     },
     "val_seen": {
@@ -42,7 +51,8 @@ TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
         "pass_left": ("go past the {thing} on the left",),
         "pass_right": ("go past the {thing} on the right",),
         "stop": ("wait at the {thing}", "go to the {thing} and stop", "stop near the {thing}"),
-        "stop_room": ("stop near the {thing} in the {room}", "walk to the {thing} in the {room} and wait"),
+        "stop_room": ("stop near the {thing} in the {room}",
+            "walk to the {thing} in the {room} and wait"),
         "find": ("look for a {thing}", "go to the {thing} and stop"),
         "join": (", then ", ". and then "),
     },
@@ -56,7 +66,8 @@ TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
         "past": ("continue past the {thing}", "go along the {thing}"),
         "pass_left": ("move past the {thing} on your left",),
         "pass_right": ("move past the {thing} on your right",),
-        "stop": ("stop by the {thing}", "walk up to the {thing} and wait there", "wait in front of the {thing}"),
+        "stop": ("stop by the {thing}", "walk up to the {thing} and wait there",
+            "wait in front of the {thing}"),
         "stop_room": ("in the {room} stop by the {thing}", "wait near the {thing} of the {room}"),
         "find": ("walk to a {thing} and stop", "look for the {thing} and wait next to it"),
         "join": (" and then ", ". next , "),
@@ -86,7 +97,7 @@ def name_of(apartment: Apartment, instance: int, coloured: bool = True) -> str:
 def describe(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> str:
-    """An instruction for a path (float [n, 2], plan metres) that ends beside furniture ``target``."""
+    """An instruction for a path (float [n, 2], metres) that ends beside furniture ``target``."""
     clauses = [
         _clause(apartment, event, rng) for event in _events(apartment, path, heading, target, rng)
     ]
@@ -134,7 +145,7 @@ def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str
 def _events(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> list[Event]:
-    """First turn, room changes with the turn before them, and one or two passed landmarks, in order."""
+    """First turn, room changes with the turn before them, up to two landmarks, in order."""
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     events = [Event(0.0, turn_word(_direction(path, along, 0.0), heading))]

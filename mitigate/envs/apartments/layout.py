@@ -28,7 +28,7 @@ class Room:
 
 @dataclass(frozen=True)
 class Door:
-    """A doorway centred on (x, y) between two rooms; ``axis`` is the wall's normal: 0 = x, 1 = y."""
+    """A doorway centred on (x, y) between two rooms; ``axis``: of the wall's normal, 0 x, 1 y."""
 
     x: float
     y: float
@@ -137,8 +137,14 @@ def furnish(
     return placed
 
 
-def _place(category: Category, room: Room, index: int, taken: list[Rect], colours: tuple[str, ...],
-           rng: np.random.Generator) -> Furniture | None:  # fmt: skip
+def _place(
+    category: Category,
+    room: Room,
+    index: int,
+    taken: list[Rect],
+    colours: tuple[str, ...],
+    rng: np.random.Generator,
+) -> Furniture | None:
     colour = str(rng.choice(colours)) if category.coloured else None
     x0, y0, x1, y1 = (
         room.rect[0] + WALL / 2,

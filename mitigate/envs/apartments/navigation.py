@@ -82,7 +82,7 @@ class FreeSpace:
         return length - _march(self.free, a[0], a[1], (b[0] - a[0]), (b[1] - a[1]), length) < 1e-6
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
-        """One straight move with sliding along walls (as VLN-CE's R2R agents): (new xy, collided)."""
+        """One straight move, sliding along walls (as VLN-CE's R2R agents): (new xy, collided)."""
         dx, dy = -np.sin(heading), np.cos(heading)
         gone = _march(self.free, xy[0], xy[1], dx, dy, metres)
         new = np.array([xy[0] + dx * gone, xy[1] + dy * gone])
@@ -95,7 +95,7 @@ class FreeSpace:
         return new + np.array(slides[best][:2]) * moved[best], True
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
-        """Free metres (at most ``reach``) along ``count`` world headings 0, 360/count, ... (CCW)."""
+        """Free metres (at most ``reach``) along ``count`` headings 0, 360/count, ... (CCW)."""
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 
 
@@ -115,7 +115,7 @@ def _grid_graph(free: np.ndarray, index: np.ndarray) -> csr_matrix:
 
 
 @njit(cache=True)
-def _march(free, x, y, dx, dy, length):  # type: ignore[no-untyped-def]
+def _march(free, x, y, dx, dy, length):
     """Metres that can be gone from (x, y) along (dx, dy), at most ``length``."""
     norm = np.hypot(dx, dy)
     if norm < 1e-9 or length <= 0:
@@ -133,7 +133,7 @@ def _march(free, x, y, dx, dy, length):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _rays(free, x, y, count, reach):  # type: ignore[no-untyped-def]
+def _rays(free, x, y, count, reach):
     out = np.empty(count, np.float32)
     for a in range(count):
         angle = 2 * np.pi * a / count

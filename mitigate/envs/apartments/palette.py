@@ -47,7 +47,7 @@ class Palette:
 
 
 def split_of(seed: int) -> str:
-    """The split that owns an apartment seed. Raises ``ValueError`` for a seed outside all ranges."""
+    """The split that owns an apartment seed. Raises ``ValueError`` for a seed of none."""
     for split, (low, high) in SEED_RANGES.items():
         if low <= seed < high:
             return split
@@ -68,7 +68,8 @@ def palette(split: str) -> Palette:
 def _variants(rng: np.random.Generator, spec: tuple, count: int) -> np.ndarray:
     hue, spread, saturation, value = spec
     hues = (hue + rng.uniform(-spread, spread, count)) % 1.0
-    rows = zip(hues, rng.uniform(*saturation, count), rng.uniform(*value, count), strict=True)
+    ranges = [rng.uniform(low, high, count) for low, high in (saturation, value)]
+    rows = zip(hues, *ranges, strict=True)
     return np.array([colorsys.hsv_to_rgb(*row) for row in rows], np.float32)
 
 

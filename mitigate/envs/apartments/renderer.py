@@ -1,12 +1,14 @@
 """Panda3D renderer: one off-screen buffer holds the 12 RGB views and the 12 face-id views.
 
-Software pipe by default (``p3tinydisplay``: no GPU, GL or display); ``p3headlessgl`` on a GPU machine.
-The software pipe cannot read depth back, so a second pass draws every planar face in a flat id
-colour: the id gives the semantic label, and ray-plane intersection gives exact metric depth.
+Software pipe by default (``p3tinydisplay``: no GPU, GL or display); ``p3headlessgl`` on a GPU
+machine. The software pipe cannot read depth back, so a second pass draws every planar face in a
+flat id colour: the id gives the semantic label, and ray-plane intersection gives exact metric
+depth.
 """
 
 from __future__ import annotations
 
+import weakref
 from collections import OrderedDict
 from typing import Any
 
@@ -27,15 +29,23 @@ def _panda(pipe: str) -> Any:
     from panda3d import core
 
     settings = "\n".join(
-        ["window-type offscreen", "notify-level error", "notify-level-x11display fatal", "notify-level-display fatal",
-         "textures-power-2 none", "audio-library-name null", "framebuffer-srgb 0", f"load-display {pipe}"]
-    )  # fmt: skip
+        [
+            "window-type offscreen",
+            "notify-level error",
+            "notify-level-x11display fatal",
+            "notify-level-display fatal",
+            "textures-power-2 none",
+            "audio-library-name null",
+            "framebuffer-srgb 0",
+            f"load-display {pipe}",
+        ]
+    )
     core.load_prc_file_data("mitigate", settings)
     return core
 
 
 class Renderer:
-    """Renders RGB and face ids of apartments; scenes are kept for the ``scenes`` latest apartments."""
+    """Renders RGB and face ids of apartments; keeps the scenes of the ``scenes`` latest ones."""
 
     def __init__(self, size: int = 64, pipe: str = "p3tinydisplay", scenes: int = 48) -> None:
         self.size, self.core = size, _panda(pipe)
@@ -51,8 +61,11 @@ class Renderer:
         self.buffer = self.engine.make_output(self.pipe, "panorama", 0, properties, window, flags)
         if self.buffer is None:
             raise RuntimeError(
-                f"Panda3D could not open an off-screen buffer with the {pipe} pipe; run `make doctor`."
+                f"Panda3D could not open an off-screen buffer with the {pipe} pipe; run "
+                "`make doctor`."
             )
+        self.buffer.set_active(False)  # a frame draws every active buffer of the process
+        weakref.finalize(self, self.engine.remove_window, self.buffer)
         self.image = core.Texture()
         self.buffer.add_render_texture(self.image, core.GraphicsOutput.RTM_copy_ram)
         self.buffer.set_clear_color((0, 0, 0, 1))
@@ -78,11 +91,13 @@ class Renderer:
     def render(
         self, x: float, y: float, heading: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], face ids int32 [12, S, S])."""
+        """rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S]."""
         for rig in (self.rig_rgb, self.rig_ids):
             rig.set_pos(x, y, EYE)
             rig.set_h(np.degrees(heading))
+        self.buffer.set_active(True)
         self.engine.render_frame()
+        self.buffer.set_active(False)
         raw = np.frombuffer(self.image.get_ram_image(), np.uint8)
         frame = raw.reshape(2 * _ROWS * self.size, _COLUMNS * self.size, 4)
         rgb, depth, ids = _split(frame, self.size, self.faces.plane, x, y, EYE, heading, _NEAR)
@@ -124,6 +139,7 @@ class Renderer:
             if len(chosen):
                 node = rgb.attach_new_node(self._geometry(faces, chosen, faces.colour[chosen]))
                 node.set_texture(image)
+                node.set_bin("fixed", pattern)  # by default the order follows addresses in memory
         everything = np.arange(len(faces.plane))
         flat = np.repeat(_id_colours(everything)[:, None, :], 4, 1)
         ids.attach_new_node(self._geometry(faces, everything, flat))
@@ -186,8 +202,8 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def _split(frame, size, plane, x, y, z, heading, near):  # type: ignore[no-untyped-def]
-    """Tiles (bottom-up BGRA) into views; ids from the upper half; depth by ray-plane intersection."""
+def _split(frame, size, plane, x, y, z, heading, near):
+    """Tiles (bottom-up BGRA) to views; ids from the upper half; depth by ray-plane meeting."""
     rgb = np.empty((12, size, size, 3), np.uint8)
     depth = np.zeros((12, size, size, 1), np.float32)
     ids = np.empty((12, size, size), np.int32)

@@ -1,4 +1,4 @@
-"""The simulator: continuous motion in an apartment, RGB-D panoramas on demand, geodesic distances."""
+"""The simulator: continuous motion in an apartment, RGB-D panoramas on demand, geodesics."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> 
 
 
 class Simulator:
-    """One agent in one apartment. Low-level actions and step limits are VLN-CE's (``mitigate.keys``)."""
+    """One agent in one apartment. Actions and step limit are VLN-CE's (``mitigate.keys``)."""
 
     def __init__(
         self, size: int = 64, pipe: str = "p3tinydisplay", renderer: Renderer | None = None

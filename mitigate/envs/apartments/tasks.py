@@ -11,13 +11,14 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from mitigate.envs.apartments.apartment import Apartment, apartment_of
 from mitigate.envs.apartments.instructions import describe, find
 from mitigate.envs.apartments.palette import SEED_RANGES, SPLITS
-from mitigate.envs.episodes import Episode, Goal, Instruction, read_episodes, write_episodes
+from mitigate.envs.episodes import Episode, Goal, Instruction, Vector, read_episodes, write_episodes
 
 SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (DESIGN section 3)
 SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
@@ -32,7 +33,7 @@ def to_vlnce(xy: np.ndarray) -> tuple[float, float, float]:
     return round(float(xy[0]), 4), 0.0, round(-float(xy[1]), 4)
 
 
-def from_vlnce(position: tuple[float, float, float]) -> np.ndarray:
+def from_vlnce(position: Vector) -> np.ndarray:
     """VLN-CE position to plan metres: float64 [2]."""
     return np.array([position[0], -position[2]], np.float64)
 
@@ -42,7 +43,7 @@ def rotation_of(heading: float) -> tuple[float, float, float, float]:
     return 0.0, float(np.sin(heading / 2)), 0.0, float(np.cos(heading / 2))
 
 
-def heading_of(rotation: tuple[float, float, float, float]) -> float:
+def heading_of(rotation: Vector) -> float:
     """Quaternion [x, y, z, w] about the vertical to a heading in radians."""
     return float(2 * np.arctan2(rotation[1], rotation[3]))
 
@@ -105,8 +106,17 @@ def _beside(apartment: Apartment, instance: int) -> np.ndarray:
     return np.flatnonzero((gap < 0.8) & inside)
 
 
-def _episode(apartment: Apartment, task: str, index: int, seed: int, goals: list[int], target: int, field: np.ndarray,
-             start: int, rng: np.random.Generator) -> Episode:  # fmt: skip
+def _episode(
+    apartment: Apartment,
+    task: str,
+    index: int,
+    seed: int,
+    goals: list[int],
+    target: int,
+    field: np.ndarray,
+    start: int,
+    rng: np.random.Generator,
+) -> Episode:
     path = apartment.space.shortest_path(start, field)
     heading = float(np.radians(15.0 * rng.integers(24)))
     piece = apartment.furniture[target]
@@ -116,19 +126,24 @@ def _episode(apartment: Apartment, task: str, index: int, seed: int, goals: list
         else find(apartment, piece.category, rng)
     )
     thinned = np.concatenate([path[:-1:5], path[-1:]])
-    info = {
+    info: dict[str, Any] = {
         "geodesic_distance": round(float(field[start]), 4),
         "task": task,
         "category": piece.category,
         "landmark": target,
     }
     return Episode(
-        episode_id=f"{apartment.seed:06d}-{task}-{index}" + (f"-{seed}" if seed else ""), trajectory_id=f"{apartment.seed:06d}-{index}",
-        scene_id=apartment.scene_id, start_position=to_vlnce(path[0]), start_rotation=rotation_of(heading),
+        episode_id=f"{apartment.seed:06d}-{task}-{index}" + (f"-{seed}" if seed else ""),
+        trajectory_id=f"{apartment.seed:06d}-{index}",
+        scene_id=apartment.scene_id,
+        start_position=to_vlnce(path[0]),
+        start_rotation=rotation_of(heading),
         goals=tuple(Goal(to_vlnce(apartment.space.centre(g)), SUCCESS_METRES) for g in goals),
-        instruction=Instruction(text, None, "en-US", {}), reference_path=tuple(to_vlnce(p) for p in thinned),
-        geodesic_distance=info["geodesic_distance"], info=info,
-    )  # fmt: skip
+        instruction=Instruction(text, None, "en-US", {}),
+        reference_path=tuple(to_vlnce(p) for p in thinned),
+        geodesic_distance=info["geodesic_distance"],
+        info=info,
+    )
 
 
 def landmarks(episode: Episode) -> list[int]:
@@ -140,7 +155,7 @@ def landmarks(episode: Episode) -> list[int]:
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
-    """The validation list of a split: ``_PER_APARTMENT`` episodes of each apartment in seed order."""
+    """A split's validation list: ``_PER_APARTMENT`` episodes an apartment, in seed order."""
     low, _ = SEED_RANGES[split]
     for number in range(count):
         yield make_episode(Apartment(low + number // _PER_APARTMENT), task, number % _PER_APARTMENT)

@@ -1,4 +1,4 @@
-"""What is rendered is there: faces, metric depth, the turning sense, and nothing of other scenes."""
+"""What is rendered is there: faces, metric depth, the turning sense, no other scenes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 from mitigate.envs.apartments.apartment import Apartment
 from mitigate.envs.apartments.furniture import CATEGORIES
-from mitigate.envs.apartments.renderer import EYE, Renderer
+from mitigate.envs.apartments.renderer import EYE, FARTHEST, Renderer
 from mitigate.keys import VIEWS
 
 SIZE = 48
@@ -156,6 +156,27 @@ def test_the_same_panorama_twice_and_after_other_scenes():
     renderer.load(apartments[0])
     for again in zip(first, renderer.render(*wanted), strict=True):
         assert np.array_equal(*again)
+
+
+def test_every_renderer_draws_the_same():
+    """Also where two faces are equally far: the order of drawing must not follow memory."""
+    apartments, first, alive = [Apartment(100_000), Apartment(100_001)], None, []
+    for _ in range(6):
+        alive.append(Renderer(24))
+        drawn = []
+        for apartment in apartments:
+            alive[-1].load(apartment)
+            drawn += [alive[-1].render(*pose(apartment, number))[0] for number in range(4)]
+        first = first or drawn
+        assert all(map(np.array_equal, first, drawn))
+
+
+def test_depth_is_absent_or_within_an_apartment(renderer):
+    apartment = Apartment(200_005)
+    renderer.load(apartment)
+    for number in range(12):
+        _, depth, _ = renderer.render(*pose(apartment, number))
+        assert depth.min() >= 0 and depth.max() <= FARTHEST and (depth > 0).mean() > 0.999
 
 
 def test_shapes_and_types(renderer):

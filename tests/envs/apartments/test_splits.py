@@ -1,4 +1,4 @@
-"""The splits share no layout, palette or template, and the shipped lists are what the code draws."""
+"""The splits share no layout, palette or template; the shipped lists are what is drawn."""
 
 from __future__ import annotations
 
