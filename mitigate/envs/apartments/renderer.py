@@ -134,15 +134,18 @@ class Renderer:
 
     def _scene(self, faces: Faces) -> tuple[Any, Any, Faces]:
         rgb, ids = self.core.NodePath("rgb"), self.core.NodePath("ids")
-        for pattern, image in enumerate(self.textures):
-            chosen = np.flatnonzero(faces.pattern == pattern)
-            if len(chosen):
-                node = rgb.attach_new_node(self._geometry(faces, chosen, faces.colour[chosen]))
-                node.set_texture(image)
-                node.set_bin("fixed", pattern)  # by default the order follows addresses in memory
-        everything = np.arange(len(faces.plane))
-        flat = np.repeat(_id_colours(everything)[:, None, :], 4, 1)
-        ids.attach_new_node(self._geometry(faces, everything, flat))
+        for room in range(int(faces.room.max()) + 1):
+            here = faces.room == room
+            group = rgb.attach_new_node(f"room{room}")  # rooms out of view are culled whole
+            for pattern, image in enumerate(self.textures):
+                chosen = np.flatnonzero(here & (faces.pattern == pattern))
+                if len(chosen):
+                    node = group.attach_new_node(self._geometry(faces, chosen, faces.colour[chosen]))
+                    node.set_texture(image)
+                    node.set_bin("fixed", room * len(self.textures) + pattern)
+            chosen = np.flatnonzero(here)
+            flat = np.repeat(_id_colours(chosen)[:, None, :], 4, 1)
+            ids.attach_new_node(self._geometry(faces, chosen, flat)).set_bin("fixed", room)
         return rgb, ids, faces
 
     def _geometry(self, faces: Faces, chosen: np.ndarray, colour: np.ndarray) -> Any:
