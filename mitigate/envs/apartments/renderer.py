@@ -140,7 +140,8 @@ class Renderer:
             for pattern, image in enumerate(self.textures):
                 chosen = np.flatnonzero(here & (faces.pattern == pattern))
                 if len(chosen):
-                    node = group.attach_new_node(self._geometry(faces, chosen, faces.colour[chosen]))
+                    shape = self._geometry(faces, chosen, faces.colour[chosen])
+                    node = group.attach_new_node(shape)
                     node.set_texture(image)
                     node.set_bin("fixed", room * len(self.textures) + pattern)
             chosen = np.flatnonzero(here)
