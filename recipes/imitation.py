@@ -16,21 +16,20 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from mitigate.agents.concepts import THINGS, view_labels
-from mitigate.agents.controller import Controller
+from mitigate.agents.concepts import THINGS
 from mitigate.agents.planner import collate
+from mitigate.agents.rendered import RenderedWorld
 from mitigate.agents.rollout import Trace, roll_out
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.agents.waypoints import agreement, free_target, select, waypoint_loss
-from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.agents.waypoints import agreement, select, waypoint_loss
+from mitigate.corruptions import Schedule
 from mitigate.envs.apartments.drawing import strip
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import draw_training_episode, landmarks
-from mitigate.envs.episodes import Episode
+from mitigate.envs.apartments.tasks import draw_training_episode
 from mitigate.evaluation.evaluator import run_episode
 from mitigate.evaluation.rows import read as read_rows
-from mitigate.keys import DEPTH, POSE, RGB
+from mitigate.keys import DEPTH, RGB
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
 from recipes.perception import f1
@@ -94,6 +93,7 @@ class ImitationRecipe(Recipe):
             refresh_every,
             refresh_episodes,
         )
+        self.trains_perception = set(train_parts) != {"planner"}
         for part in PARTS:
             getattr(agent, part).requires_grad_(part in train_parts)
         if prior is not None:
@@ -108,8 +108,11 @@ class ImitationRecipe(Recipe):
             draw_training_episode(rng, self.apartments, self.ogn_share)
             for _ in range(self.episodes)
         ]
-        self._shared_renderer()
-        worlds = [RenderedWorld(self, e, f"{step}-{i}") for i, e in enumerate(episodes)]
+        renderer = self._shared_renderer()
+        worlds = [
+            RenderedWorld(e, f"{step}-{i}", self.schedule, self.seed, renderer)
+            for i, e in enumerate(episodes)
+        ]
         self.agent.eval()
         tokens = self.agent.tokens([e.instruction.text for e in episodes])
         traces = roll_out(
@@ -117,9 +120,10 @@ class ImitationRecipe(Recipe):
         )
         self.agent.train()
         looks = [look for world in worlds for look in world.looks]
-        stacked = {
-            name: torch.from_numpy(np.stack([look[name] for look in looks])) for name in looks[0]
-        }
+        wanted = [n for n in looks[0] if self.trains_perception or n == "shows"]
+        stacked = {n: torch.from_numpy(np.stack([look[n] for look in looks])) for n in wanted}
+        if not self.trains_perception:
+            stacked["views"] = torch.stack([v for trace in traces for v in trace.views])
         self._picture = strip(looks[0][RGB])
         return {**decisions_of(traces), **stacked, "tokens": tokens}
 
@@ -146,6 +150,8 @@ class ImitationRecipe(Recipe):
         return self._renderer
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        if not self.trains_perception:
+            return self.planner_losses(batch, batch["views"])
         views, concepts, waypoints = self.agent.perceive(batch[RGB], batch[DEPTH])
         values = self.planner_losses(batch, views)
         values["concepts"] = F.binary_cross_entropy_with_logits(
@@ -227,48 +233,6 @@ class ImitationRecipe(Recipe):
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
         self.schedule.load_state_dict(state["schedule"])
-
-
-class RenderedWorld:
-    """One episode in the simulator, its frames hurt by the recipe's schedule; keeps its looks."""
-
-    def __init__(self, recipe: ImitationRecipe, episode: Episode, name: str) -> None:
-        self.recipe, self.episode, self.name = recipe, episode, name
-        self.simulator = Simulator(recipe.size, renderer=recipe._renderer)
-        self.simulator.reset(episode)
-        self.looks: list[dict[str, np.ndarray]] = []
-
-    def observe(self) -> None:
-        """Render, label and corrupt the panorama at the current pose; append it to ``looks``."""
-        simulator = self.simulator
-        rgb, depth, ids = simulator.observe_faces()
-        concepts, seen = view_labels(simulator.apartment, ids, depth)
-        frames = {RGB: rgb, DEPTH: depth, POSE: self.pose().astype(np.float32)}
-        frames = corrupt_observation(
-            frames, *self.recipe.schedule.draw(self.recipe.seed, self.name, len(self.looks))
-        )
-        free = free_target(simulator.space, simulator.xy, simulator.heading)
-        self.looks.append(
-            {
-                RGB: frames[RGB],
-                DEPTH: frames[DEPTH],
-                "concepts": concepts,
-                "free": free,
-                "shows": np.asarray(seen[:, landmarks(self.episode)].any(1), np.float32),
-            }
-        )
-
-    def pose(self) -> np.ndarray:
-        return np.array([*self.simulator.xy, self.simulator.heading])
-
-    def go(self, route: list[np.ndarray]) -> None:
-        controller = Controller()
-        controller.follow(route)
-        while (action := controller.action(self.pose())) is not None:
-            self.simulator.step(action)
-
-    def distance(self, xy: np.ndarray) -> float:
-        return self.simulator.distance_to_goal(xy)
 
 
 def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:

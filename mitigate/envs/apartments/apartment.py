@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
-from mitigate.envs.apartments.furniture import CATALOGUE, CATEGORIES, ROOM_KINDS
+from mitigate.envs.apartments.faces import FaceBuilder, Faces
+from mitigate.envs.apartments.furniture import CATALOGUE
 from mitigate.envs.apartments.layout import (
     DOOR,
-    HEIGHT,
-    LINTEL,
     WALL,
     Door,
     Furniture,
@@ -23,30 +21,9 @@ from mitigate.envs.apartments.layout import (
     split_rooms,
 )
 from mitigate.envs.apartments.navigation import CELL, FreeSpace
-from mitigate.envs.apartments.palette import COLOUR_NAMES, PATTERNS, Palette, palette, split_of
+from mitigate.envs.apartments.palette import COLOUR_NAMES, split_of
 
-STRUCTURE = -1  # category of walls, floors, ceilings
 _ATTEMPTS = 60
-
-
-@dataclass(frozen=True)
-class Faces:
-    """Axis-aligned rectangles to draw. All arrays share their first dimension [n].
-
-    corners float32 [n, 4, 3] metres; plane float32 [n, 2] = (axis 0-2, coordinate in metres);
-    colour float32 [n, 4, 3] per corner; pattern int [n]; repeat float32 [n, 2] texture repeats;
-    category, room, instance int16 [n]: semantic label (``STRUCTURE`` = -1), indices of room and
-    furniture.
-    """
-
-    corners: np.ndarray
-    plane: np.ndarray
-    colour: np.ndarray
-    pattern: np.ndarray
-    repeat: np.ndarray
-    category: np.ndarray
-    room: np.ndarray
-    instance: np.ndarray
 
 
 class Apartment:
@@ -86,7 +63,7 @@ class Apartment:
 
     @cached_property
     def faces(self) -> Faces:
-        return _FaceBuilder(self).build()
+        return FaceBuilder(self).build()
 
     def _walkable(self) -> bool:
         """Every door's centre and the larger part of the free cells form one component."""
@@ -141,165 +118,3 @@ def _fill(grid: np.ndarray, rect: Rect, value: bool) -> None:
     """Set the cells whose centres lie in the rectangle."""
     x0, y0, x1, y1 = (max(0, int(round(v / CELL))) for v in rect)
     grid[y0 : max(y1, y0 + 1), x0 : max(x1, x0 + 1)] = value
-
-
-class _FaceBuilder:
-    """Collects the rectangles of an apartment with colours, textures and baked shading."""
-
-    _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}  # axis -> light from (-, +) side
-
-    def __init__(self, apartment: Apartment) -> None:
-        self.apartment = apartment
-        self.paint: Palette = palette(apartment.split)
-        self.rng = np.random.default_rng([apartment.seed, 77])
-        self.light = self.rng.uniform(0.88, 1.08, len(apartment.rooms))
-        self.rows: list[tuple] = []
-
-    def build(self) -> Faces:
-        for index in range(len(self.apartment.rooms)):
-            self._room(index)
-        for door in self.apartment.doors:
-            self._frame(door)
-        for instance, piece in enumerate(self.apartment.furniture):
-            self._piece(instance, piece)
-        columns = list(zip(*self.rows, strict=True))
-        kinds = (
-            np.float32,
-            np.float32,
-            np.float32,
-            np.int16,
-            np.float32,
-            np.int16,
-            np.int16,
-            np.int16,
-        )
-        return Faces(*(np.array(c, k) for c, k in zip(columns, kinds, strict=True)))
-
-    def _add(
-        self,
-        axis: int,
-        sign: int,
-        at: float,
-        low: tuple[float, float],
-        high: tuple[float, float],
-        colour: np.ndarray,
-        pattern: int,
-        room: int,
-        category: int = STRUCTURE,
-        instance: int = -1,
-        tile: float = 1.0,
-    ) -> None:
-        """One rectangle on plane ``axis = at`` seen from side ``sign``; low/high: other axes."""
-        a, b = [k for k in range(3) if k != axis]
-        corners = np.zeros((4, 3), np.float32)
-        corners[:, axis] = at
-        corners[:, a] = (low[0], high[0], high[0], low[0])
-        corners[:, b] = (low[1], low[1], high[1], high[1])
-        flip = (sign > 0) == (axis == 1)
-        if flip:
-            corners = corners[::-1]
-        shade = self._SHADE[axis][int(sign > 0)] * self.light[room]
-        dim = 0.82 + 0.18 * np.clip(corners[:, 2:3] / 1.2, 0, 1) if axis != 2 else np.ones((4, 1))
-        tint = np.clip(colour[None] * shade * dim, 0, 1).astype(np.float32)
-        repeat = ((high[0] - low[0]) / tile, (high[1] - low[1]) / tile)
-        self.rows.append((corners, (axis, at), tint, pattern, repeat, category, room, instance))
-
-    def _room(self, index: int) -> None:
-        room, rng, paint = self.apartment.rooms[index], self.rng, self.paint
-        x0, y0, x1, y1 = room.rect
-        walls, floors = (
-            paint.walls[rng.integers(len(paint.walls))],
-            paint.floors[rng.integers(len(paint.floors))],
-        )
-        wet = room.kind in ("bathroom", "kitchen")
-        wall_pattern = PATTERNS.index(
-            str(rng.choice(["tiles", "plain"] if wet else ["plain", "noise", "stripes"]))
-        )
-        floor_pattern = PATTERNS.index(
-            str(rng.choice(["tiles", "checks"] if wet else ["planks", "noise", "speckle"]))
-        )
-        self._add(2, 1, 0.0, (x0, y0), (x1, y1), floors, floor_pattern, index)
-        self._add(2, -1, HEIGHT, (x0, y0), (x1, y1), np.ones(3), PATTERNS.index("plain"), index)
-        inset = WALL / 2
-        for axis, sign, at in (
-            (0, 1, x0 + inset),
-            (0, -1, x1 - inset),
-            (1, 1, y0 + inset),
-            (1, -1, y1 - inset),
-        ):
-            low, high = (y0, y1) if axis == 0 else (x0, x1)
-            gaps = sorted(self._gaps(index, axis, at))
-            edges = [low, *(e for gap in gaps for e in gap), high]
-            for a, b in zip(edges[::2], edges[1::2], strict=True):
-                self._add(axis, sign, at, (a, 0.0), (b, HEIGHT), walls, wall_pattern, index)
-            for a, b in gaps:
-                self._add(axis, sign, at, (a, LINTEL), (b, HEIGHT), walls, wall_pattern, index)
-
-    def _gaps(self, room: int, axis: int, at: float) -> list[tuple[float, float]]:
-        doors = [d for d in self.apartment.doors if room in d.rooms and d.axis == axis]
-        near = [d for d in doors if abs((d.x, d.y)[axis] - at) < WALL]
-        return [((d.x, d.y)[1 - axis] - DOOR / 2, (d.x, d.y)[1 - axis] + DOOR / 2) for d in near]
-
-    def _frame(self, door: Door) -> None:
-        wood, plain = np.array((0.50, 0.36, 0.24)), PATTERNS.index("plain")
-        centre, along = (door.x, door.y)[door.axis], (door.x, door.y)[1 - door.axis]
-        thick = (centre - WALL / 2, centre + WALL / 2)
-        for sign, at in ((1, along - DOOR / 2), (-1, along + DOOR / 2)):
-            self._add(
-                1 - door.axis,
-                sign,
-                at,
-                (thick[0], 0.0),
-                (thick[1], LINTEL),
-                wood,
-                plain,
-                door.rooms[0],
-            )
-        low, high = [thick[0], along - DOOR / 2], [thick[1], along + DOOR / 2]
-        order = (0, 1) if door.axis == 0 else (1, 0)
-        self._add(
-            2,
-            -1,
-            LINTEL,
-            (low[order[0]], low[order[1]]),
-            (high[order[0]], high[order[1]]),
-            wood,
-            plain,
-            door.rooms[0],
-        )
-
-    def _piece(self, instance: int, piece: Furniture) -> None:
-        category = CATALOGUE[piece.category]
-        label = CATEGORIES.index(piece.category)
-        variants = self.paint.colours[piece.colour] if piece.colour else None
-        main = variants[self.rng.integers(len(variants))] if variants is not None else np.ones(3)
-        pattern = PATTERNS.index("noise" if self.rng.random() < 0.5 else "plain")
-        for part in category.parts:
-            low, high = _turned(part, piece, category.width, category.depth)
-            colour = main if part[6] == "main" else np.array(part[6])
-            for axis in range(3):
-                others = [k for k in range(3) if k != axis]
-                span = (low[others[0]], low[others[1]]), (high[others[0]], high[others[1]])
-                for sign, at in ((-1, low[axis]), (1, high[axis])):
-                    if axis == 2 and sign < 0 and low[2] < 0.3:
-                        continue
-                    self._add(axis, sign, at, *span, colour, pattern, piece.room, label, instance)
-
-
-def _turned(part: tuple, piece: Furniture, width: float, depth: float) -> tuple[tuple, tuple]:
-    """World box of a part. Turn 0 backs on low y, 1 on high x, 2 on high y, 3 on low x."""
-    px0, px1, py0, py1, z0, z1, _ = part
-    x0, y0, x1, y1 = piece.rect
-    if piece.turn == 0:
-        box = (x0 + px0, y0 + py0, x0 + px1, y0 + py1)
-    elif piece.turn == 2:
-        box = (x1 - px1, y1 - py1, x1 - px0, y1 - py0)
-    elif piece.turn == 1:
-        box = (x1 - py1, y0 + px0, x1 - py0, y0 + px1)
-    else:
-        box = (x0 + py0, y1 - px1, x0 + py1, y1 - px0)
-    return (box[0], box[1], z0), (box[2], box[3], z1)
-
-
-def room_kind_index(apartment: Apartment, room: int) -> int:
-    return ROOM_KINDS.index(apartment.rooms[room].kind)

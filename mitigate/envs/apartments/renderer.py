@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from mitigate.envs.apartments.apartment import Apartment, Faces
+from mitigate.envs.apartments.apartment import Apartment
+from mitigate.envs.apartments.faces import Faces
 from mitigate.envs.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 from mitigate.keys import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
