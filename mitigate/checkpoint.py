@@ -147,11 +147,14 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
     module.load_state_dict(found, strict=False)
 
 
-def weights_sha(module: nn.Module) -> str:
-    """Return the first 12 hex digits of the sha256 over names, types, shapes and bytes."""
+def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
+    """Return the first 12 hex digits of the sha256 over names, types, shapes and bytes.
+
+    ``leave_out``: names that hold this text do not count.
+    """
     sha = hashlib.sha256()
     for name, value in sorted(module.state_dict().items()):
-        if isinstance(value, torch.Tensor):
+        if isinstance(value, torch.Tensor) and not (leave_out and leave_out in f".{name}"):
             sha.update(f"{name} {value.dtype} {tuple(value.shape)}".encode())
             raw = value.detach().cpu().contiguous().reshape(-1).view(torch.uint8)
             sha.update(raw.numpy().tobytes())

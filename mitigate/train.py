@@ -72,7 +72,7 @@ class TrainConfig:
     env: Any = MISSING
     schedule: Any = MISSING
     suite: Any = MISSING
-    stages: dict[str, StageConfig] = field(default_factory=dict)
+    stages: dict[str, StageConfig | None] = field(default_factory=dict)
     trainer: TrainerConfig = field(default_factory=TrainerConfig)
     evaluation: EvaluationConfig = field(default_factory=EvaluationConfig)
 
@@ -90,7 +90,8 @@ def run(cfg: DictConfig) -> Path:
     folder = Path(cfg.folder or default_folder(cfg))
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
     for name, stage in cfg.stages.items():
-        train_stage(cfg, name, stage, agent, folder / name)
+        if stage is not None:
+            train_stage(cfg, name, stage, agent, folder / name)
     agent.cpu().eval()
     checkpoint.save_weights(agent, folder / "agent")
     OmegaConf.save(OmegaConf.create({"agent": _plain(cfg.agent)}), folder / "agent" / "config.yaml")
@@ -128,7 +129,7 @@ def check(cfg: DictConfig) -> None:
                 f"{key}={value:g} is out of range: a severity is a number from 0 (clean) to 1 "
                 f"(strongest). Write, for instance, {key}=0.6."
             )
-    if not cfg.stages:
+    if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
     if cfg.evaluation.enabled:  # a mistake there must not show only after hours of training
         episodes(cfg.env, cfg.evaluation.split, 1)

@@ -25,10 +25,9 @@ from mitigate.agents.waypoints import agreement, select, waypoint_loss
 from mitigate.corruptions import Schedule
 from mitigate.envs.apartments.drawing import strip
 from mitigate.envs.apartments.renderer import Renderer
-from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import draw_training_episode
-from mitigate.evaluation.evaluator import run_episode
 from mitigate.evaluation.rows import read as read_rows
+from mitigate.evaluation.success import measure, success_rates
 from mitigate.keys import DEPTH, RGB
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
@@ -61,7 +60,7 @@ class ImitationRecipe(Recipe):
         train_parts: tuple[str, ...] = PARTS,
         episodes: int = 3,
         follow_oracle: float = 0.5,
-        apartments: int = 2000,
+        apartments: int = 400,
         ogn_share: float = 0.15,
         size: int = 64,
         seed: int = 0,
@@ -146,7 +145,7 @@ class ImitationRecipe(Recipe):
 
     def _shared_renderer(self) -> Renderer:
         if self._renderer is None:
-            self._renderer = Renderer(self.size, scenes=64)
+            self._renderer = Renderer(self.size, scenes=self.apartments)
         return self._renderer
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
@@ -199,18 +198,17 @@ class ImitationRecipe(Recipe):
 
     def refresh(self, step: int) -> None:
         """Measure the success under every corruption on training episodes, for the schedule."""
-        rng = generator(self.seed, "refresh", step)
-        episodes = [
-            draw_training_episode(rng, self.apartments, 0.0) for _ in range(self.refresh_episodes)
-        ]
-        simulator = Simulator(self.size, renderer=self._shared_renderer())
-        agent = self.agent.eval()
-        found = [
-            {"corruption": c.name, **run_episode(agent, simulator, e, c, self.seed)}
-            for c in map(self.schedule.corruption, self.schedule.names)
-            for e in episodes
-        ]
-        self.schedule.refresh(success_rates(found))
+        self.schedule.refresh(
+            measure(
+                self.agent,
+                self.schedule,
+                self._shared_renderer(),
+                episodes=self.refresh_episodes,
+                apartments=self.apartments,
+                seed=self.seed,
+                step=step,
+            )
+        )
 
     def evaluate(self, step: int) -> dict[str, float]:
         """The schedule's weights, for the log."""
@@ -233,15 +231,6 @@ class ImitationRecipe(Recipe):
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
         self.schedule.load_state_dict(state["schedule"])
-
-
-def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
-    """Mean success by corruption of rows or measures; clean ones are left out."""
-    names = {row["corruption"] for row in results} - {"clean"}
-    return {
-        n: float(np.mean([r["success"] for r in results if r["corruption"] == n]))
-        for n in sorted(names)
-    }
 
 
 def decisions_of(traces: list[Trace]) -> dict[str, Any]:

@@ -18,8 +18,10 @@ from mitigate.agents.concepts import THINGS, view_labels
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import agreement, free_target, waypoint_loss
 from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.envs.apartments.drawing import strip
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import apartment_of
+from mitigate.evaluation.success import measure
 from mitigate.keys import DEPTH, POSE, RGB, VIEWS
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
@@ -27,7 +29,9 @@ from mitigate.seeding import generator
 
 class PerceptionRecipe(Recipe):
     """Args: agent; modality "rgb" or "depth"; apartments: how many training layouts; panoramas: a
-    batch."""
+    batch; schedule: which panorama is hurt by what, None: none. A success-distributed schedule
+    without rates starts from those of ``agent`` on ``refresh_episodes`` training episodes each.
+    """
 
     def __init__(
         self,
@@ -38,17 +42,15 @@ class PerceptionRecipe(Recipe):
         size: int = 64,
         seed: int = 0,
         schedule: Schedule | None = None,
+        refresh_episodes: int = 8,
     ) -> None:
         super().__init__()
         if modality not in ("rgb", "depth"):
             raise ValueError(f"modality={modality!r} is unknown; choose 'rgb' or 'depth'.")
-        self.agent, self.modality = agent, modality
-        self.apartments, self.panoramas, self.seed, self.schedule = (
-            apartments,
-            panoramas,
-            seed,
-            schedule,
-        )
+        self.agent, self.modality, self.seed = agent, modality, seed
+        self.apartments, self.panoramas = apartments, panoramas
+        self.schedule = schedule or Schedule("clean", 0.0)
+        self.refresh_episodes = refresh_episodes
         agent.requires_grad_(False)
         for part in (
             (agent.rgb_encoder,)
@@ -59,6 +61,8 @@ class PerceptionRecipe(Recipe):
         self.renderer = Renderer(size, scenes=apartments)
 
     def batch(self, step: int) -> dict[str, Any]:
+        if self.schedule.mode == "success_distributed" and self.schedule.success is None:
+            self.schedule.refresh(self._measure(step))
         rng = generator(self.seed, "perception", self.modality, step)
         rows = [self._panorama(rng, f"{step}-{i}") for i in range(self.panoramas)]
         frames, targets = (np.stack(column) for column in zip(*rows, strict=True))
@@ -76,14 +80,37 @@ class PerceptionRecipe(Recipe):
         else:
             target = free_target(space, xy, heading)
         frames = {RGB: rgb, DEPTH: depth, POSE: np.array([*xy, heading], np.float32)}
-        if self.schedule is not None:
-            frames = corrupt_observation(frames, *self.schedule.draw(self.seed, name, 0))
+        frames = corrupt_observation(frames, *self.schedule.draw(self.seed, name, 0))
+        self._last = frames
         if self.modality == "depth":
             return frames[DEPTH], target
         views = np.arange(
             int(rng.integers(2)), VIEWS, 2
         )  # neighbours overlap: half of them teach as much
         return frames[RGB][views], target[views]
+
+    def _measure(self, step: int) -> dict[str, float]:
+        rates = measure(
+            self.agent,
+            self.schedule,
+            self.renderer,
+            episodes=self.refresh_episodes,
+            apartments=self.apartments,
+            seed=self.seed,
+            step=step,
+        )
+        self.agent.train()
+        return rates
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        """The last panorama of the last batch."""
+        return {"panorama": strip(self._last[RGB])}
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.schedule.load_state_dict(state["schedule"])
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         frames = batch["frames"].flatten(0, 1)

@@ -1,0 +1,248 @@
+"""Zero-initialised residual convolutional adapters for any frozen torch encoder.
+
+``insert_adapters(model, target_modules=...)`` puts ``x + up(act(down(x)))`` behind named modules,
+as PEFT does for attention: the backbone's own weights keep their names and values, and nothing
+changes until ``up`` has learned. A *ring* adapter also sees the neighbours of each view of a
+panorama, so that what one view has lost can come from the views that overlap it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import torch
+import torch.nn.functional as F
+from safetensors import SafetensorError
+from safetensors.torch import load_file
+from torch import Tensor, nn
+
+from mitigate import checkpoint
+from mitigate.files import atomic_text
+from mitigate.keys import VIEWS
+
+NAME = "adapter"  # of the submodule that a target module gets
+WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
+_HOOK = "_adapter_hook"
+
+
+class ConvAdapter(nn.Module):
+    """``x + up(gelu(down(x)))`` on maps ``[n, C, h, w]``; ``up`` starts at zero.
+
+    Args:
+        channels: C. reduction: the bottleneck has ``max(4, C // reduction)`` channels.
+        kernel: of ``down``, odd. views: 1, or the number of views of a panorama whose maps follow
+            one another in the batch (n = P * views); ``down`` then sees each view's map between
+            those of its two neighbours on the ring.
+
+    Source: bottleneck and zero start after Houlsby et al. 2019, as the paper's section on adapters
+    asks; reduction and kernel are ours, chosen for 1-4 % of the weights.
+    """
+
+    def __init__(self, channels: int, reduction: int = 8, kernel: int = 3, views: int = 1) -> None:
+        super().__init__()
+        if channels < 1 or reduction < 1 or kernel % 2 == 0 or views < 1:
+            raise ValueError(
+                f"An adapter needs channels ({channels}), reduction ({reduction}) and views "
+                f"({views}) of at least 1 and an odd kernel ({kernel})."
+            )
+        middle = max(4, channels // reduction)
+        self.views, self.reduction = views, reduction
+        inputs = channels if views == 1 else 3 * channels
+        self.down = nn.Conv2d(inputs, middle, kernel, padding=kernel // 2)
+        self.up = nn.Conv2d(middle, channels, 1)
+        nn.init.zeros_(self.up.weight)
+        nn.init.zeros_(self.up.bias)
+
+    def forward(self, x: Tensor) -> Tensor:
+        return x + self.up(F.gelu(self.down(self._with_neighbours(x))))
+
+    def _with_neighbours(self, x: Tensor) -> Tensor:
+        if self.views == 1:
+            return x
+        ring = x.unflatten(0, (-1, self.views))
+        return torch.cat([ring.roll(1, 1), ring, ring.roll(-1, 1)], 2).flatten(0, 1)
+
+
+def insert_adapters(
+    model: nn.Module,
+    target_modules: Iterable[str],
+    *,
+    reduction: int = 8,
+    kernel: int = 3,
+    ring: Iterable[str] = (),
+    views: int = VIEWS,
+) -> list[str]:
+    """Freeze ``model`` and give an adapter to every module that a target names.
+
+    Args:
+        model: any module tree; the targets must return one tensor ``[n, C, h, w]``.
+        target_modules: regular expressions, each matched against the whole dotted name of a module
+            or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
+            each :class:`ConvAdapter`. ring: targets of the same form that get a ring adapter over
+            ``views`` views. A module found by both gets the ring adapter.
+    Returns the names of the adapted modules, in the model's order.
+    Raises ValueError for a target that matches nothing (with the names there are), a module whose
+    channels cannot be told, or a model that has adapters already.
+    """
+    if adapted(model):
+        raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
+    plain, ringed = _find(model, target_modules), _find(model, ring)
+    model.requires_grad_(False)
+    names = [name for name, _ in model.named_modules() if name in plain or name in ringed]
+    for name in names:
+        module = model.get_submodule(name)
+        adapter = ConvAdapter(
+            _channels(name, module), reduction, kernel, views if name in ringed else 1
+        )
+        like = next(module.parameters())
+        _attach(module, adapter.to(like.device, like.dtype))
+    return names
+
+
+def adapted(model: nn.Module) -> list[str]:
+    """Names of the modules of ``model`` that have an adapter."""
+    return [n for n, m in model.named_modules() if isinstance(getattr(m, NAME, None), ConvAdapter)]
+
+
+def remove_adapters(model: nn.Module) -> None:
+    """Take all adapters out; the backbone is what it was before they came in."""
+    for name in adapted(model):
+        module = model.get_submodule(name)
+        getattr(module, _HOOK).remove()
+        delattr(module, _HOOK)
+        delattr(module, NAME)
+
+
+def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
+    """The parameters of the adapters alone."""
+    return [p for n in adapted(model) for p in getattr(model.get_submodule(n), NAME).parameters()]
+
+
+def trainable_share(model: nn.Module) -> float:
+    """Adapter parameters as a share of the backbone's own, in [0, 1]."""
+    own = sum(p.numel() for p in adapter_parameters(model))
+    return own / max(1, sum(p.numel() for p in model.parameters()) - own)
+
+
+def save_adapters(model: nn.Module, folder: str | Path) -> Path:
+    """Write the adapters alone: ``adapters.safetensors`` and ``adapters.json`` (names, shapes of
+    the bottlenecks, sha256 of the backbone). Returns the folder. Raises ValueError if there are
+    none."""
+    names, folder = adapted(model), Path(folder)
+    if not names:
+        raise ValueError("There are no adapters to save: call insert_adapters(model, ...) first.")
+    folder.mkdir(parents=True, exist_ok=True)
+    modules = nn.ModuleDict({_key(n): getattr(model.get_submodule(n), NAME) for n in names})
+    checkpoint.save_weights(modules, folder / WEIGHTS)
+    settings = {
+        "backbone_sha256": backbone_sha(model),
+        "adapters": {n: _settings(getattr(model.get_submodule(n), NAME)) for n in names},
+    }
+    with atomic_text(folder / SETTINGS) as file:
+        json.dump(settings, file, indent=2)
+    return folder
+
+
+def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
+    """Insert the adapters that ``save_adapters`` wrote; returns the adapted modules' names.
+
+    Raises FileNotFoundError if a file is missing; ValueError for a damaged file, for adapters
+    trained on another backbone, or for modules that ``model`` does not have.
+    """
+    folder = Path(folder)
+    for file in (folder / WEIGHTS, folder / SETTINGS):
+        if not file.is_file():
+            raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
+    try:
+        settings = json.loads((folder / SETTINGS).read_text(encoding="utf-8"))
+        tensors = load_file(folder / WEIGHTS)
+        shapes = dict(settings["adapters"])
+        wanted = settings["backbone_sha256"]
+    except (SafetensorError, OSError, ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"The adapters in {folder} are cut short or damaged ({error}).") from error
+    found = backbone_sha(model)
+    if found != wanted:
+        raise ValueError(
+            f"The adapters in {folder} were trained on a backbone with sha256 {wanted}, but this "
+            f"one has {found}. Load the weights they were trained on first."
+        )
+    missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
+    if missing:
+        raise ValueError(f"This model has no module called {', '.join(missing)}.")
+    model.requires_grad_(False)
+    for name, shape in shapes.items():
+        adapter = ConvAdapter(**shape)
+        prefix = f"{_key(name)}."
+        adapter.load_state_dict(
+            {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
+        )
+        _attach(model.get_submodule(name), adapter)
+    return list(shapes)
+
+
+def backbone_sha(model: nn.Module) -> str:
+    """``checkpoint.weights_sha`` of everything but the adapters."""
+    return checkpoint.weights_sha(model, leave_out=f".{NAME}.")
+
+
+def _adapt(module: nn.Module, inputs: Any, output: Tensor) -> Tensor:
+    """Forward hook: the adapter of ``module`` on its output."""
+    return getattr(module, NAME)(output)
+
+
+def _attach(module: nn.Module, adapter: ConvAdapter) -> None:
+    module.add_module(NAME, adapter)
+    setattr(module, _HOOK, module.register_forward_hook(_adapt))
+
+
+def _find(model: nn.Module, targets: Iterable[str]) -> set[str]:
+    names = [name for name, _ in model.named_modules() if name]
+    found: set[str] = set()
+    for target in targets:
+        pattern = re.compile(rf"(?:.*\.)?(?:{target})")
+        hits = {name for name in names if pattern.fullmatch(name)}
+        if not hits:
+            raise ValueError(
+                f"target module {target!r} matches none of the model's {len(names)} modules, such "
+                f"as {', '.join(names[:12])}. Give the end of a dotted name, or a regular "
+                "expression for it."
+            )
+        found |= hits
+    return found
+
+
+def _channels(name: str, module: nn.Module) -> int:
+    """Channels of the module's output: those of its last convolution or normalisation."""
+    channels = 0
+    for part in module.modules():
+        if isinstance(part, nn.Conv2d):
+            channels = part.out_channels
+        elif isinstance(part, nn.GroupNorm):
+            channels = part.num_channels
+        elif isinstance(part, nn.BatchNorm2d):
+            channels = part.num_features
+    if not channels:
+        raise ValueError(
+            f"The channels of {name} cannot be told: it holds no Conv2d, GroupNorm or BatchNorm2d. "
+            "Choose a module that ends in one."
+        )
+    return channels
+
+
+def _settings(adapter: ConvAdapter) -> dict[str, int]:
+    channels = adapter.up.out_channels
+    return {
+        "channels": channels,
+        "reduction": adapter.reduction,
+        "kernel": adapter.down.kernel_size[0],
+        "views": adapter.views,
+    }
+
+
+def _key(name: str) -> str:
+    """A module's name as a ModuleDict's key, which may hold no dot."""
+    return name.replace(".", "/")
