@@ -178,8 +178,8 @@ def _keys(observations: Mapping[str, torch.Tensor]) -> list[list[int]]:
         what = "no" if given is None else f"{given.dtype} {tuple(given.shape)} as"
         raise ValueError(
             f"The batch holds {what} {KEY!r}, but the corruption of a frame is keyed by it, int64 "
-            "[B, 2]. Add the lab sensor: habitat/task/lab_sensors@habitat.task.lab_sensors."
-            f"{KEY}={KEY} (importing mitigate.envs.habitat_baselines registers it); outside "
+            f"[B, 2]. Add {KEY!r} to the task's lab_sensors (importing mitigate.envs."
+            "habitat_baselines registers it, see docs/corruption-entry-points.md); outside "
             "habitat-baselines call mitigate.envs.habitat.corrupt_habitat."
         )
     return given.tolist()

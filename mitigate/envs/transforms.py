@@ -70,12 +70,15 @@ class CorruptObservation(Transform):
         return self._corrupt(tensordict_reset, mask.nonzero().flatten().tolist())
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Corrupt stored data of any batch shape in place of their clean frames."""
-        self._corrupt(tensordict)
-        following = tensordict.get("next", None)
+        """Stored data of any batch shape with corrupted frames.
+
+        A new tensordict, as a buffer may hand out its very storage; other entries are shared.
+        """
+        out = self._corrupt(tensordict.copy())
+        following = out.get("next", None)
         if following is not None:
             self._corrupt(following)
-        return tensordict
+        return out
 
     def _corrupt(self, data: TensorDictBase, rows: list[int] | None = None) -> TensorDictBase:
         drawn = self._draw(data)
