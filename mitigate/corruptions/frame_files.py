@@ -64,7 +64,8 @@ def corrupted(
         metres = stored.astype(np.float32)
         hurt = corrupt_frame(metres)
         with io.BytesIO() as file:
-            np.save(file, np.where(_same(hurt, metres), stored, hurt.astype(stored.dtype)))
+            written = np.where(_same(hurt, metres), stored, hurt).astype(stored.dtype)
+            np.save(file, written)
             return file.getvalue()
     stored = _decode(path)
     metres = (stored * unit).astype(np.float32)
