@@ -53,7 +53,7 @@ HEAD = ("name", "hurts", "severity s", "kept in an episode", "drawn each frame",
 
 
 def modality(name: str) -> str:
-    """ "rgb" or "depth"."""
+    """What the corruption ``name`` hurts: "rgb" or "depth"."""
     return "rgb" if name in RGB else "depth"
 
 

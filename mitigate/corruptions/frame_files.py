@@ -27,7 +27,10 @@ class LeftOutError(ValueError):
 
 
 def modality(path: Path) -> str:
-    """ "rgb" or "depth", by the name and, for PNG, the header; LeftOutError if it is neither."""
+    """What a file holds, "rgb" or "depth": by its name and, for PNG, the header.
+
+    Raises LeftOutError if it is neither.
+    """
     suffix = path.suffix.lower()
     if suffix != ".png":
         return DEPTH if suffix == ".npy" else RGB

@@ -18,9 +18,6 @@ except ImportError as error:
     ) from error
 
 from mitigate.corruptions import (
-    RGB as RGB_NAMES,
-)
-from mitigate.corruptions import (
     Corruption,
     DepthSensor,
     Key,
@@ -28,6 +25,7 @@ from mitigate.corruptions import (
     corrupt_normalised,
     corrupt_observation,
 )
+from mitigate.corruptions.catalogue import modality
 from mitigate.corruptions.normalised import check_sensor
 from mitigate.keys import DEPTH, POSE, RGB
 
@@ -139,11 +137,10 @@ class CorruptObservation(gymnasium.ObservationWrapper):
             )
         names = () if self.schedule.mode == "clean" else self.schedule.names
         for name in names:
-            modality = RGB if name in RGB_NAMES else DEPTH
-            if modality not in found:
+            if modality(name) not in found:
                 raise ValueError(
-                    f"The schedule draws {name!r}, which hurts {modality}, but the environment "
-                    f"gives only {', '.join(found)}. Give the schedule names of "
+                    f"The schedule draws {name!r}, which hurts {modality(name)}, but the "
+                    f"environment gives only {', '.join(found)}. Give the schedule names of "
                     f"{', '.join(found)} corruptions, such as names=mitigate.corruptions."
                     f"{'RGB' if RGB in found else 'DEPTH'}."
                 )
