@@ -17,6 +17,7 @@ NEEDED = (
     "numba",
     "opencv-python-headless",
     "panda3d",
+    "pillow",
     "hydra-core",
     "tensorboard",
     "safetensors",
@@ -27,6 +28,7 @@ NEEDED = (
 )
 EXTRAS = {
     "dev": ("pytest", "ruff", "mypy", "hypothesis"),
+    "gymnasium": ("gymnasium",),
     "sweep": ("hydra-joblib-launcher",),
     "nlp": ("spacy",),
     "onnx": ("onnx", "onnxruntime"),

@@ -1,4 +1,4 @@
-"""Text and JSON files, gzipped or not: opened by content, streamed, written whole or not."""
+"""Files written whole or not at all; text and JSON, gzipped or not, opened by content, streamed."""
 
 from __future__ import annotations
 
@@ -55,6 +55,21 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
                 plain.detach()  # flushes, and leaves the file open
             raw.flush()
             os.fsync(raw.fileno())
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_bytes(path: Path | str, data: bytes) -> None:
+    """Write ``data`` to ``path``, which is there whole or not at all. Makes the folder."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    try:
+        with open(temporary, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)

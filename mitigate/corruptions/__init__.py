@@ -2,6 +2,7 @@
 
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
+from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.corruptions.schedule import MODES, Schedule
 from mitigate.corruptions.suite import (
     CLEAN,
@@ -26,5 +27,6 @@ __all__ = [
     "Key",
     "Schedule",
     "corrupt",
+    "corrupt_normalised",
     "corrupt_observation",
 ]

@@ -77,6 +77,11 @@ class Schedule:
         if success is not None:
             self.refresh(success)
 
+    @classmethod
+    def always(cls, name: str, severity: float) -> Schedule:
+        """The corruption ``name`` at ``severity`` in every frame of every episode, as evaluated."""
+        return cls("per_episode", severity, clean_share=0.0, names=(name,))
+
     @property
     def weights(self) -> dict[str, float]:
         """Probability of each corruption given that the frame is not clean; adds up to 1."""

@@ -97,6 +97,20 @@ class Corruption:
 CLEAN = Corruption("clean", 0.0)
 
 
+def as_key(key: Key | int | str) -> Key:
+    """``key``; a whole number n is Key(n, "0"), a text t is Key(0, t). ValueError for the rest."""
+    if isinstance(key, Key):
+        return key
+    if isinstance(key, str):
+        return Key(0, key)
+    if isinstance(key, int | np.integer) and not isinstance(key, bool):
+        return Key(int(key), "0")
+    raise ValueError(
+        "key must be a Key(seed, episode, frame), a whole number (the seed) or a text (the "
+        f"episode), but it is {key!r}. It names the random draw: equal keys give equal pixels."
+    )
+
+
 def _rgb_views(frame: np.ndarray) -> np.ndarray:
     """The frame as contiguous uint8 [V, H, W, 3]; ValueError for anything else."""
     if frame.dtype != np.uint8:
@@ -137,7 +151,7 @@ def corrupt(
     name: str,
     severity: float,
     *,
-    key: Key,
+    key: Key | int | str,
     heading: float | None = None,
     sensor: DepthSensor = SENSOR,
 ) -> np.ndarray:
@@ -148,7 +162,7 @@ def corrupt(
             [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees.
         name: one of NAMES.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
-        key: names the random draw.
+        key: names the random draw; a whole number is a seed, a text an episode.
         heading: the agent's heading in radians, counter-clockwise. The flare keeps its direction
             in the world; None (unknown) keeps it at its place in view 0 instead.
         sensor: depth range and sentinel.
@@ -158,8 +172,7 @@ def corrupt(
     """
     check_name(name)
     severity = check_severity(severity)
-    if not isinstance(key, Key):
-        raise ValueError(f"key must be a Key(seed, episode, frame), but it is {key!r}.")
+    key = as_key(key)
     frame = np.asarray(frame)
     views = _rgb_views(frame) if name in _RGB else _depth_views(frame)
     if severity == 0.0:

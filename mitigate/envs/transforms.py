@@ -1,15 +1,22 @@
-"""Corruptions inside torchrl: a ``Transform`` for environments and replay buffers alike."""
+"""Corruptions inside torchrl: transforms for environments and replay buffers alike."""
 
 from __future__ import annotations
 
+import numpy as np
 import torch
-from tensordict import TensorDictBase
+from tensordict import NestedKey, TensorDictBase
+from torchrl.data import Composite, Unbounded
 from torchrl.envs import Transform
 
-from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.corruptions import (
+    Corruption,
+    DepthSensor,
+    Key,
+    Schedule,
+    corrupt_normalised,
+    corrupt_observation,
+)
 from mitigate.keys import DEPTH, EPISODE, FRAME, POSE, RGB
-
-_NEEDED = (EPISODE, FRAME)
 
 
 class CorruptObservation(Transform):
@@ -19,18 +26,38 @@ class CorruptObservation(Transform):
     ``episode``, which changes at every reset; nothing is kept here. So the pixels do not depend on
     how many environments run side by side, on partial resets, or on whether a frame passes in an
     environment (``_call``) or later, out of a replay buffer that stores clean frames (``forward``,
-    which also corrupts ``("next", ...)`` if it is there).
+    which also corrupts ``("next", ...)`` if it is there). An environment that names no episodes
+    takes an ``EpisodeCounter`` before this transform.
+
+    Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
+    [*batch, (V,) H, W, 1]: put it before transforms that move channels or make floats. Any batch
+    shape, any device; the work is done on the CPU and the result goes back to the frames' device.
 
     Args:
-        schedule: which frame is hurt by what.
+        schedule: which frame is hurt by what; ``Schedule.always("spatter", 0.6)`` for one only.
         seed: of every random draw.
+        rgb, depth: names of the two entries; an absent one is left out.
+        sensor: depth range and sentinel.
+        normalised: depth is in [0, 1] over the sensor's range instead of in metres.
 
-    Any batch shape. Raises ValueError if the data name no episode or frame.
+    Raises ValueError if the data name no episode or frame, and as ``corrupt_observation`` does.
     """
 
-    def __init__(self, schedule: Schedule, seed: int = 0) -> None:
-        super().__init__(in_keys=[RGB, DEPTH], out_keys=[RGB, DEPTH])
+    def __init__(
+        self,
+        schedule: Schedule,
+        seed: int = 0,
+        *,
+        rgb: NestedKey = RGB,
+        depth: NestedKey = DEPTH,
+        sensor: DepthSensor | None = None,
+        normalised: bool = False,
+    ) -> None:
+        super().__init__(in_keys=[rgb, depth], out_keys=[rgb, depth])
         self.schedule, self.seed = schedule, seed
+        self.entries = {RGB: rgb, DEPTH: depth, POSE: POSE}
+        self.sensor = sensor or DepthSensor()
+        self._corrupt_instant = corrupt_normalised if normalised else corrupt_observation
 
     def _call(self, next_tensordict: TensorDictBase) -> TensorDictBase:
         return self._corrupt(next_tensordict)
@@ -38,40 +65,130 @@ class CorruptObservation(Transform):
     def _reset(
         self, tensordict: TensorDictBase | None, tensordict_reset: TensorDictBase
     ) -> TensorDictBase:
-        return self._corrupt(tensordict_reset)
+        """Corrupt what was reset; torchrl drops the other rows and keeps those it had."""
+        mask = _reset_mask(self, tensordict, tensordict_reset)
+        return self._corrupt(tensordict_reset, mask.nonzero().flatten().tolist())
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Corrupt stored data of any batch shape in place of their clean frames."""
-        self._corrupt(tensordict)
-        following = tensordict.get("next", None)
+        """Stored data of any batch shape with corrupted frames.
+
+        A new tensordict, as a buffer may hand out its very storage; other entries are shared.
+        """
+        out = self._corrupt(tensordict.copy())
+        following = out.get("next", None)
         if following is not None:
             self._corrupt(following)
-        return tensordict
+        return out
 
-    def _corrupt(self, data: TensorDictBase) -> TensorDictBase:
+    def _corrupt(self, data: TensorDictBase, rows: list[int] | None = None) -> TensorDictBase:
+        drawn = self._draw(data)
+        batch = len(data.batch_size)
+        stored = {name: data.get(entry, None) for name, entry in self.entries.items()}
+        frames = {
+            name: value.detach().cpu().reshape(-1, *value.shape[batch:]).numpy()
+            for name, value in stored.items()
+            if value is not None
+        }
+        hurt: dict[str, np.ndarray] = {}
+        for row in range(len(drawn)) if rows is None else rows:
+            corruption, key = drawn[row]
+            name = corruption.modality
+            if name == "none":
+                continue
+            instant = {entry: views[row] for entry, views in frames.items()}
+            after = self._corrupt_instant(instant, corruption, key, self.sensor)
+            hurt.setdefault(name, frames[name].copy())[row] = after[name]
+        for name, views in hurt.items():
+            value = stored[name]
+            data.set(
+                self.entries[name], torch.from_numpy(views).reshape(value.shape).to(value.device)
+            )
+        return data
+
+    def _draw(self, data: TensorDictBase) -> list[tuple[Corruption, Key]]:
+        """The corruption and key of every instant, in row-major order."""
         present = set(data.keys())  # a tensordict has no `in` of its own
-        missing = [name for name in _NEEDED if name not in present]
+        missing = [name for name in (EPISODE, FRAME) if name not in present]
         if missing:
             raise ValueError(
                 f"CorruptObservation finds no {' and no '.join(map(repr, missing))} in the data, "
                 f"only {sorted(map(str, present))}. The environment must give 'episode' (a string "
-                "unique to each run of an episode) and 'frame' (int64 [1]), as ApartmentsEnv does, "
-                "because every random draw is keyed by them."
+                "or int64 [1], unique to each run of an episode) and 'frame' (int64 [1]), as "
+                "ApartmentsEnv does, because every random draw is keyed by them; for another "
+                "environment put an EpisodeCounter() before this transform."
             )
-        flat = data.select(RGB, DEPTH, POSE, EPISODE, FRAME, strict=False).reshape(-1)
-        hurt = [self._instant(instant) for instant in flat.unbind(0)]
-        for name in hurt[0]:
-            data.set(
-                name,
-                torch.stack([frames[name] for frames in hurt])
-                .reshape(data[name].shape)
-                .to(data[name].device),
-            )
-        return data
+        instants = data.select(EPISODE, FRAME).cpu().reshape(-1).unbind(0)
+        return [
+            self.schedule.draw(self.seed, _name(instant[EPISODE]), int(instant[FRAME]))
+            for instant in instants
+        ]
 
-    def _instant(self, instant: TensorDictBase) -> dict[str, torch.Tensor]:
-        found = {name: instant.get(name, None) for name in (RGB, DEPTH, POSE)}
-        frames = {name: value.cpu().numpy() for name, value in found.items() if value is not None}
-        drawn = self.schedule.draw(self.seed, instant[EPISODE], int(instant[FRAME]))
-        hurt = corrupt_observation(frames, *drawn)
-        return {name: torch.from_numpy(hurt[name]) for name in frames if name != POSE}
+
+class EpisodeCounter(Transform):
+    """Adds ``episode`` and ``frame``, int64 [*batch, 1], to an environment that has neither.
+
+    ``episode`` numbers the runs of episodes and ``frame`` the steps since the reset. Row i of n
+    parallel ones runs the episodes i, i + n, i + 2 n, ...: a reset mask moves on only the rows that
+    it names, so the numbers do not depend on when the others end.
+
+    Args:
+        worker, workers: this environment is number ``worker`` of ``workers`` equal ones in
+            processes of their own; their rows count as one batch.
+
+    Raises ValueError for a worker outside 0 ... workers - 1.
+    """
+
+    def __init__(self, worker: int = 0, workers: int = 1) -> None:
+        if not 0 <= worker < workers:
+            raise ValueError(
+                f"worker={worker} of workers={workers}: worker counts from 0 to {workers - 1}."
+            )
+        super().__init__(in_keys=[], out_keys=[EPISODE, FRAME])
+        self.worker, self.workers = worker, workers
+        self._begun: torch.Tensor | None = None  # int64 [rows]: resets of each row so far
+
+    def transform_observation_spec(self, observation_spec: Composite) -> Composite:
+        """The spec with the two entries added."""
+        shape = (*self.parent.batch_size, 1)
+        for name in self.out_keys:
+            observation_spec[name] = Unbounded(
+                shape=shape, dtype=torch.int64, device=observation_spec.device
+            )
+        return observation_spec
+
+    def _reset(
+        self, tensordict: TensorDictBase | None, tensordict_reset: TensorDictBase
+    ) -> TensorDictBase:
+        mask = _reset_mask(self, tensordict, tensordict_reset)
+        rows = mask.numel()
+        begun = torch.zeros(rows, dtype=torch.int64) if self._begun is None else self._begun
+        self._begun = begun + mask
+        place = self.worker * rows + torch.arange(rows)
+        number = place + (self._begun - 1).clamp(min=0) * rows * self.workers
+        shape, device = (*tensordict_reset.batch_size, 1), tensordict_reset.device
+        tensordict_reset.set(EPISODE, number.reshape(shape).to(device))
+        return tensordict_reset.set(FRAME, torch.zeros(shape, dtype=torch.int64, device=device))
+
+    def _step(self, tensordict: TensorDictBase, next_tensordict: TensorDictBase) -> TensorDictBase:
+        next_tensordict.set(EPISODE, tensordict.get(EPISODE))
+        return next_tensordict.set(FRAME, tensordict.get(FRAME) + 1)
+
+    def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
+        """Raise: stored data must hold the numbers that the environment gave them."""
+        raise RuntimeError("EpisodeCounter belongs in an environment, not in a replay buffer.")
+
+
+def _reset_mask(
+    transform: Transform, tensordict: TensorDictBase | None, reset: TensorDictBase
+) -> torch.Tensor:
+    """bool [rows] on the CPU: which rows of the flattened batch are being reset."""
+    parent = transform.parent
+    name = "_reset" if parent is None else parent.reset_keys[0]
+    mask = None if tensordict is None else tensordict.get(name, None)
+    if mask is None:
+        return torch.ones(reset.batch_size.numel(), dtype=torch.bool)
+    return mask.cpu().reshape(reset.batch_size.numel(), -1).any(-1)
+
+
+def _name(episode: str | torch.Tensor) -> str:
+    return str(int(episode)) if isinstance(episode, torch.Tensor) else episode

@@ -148,9 +148,19 @@ def test_wrong_depth_shapes_are_refused(shape):
         corrupt(np.ones(shape, np.float32), "multipath", 0.5, key=KEY)
 
 
-def test_a_key_that_is_no_key_is_refused(panorama):
-    with pytest.raises(ValueError, match="key must be a Key"):
-        corrupt(panorama[0], "flare", 0.5, key=7)
+@pytest.mark.parametrize("key", [None, 1.5, True, (0, "a")])
+def test_a_key_that_is_no_key_is_refused(panorama, key):
+    with pytest.raises(ValueError, match="key must be a Key.*whole number.*text"):
+        corrupt(panorama[0], "flare", 0.5, key=key)
+
+
+def test_a_number_or_a_text_will_do_for_a_key(panorama):
+    def hurt(key):
+        return corrupt(panorama[0][0], "spatter", 0.5, key=key)
+
+    assert same(hurt(7), hurt(Key(7, "0"))) and same(hurt(np.int64(7)), hurt(7))
+    assert same(hurt("kitchen"), hurt(Key(0, "kitchen")))
+    assert not same(hurt(7), hurt(8)) and not same(hurt("7"), hurt(7))
 
 
 def test_an_observation_is_hurt_in_the_modality_concerned_only(panorama):

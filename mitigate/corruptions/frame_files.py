@@ -1,0 +1,116 @@
+"""Frames in files: 8-bit RGB in PNG and JPEG, depth in 16-bit PNG and in NPY.
+
+Files are untrusted: they are decoded in full before anything is written, and never unpickled.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageOps
+
+DEPTH, RGB = "depth", "rgb"
+SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
+JPEG_QUALITY = 95  # (ours) with full colour resolution; used with format=same alone
+PNG_LEVEL = 3  # of zlib (ours): half the time of the default 6 for a few per cent more bytes
+PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
+COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
+MOST = 65535  # counts of a 16-bit PNG
+
+
+class LeftOutError(ValueError):
+    """A file that cannot be corrupted; the message is the reason."""
+
+
+def modality(path: Path) -> str:
+    """What a file holds, "rgb" or "depth": by its name and, for PNG, the header.
+
+    Raises LeftOutError if it is neither.
+    """
+    suffix = path.suffix.lower()
+    if suffix != ".png":
+        return DEPTH if suffix == ".npy" else RGB
+    try:
+        with open(path, "rb") as file:
+            head = file.read(26)
+    except OSError as error:
+        raise LeftOutError(f"cannot be read: {error.strerror}") from error
+    if len(head) < 26 or not head.startswith(PNG_START):
+        raise LeftOutError("is no PNG file: it is cut short or damaged")
+    bits, colour = struct.unpack("BB", head[24:26])
+    if (bits, colour) in ((8, 2), (16, 0)):
+        return RGB if colour == 2 else DEPTH
+    raise LeftOutError(
+        f"is a {bits}-bit {COLOUR_TYPES.get(colour, 'unknown')} PNG: RGB must be 8-bit RGB without "
+        "alpha, depth 16-bit grey"
+    )
+
+
+def corrupted(
+    path: Path, suffix: str, unit: float, corrupt_frame: Callable[[np.ndarray], np.ndarray]
+) -> bytes:
+    """The bytes of a file of the kind ``suffix`` with the corrupted frame of ``path``.
+
+    ``corrupt_frame`` gets uint8 [H, W, 3] or float32 metres, the shape of the file; ``unit`` is
+    the metres of one count of a 16-bit PNG. Pixels that it leaves alone are written as they were.
+    Raises LeftOutError for a file that is damaged or of another kind.
+    """
+    what = modality(path)
+    if what == RGB:
+        return _encode(Image.fromarray(corrupt_frame(_decode(path))), suffix)
+    if path.suffix.lower() == ".npy":
+        stored = _load(path)
+        metres = stored.astype(np.float32)
+        hurt = corrupt_frame(metres)
+        with io.BytesIO() as file:
+            written = np.where(_same(hurt, metres), stored, hurt).astype(stored.dtype)
+            np.save(file, written)
+            return file.getvalue()
+    stored = _decode(path)
+    metres = (stored * unit).astype(np.float32)
+    hurt = corrupt_frame(metres)
+    counts = np.clip(np.rint(hurt / unit), 1, MOST).astype(np.uint16)
+    counts[hurt <= 0] = 0
+    return _encode(Image.fromarray(np.where(_same(hurt, metres), stored, counts)), suffix)
+
+
+def _decode(path: Path) -> np.ndarray:
+    """uint8 [H, W, 3] or uint16 [H, W]; a JPEG is turned upright as its EXIF data say."""
+    try:
+        with Image.open(path, formats=("PNG", "JPEG")) as image:
+            image.load()
+            mode = image.mode
+            pixels = np.array(ImageOps.exif_transpose(image))
+    except Exception as error:  # whatever a decoder says of an untrusted file is the reason
+        raise LeftOutError(f"cannot be decoded: {error}") from error
+    if mode not in ("RGB", "I;16"):
+        raise LeftOutError(f"has the colours {mode}: RGB must be 8-bit RGB")
+    return pixels
+
+
+def _load(path: Path) -> np.ndarray:
+    try:
+        stored = np.load(path, allow_pickle=False)
+    except Exception as error:  # as above
+        raise LeftOutError(f"cannot be loaded: {error}") from error
+    if not isinstance(stored, np.ndarray) or stored.dtype.kind != "f":
+        kind = stored.dtype if isinstance(stored, np.ndarray) else "an archive"
+        raise LeftOutError(f"holds {kind}: NPY depth must be floating-point metres")
+    return stored
+
+
+def _same(hurt: np.ndarray, metres: np.ndarray) -> np.ndarray:
+    return (hurt == metres) | (np.isnan(hurt) & np.isnan(metres))
+
+
+def _encode(image: Image.Image, suffix: str) -> bytes:
+    with io.BytesIO() as file:
+        if suffix.lower() == ".png":
+            image.save(file, "PNG", compress_level=PNG_LEVEL)
+        else:
+            image.save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
+        return file.getvalue()

@@ -1,0 +1,81 @@
+"""Every example of docs/corruption-entry-points.md runs."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mitigate.corruptions import Corruption, Schedule
+from mitigate.envs.habitat_baselines import CorruptObservationConfig
+
+ROOT = Path(__file__).parent.parent
+PAGE = (ROOT / "docs/corruption-entry-points.md").read_text(encoding="utf-8")
+SECTIONS = dict(re.findall(r"^## ([^\n]+)\n(.*?)(?=^## |\Z)", PAGE, re.MULTILINE | re.DOTALL))
+LONGEST = 15  # lines of an example, empty ones not counted
+
+
+def blocks(language: str) -> list:
+    return [
+        pytest.param(code, id=f"{title} {number}")
+        for title, text in SECTIONS.items()
+        for number, code in enumerate(re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL))
+    ]
+
+
+def test_every_entry_point_has_a_short_example():
+    assert len(SECTIONS) == 6
+    for title, text in SECTIONS.items():
+        examples = re.findall(r"```(?:python|bash)\n(.*?)```", text, re.DOTALL)
+        assert examples, title
+        lengths = [sum(bool(line) for line in code.splitlines()) for code in examples]
+        assert max(lengths) <= LONGEST, title
+
+
+@pytest.mark.parametrize("code", blocks("python"))
+def test_the_python_examples_run(code, tmp_path, monkeypatch):
+    if "gymnasium" in code:
+        pytest.importorskip("gymnasium")
+    monkeypatch.chdir(tmp_path)
+    assert "assert " in code  # an example that shows nothing is none
+    exec(compile(code, "example", "exec"), {"__name__": "example"})
+
+
+@pytest.mark.parametrize("code", blocks("bash"))
+def test_the_commands_run(code, tmp_path):
+    rng = np.random.default_rng(0)
+    (tmp_path / "recorded/depth").mkdir(parents=True)
+    for number in range(3):
+        rgb = rng.integers(0, 255, (32, 48, 3), dtype=np.uint8)
+        Image.fromarray(rgb).save(tmp_path / f"recorded/{number}.png")
+        depth = rng.integers(500, 9000, (32, 48), dtype=np.uint16)
+        Image.fromarray(depth).save(tmp_path / f"recorded/depth/{number}.png")
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["bash", "-euc", code],
+        cwd=tmp_path,
+        env={**os.environ, "PATH": path, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "hurt/2.png").is_file() and (tmp_path / "holes/depth/2.png").is_file()
+    assert "motion_blur" in done.stdout
+
+
+def test_the_options_named_are_those_there_are():
+    listed = re.search(r"Options \(`CorruptObservationConfig`\): (.*?)\. An", PAGE, re.DOTALL)
+    assert listed is not None
+    names = re.findall(r"`(\w+)`", listed[1])
+    assert names == [n for n in CorruptObservationConfig.__dataclass_fields__ if n != "type"]
+
+
+def test_the_schedule_that_the_page_names_for_evaluation():
+    assert Schedule.always("spatter", 0.6).draw(0, "x", 9)[0] == Corruption("spatter", 0.6)
