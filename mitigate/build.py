@@ -10,7 +10,7 @@ from typing import Any
 
 from hydra.errors import InstantiationException
 from hydra.utils import instantiate
-from omegaconf import DictConfig
+from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
 from mitigate import checkpoint, seeding
@@ -32,6 +32,32 @@ def build(node: DictConfig, **given: Any) -> Any:
         if isinstance(cause, (ValueError, FileNotFoundError)):
             raise cause from error
         raise
+
+
+def settings_of(node: DictConfig, weights: str) -> DictConfig:
+    """Return ``node`` with the settings of the agent that ``weights`` belong to.
+
+    They come, as data, from ``config.yaml`` beside the weights; without that file ``node`` is
+    returned as it is. Raises ValueError if the weights are those of another kind of agent, or if
+    the file names anything else to build.
+    """
+    file = checkpoint.weights_file(weights).with_name("config.yaml")
+    if not file.is_file():
+        return node
+    found = OmegaConf.load(file).get("agent", {})
+    target = found.get("_target_", node._target_)
+    if target != node._target_:
+        raise ValueError(
+            f"{weights} holds a {target}, but agent is {node._target_}: choose the agent that the "
+            "weights belong to (agent=...)."
+        )
+    settings = {name: value for name, value in found.items() if name != "_target_"}
+    if "_target_" in str(OmegaConf.to_yaml(OmegaConf.create(settings))):
+        raise ValueError(
+            f"{file} names a class to build inside the agent's settings (_target_). Settings that "
+            "come with weights are data; nothing in them is run. Do not use this folder."
+        )
+    return OmegaConf.merge(node, settings)
 
 
 def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Module:

@@ -22,6 +22,7 @@ from torch import nn
 FORMAT = 1
 REQUIRED = ("format", "step", "model", "optimizer", "scheduler", "rng", "config")
 WEIGHTS = "model.safetensors"
+ADAPTER = ".adapter."  # in the names of adapters' tensors, see mitigate/agents/adapters.py
 _NAME = re.compile(r"step-(\d{8})\.pt")
 
 
@@ -122,6 +123,9 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
 def load_weights(module: nn.Module, path: str | Path) -> None:
     """Fill ``module`` from :func:`save_weights`' file; names and shapes must match exactly.
 
+    Only adapters may be absent, all of them, from weights that were trained before they came in:
+    they stay as they are.
+
     Raises FileNotFoundError or ValueError, naming the file and the first differences.
     """
     file = weights_file(path)
@@ -133,6 +137,8 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
             "Fetch or train them again."
         ) from error
     wanted = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
+    if not any(ADAPTER in name for name in found):
+        wanted = {name: value for name, value in wanted.items() if ADAPTER not in name}
     wrong = sorted(
         name
         for name in {*found, *wanted}

@@ -17,7 +17,7 @@ from omegaconf import MISSING, DictConfig
 from torch import nn
 
 from mitigate import cli
-from mitigate.build import build_agent
+from mitigate.build import build_agent, settings_of
 
 ROWS = "rows.jsonl"
 
@@ -62,7 +62,8 @@ def run(cfg: DictConfig) -> Path:
     """
     from mitigate.evaluation.evaluator import evaluate
 
-    agent = build_agent(cfg.agent, weights=cfg.checkpoint, seed=cfg.seed).eval()
+    node = settings_of(cfg.agent, cfg.checkpoint)
+    agent = build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     name = cfg.name or name_of(cfg.checkpoint)
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)

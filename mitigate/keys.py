@@ -16,6 +16,8 @@ from __future__ import annotations
 RGB = "rgb"
 DEPTH = "depth"
 POSE = "pose"
+CLEAN_RGB = "clean_rgb"  # in training batches: the frames before the corruption
+CLEAN_DEPTH = "clean_depth"
 # what torchrl environments add: text, the name of this run of an episode, low-level steps taken
 INSTRUCTION = "instruction"
 EPISODE = "episode"

@@ -22,7 +22,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate import checkpoint, cli, seeding
-from mitigate.build import build, build_agent
+from mitigate.build import build, build_agent, settings_of
 from mitigate.evaluate import EvaluationConfig, conditions, episodes, report_before_after
 from mitigate.trainer import Trainer
 
@@ -97,7 +97,10 @@ def run(cfg: DictConfig) -> Path:
     OmegaConf.save(OmegaConf.create({"agent": _plain(cfg.agent)}), folder / "agent" / "config.yaml")
     OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
     if cfg.evaluation.enabled:
-        base = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed).eval() if cfg.init else None
+        base = None
+        if cfg.init:
+            node = settings_of(cfg.agent, cfg.init)
+            base = build_agent(node, weights=cfg.init, seed=cfg.seed).eval()
         report_before_after(cfg, base, agent, folder)
     print(f"done: {folder}", flush=True)
     return folder

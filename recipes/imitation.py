@@ -119,12 +119,18 @@ class ImitationRecipe(Recipe):
         )
         self.agent.train()
         looks = [look for world in worlds for look in world.looks]
-        wanted = [n for n in looks[0] if self.trains_perception or n == "shows"]
-        stacked = {n: torch.from_numpy(np.stack([look[n] for look in looks])) for n in wanted}
+        stacked = {
+            name: torch.from_numpy(np.stack([look[name] for look in looks]))
+            for name in self.entries()
+        }
         if not self.trains_perception:
             stacked["views"] = torch.stack([v for trace in traces for v in trace.views])
         self._picture = strip(looks[0][RGB])
         return {**decisions_of(traces), **stacked, "tokens": tokens}
+
+    def entries(self) -> tuple[str, ...]:
+        """What ``forward`` reads of the looks (``mitigate/agents/rendered.py``)."""
+        return (RGB, DEPTH, "concepts", "free", "shows") if self.trains_perception else ("shows",)
 
     def look(self, worlds: list[RenderedWorld]) -> list[tuple[Tensor, np.ndarray]]:
         """What the agent makes of the (corrupted) panorama of each world."""
@@ -149,27 +155,35 @@ class ImitationRecipe(Recipe):
         return self._renderer
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        if not self.trains_perception:
-            return self.planner_losses(batch, batch["views"])
-        views, concepts, waypoints = self.agent.perceive(batch[RGB], batch[DEPTH])
-        values = self.planner_losses(batch, views)
-        values["concepts"] = F.binary_cross_entropy_with_logits(
-            concepts.float(), batch["concepts"], pos_weight=torch.tensor(2.0)
-        )
-        values["waypoints"] = waypoint_loss(waypoints, batch["free"])
-        values["loss"] = (
-            values["loss"]
-            + self.weights["concepts"] * values["concepts"]
-            + self.weights["waypoints"] * values["waypoints"]
-        )
-        values["f1"] = f1(concepts[..., THINGS], batch["concepts"][..., THINGS])
-        values["iou"] = agreement(waypoints, batch["free"])
-        return values
+        views, values = self.perception(batch)
+        losses = self.planner_losses(batch, self.plan(self.agent, batch, views))
+        for name in ("concepts", "waypoints") if values else ():
+            losses["loss"] = losses["loss"] + self.weights[name] * values[name]
+        return {**losses, **values}
 
-    def planner_losses(self, batch: dict[str, Any], views: Tensor) -> dict[str, Tensor]:
-        """Imitation and auxiliary terms from view features [P, 12, F]."""
-        planner, decisions = self.agent.planner, batch["decisions"]
-        out = planner(planner.read(batch["tokens"]), planner.look(views), decisions)
+    def perception(self, batch: dict[str, Any]) -> tuple[Tensor, dict[str, Tensor]]:
+        """View features [P, 12, F] and the perception's losses (none while it is frozen)."""
+        if not self.trains_perception:
+            return batch["views"], {}
+        views, concepts, waypoints = self.agent.perceive(batch[RGB], batch[DEPTH])
+        return views, {
+            "concepts": F.binary_cross_entropy_with_logits(
+                concepts.float(), batch["concepts"], pos_weight=torch.tensor(2.0)
+            ),
+            "waypoints": waypoint_loss(waypoints, batch["free"]),
+            "f1": f1(concepts[..., THINGS], batch["concepts"][..., THINGS]),
+            "iou": agreement(waypoints, batch["free"]),
+        }
+
+    @staticmethod
+    def plan(agent: TopologicalAgent, batch: dict[str, Any], views: Tensor) -> dict[str, Tensor]:
+        """What ``agent`` makes of the batch's decisions from view features [P, 12, F]."""
+        planner = agent.planner
+        return planner(planner.read(batch["tokens"]), planner.look(views), batch["decisions"])
+
+    def planner_losses(self, batch: dict[str, Any], out: dict[str, Tensor]) -> dict[str, Tensor]:
+        """Imitation and auxiliary terms of the planner's answer ``out``."""
+        decisions = batch["decisions"]
         target, stop = batch["target"], batch["target"][:, 0]
         log_p = out["logits"].log_softmax(-1).masked_fill(~decisions.allowed, 0.0)
         entropy = -(target * target.clamp(min=1e-9).log()).sum(-1)

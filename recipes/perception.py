@@ -14,6 +14,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
+from mitigate.agents.adapters import adapted, adapter_parameters
 from mitigate.agents.concepts import THINGS, view_labels
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import agreement, free_target, waypoint_loss
@@ -31,6 +32,7 @@ class PerceptionRecipe(Recipe):
     """Args: agent; modality "rgb" or "depth"; apartments: how many training layouts; panoramas: a
     batch; schedule: which panorama is hurt by what, None: none. A success-distributed schedule
     without rates starts from those of ``agent`` on ``refresh_episodes`` training episodes each.
+    adapters_only: train the agent's adapters and nothing else.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class PerceptionRecipe(Recipe):
         seed: int = 0,
         schedule: Schedule | None = None,
         refresh_episodes: int = 8,
+        adapters_only: bool = False,
     ) -> None:
         super().__init__()
         if modality not in ("rgb", "depth"):
@@ -52,12 +55,15 @@ class PerceptionRecipe(Recipe):
         self.schedule = schedule or Schedule("clean", 0.0)
         self.refresh_episodes = refresh_episodes
         agent.requires_grad_(False)
-        for part in (
+        parts = (
             (agent.rgb_encoder,)
             if modality == "rgb"
             else (agent.depth_encoder, agent.waypoint_head)
-        ):
-            part.requires_grad_(True)
+        )
+        for part in parts:
+            for trained in adapter_parameters(part) if adapters_only else part.parameters():
+                trained.requires_grad_(True)
+        self.ring = bool(adapted(agent))  # a ring adapter needs all views of a panorama
         self.renderer = Renderer(size, scenes=apartments)
 
     def batch(self, step: int) -> dict[str, Any]:
@@ -65,10 +71,14 @@ class PerceptionRecipe(Recipe):
             self.schedule.refresh(self._measure(step))
         rng = generator(self.seed, "perception", self.modality, step)
         rows = [self._panorama(rng, f"{step}-{i}") for i in range(self.panoramas)]
-        frames, targets = (np.stack(column) for column in zip(*rows, strict=True))
-        return {"frames": torch.from_numpy(frames), "targets": torch.from_numpy(targets)}
+        names = ("frames", "clean", "targets")
+        return {
+            name: torch.from_numpy(np.stack(column))
+            for name, column in zip(names, zip(*rows, strict=True), strict=True)
+        }
 
-    def _panorama(self, rng: np.random.Generator, name: str) -> tuple[np.ndarray, np.ndarray]:
+    def _panorama(self, rng: np.random.Generator, name: str) -> tuple[np.ndarray, ...]:
+        """Frames, the same before the corruption, and labels of one random pose."""
         apartment = apartment_of(f"apartments/train/{int(rng.integers(self.apartments)):06d}")
         space = apartment.space
         xy = space.centre(int(rng.integers(len(space.cells)))) + rng.uniform(-0.05, 0.05, 2)
@@ -83,11 +93,12 @@ class PerceptionRecipe(Recipe):
         frames = corrupt_observation(frames, *self.schedule.draw(self.seed, name, 0))
         self._last = frames
         if self.modality == "depth":
-            return frames[DEPTH], target
-        views = np.arange(
-            int(rng.integers(2)), VIEWS, 2
-        )  # neighbours overlap: half of them teach as much
-        return frames[RGB][views], target[views]
+            return frames[DEPTH], depth, target
+        if self.ring:
+            return frames[RGB], rgb, target
+        # neighbours overlap: half of them teach as much
+        views = np.arange(int(rng.integers(2)), VIEWS, 2)
+        return frames[RGB][views], rgb[views], target[views]
 
     def _measure(self, step: int) -> dict[str, float]:
         rates = measure(
@@ -113,22 +124,31 @@ class PerceptionRecipe(Recipe):
         self.schedule.load_state_dict(state["schedule"])
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        frames = batch["frames"].flatten(0, 1)
+        _, logits = self.see(self.agent, batch["frames"])
+        return self.label_losses(logits, batch["targets"])
+
+    def see(self, agent: TopologicalAgent, frames: Tensor) -> tuple[Tensor, Tensor]:
+        """Features [P, V, F] of a batch's frames (for RGB with the concept probabilities) and the
+        logits that the labels are for."""
+        views = frames.shape[1]
         if self.modality == "depth":
-            features = self.agent.depth_encoder(frames).unflatten(0, (-1, VIEWS))
-            logits = self.agent.waypoint_head(features)
-            return {
-                "loss": waypoint_loss(logits, batch["targets"]),
-                "iou": agreement(logits, batch["targets"]),
-            }
-        _, logits = self.agent.rgb_encoder(frames)
-        targets = batch["targets"].flatten(0, 1)
+            features = agent.depth_encoder(frames.flatten(0, 1)).unflatten(0, (-1, views))
+            return features, agent.waypoint_head(features)
+        features, logits = (
+            x.unflatten(0, (-1, views)) for x in agent.rgb_encoder(frames.flatten(0, 1))
+        )
+        return torch.cat([features, logits.sigmoid()], -1), logits
+
+    def label_losses(self, logits: Tensor, targets: Tensor) -> dict[str, Tensor]:
+        """Losses of concepts [P, V, C] or waypoints [P, 120, 12] against the labels."""
+        if self.modality == "depth":
+            return {"loss": waypoint_loss(logits, targets), "iou": agreement(logits, targets)}
         loss = F.binary_cross_entropy_with_logits(
             logits.float(), targets, pos_weight=torch.tensor(2.0)
         )
         return {
             "loss": loss,
-            "f1": f1(logits[:, THINGS], targets[:, THINGS]),
+            "f1": f1(logits[..., THINGS], targets[..., THINGS]),
             "f1_all": f1(logits, targets),
         }
 

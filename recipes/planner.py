@@ -92,4 +92,4 @@ class PlannerRecipe(ImitationRecipe):
         return {}
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        return self.planner_losses(batch, batch["views"])
+        return self.planner_losses(batch, self.plan(self.agent, batch, batch["views"]))

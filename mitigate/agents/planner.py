@@ -16,6 +16,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.concepts import CONCEPTS, NEAR, THINGS
+from mitigate.agents.fusion import reliability
 from mitigate.agents.mapping import GEOMETRY, SIGHTINGS, Decision
 from mitigate.agents.text import MAX_WORDS, PAD, concept_words, vocabulary
 from mitigate.keys import VIEW_STEP_DEGREES, VIEWS
@@ -117,7 +118,11 @@ class Layer(nn.Module):
 
 
 class Planner(nn.Module):
-    """See the module's docstring. ``view_width`` is the length of a view's feature vector."""
+    """See the module's docstring.
+
+    ``fusion``: keyword arguments of ``fusion.reliability`` (rate, cap): every mean over views then
+    weighs them by the reliability of their encoder features; None: plain means.
+    """
 
     concept_words: Tensor
     yaws: Tensor
@@ -131,8 +136,10 @@ class Planner(nn.Module):
         text_layers: int = 2,
         layers: int = 3,
         dropout: float = 0.1,
+        fusion: dict[str, float] | None = None,
     ) -> None:
         super().__init__()
+        self.fusion = fusion
         self.widths = (rgb_width, len(CONCEPTS), depth_width)
         self.words = nn.Embedding(len(vocabulary()), width, padding_idx=PAD)
         nn.init.normal_(self.words.weight, std=0.5)
@@ -188,7 +195,11 @@ class Planner(nn.Module):
         )
         for layer in self.panorama:
             x = layer(x, None)
-        return self.view_norm(x)
+        x = self.view_norm(x)
+        if self.fusion is None:
+            return x
+        weights = reliability(torch.cat([rgb, depth], -1).float(), **self.fusion)
+        return x * (weights.unsqueeze(-1) * VIEWS).to(x.dtype)  # means over views are weighted now
 
     def forward(
         self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch

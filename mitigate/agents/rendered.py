@@ -12,7 +12,7 @@ from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import landmarks
 from mitigate.envs.episodes import Episode
-from mitigate.keys import DEPTH, POSE, RGB
+from mitigate.keys import CLEAN_DEPTH, CLEAN_RGB, DEPTH, POSE, RGB
 
 
 class RenderedWorld:
@@ -33,19 +33,22 @@ class RenderedWorld:
     def observe(self) -> None:
         """Render, label and corrupt the panorama at the current pose; append it to ``looks``.
 
-        A look holds rgb and depth (``mitigate/keys.py``), concepts [12, C], free [120, 12] (what
-        the waypoint head should find) and shows [12] (which views show the goal's landmarks).
+        A look holds rgb and depth (``mitigate/keys.py``), the same before the corruption
+        (clean_rgb, clean_depth), concepts [12, C], free [120, 12] (what the waypoint head should
+        find) and shows [12] (which views show the goal's landmarks).
         """
         simulator = self.simulator
         rgb, depth, ids = simulator.observe_faces()
         concepts, seen = view_labels(simulator.apartment, ids, depth)
         frames = {RGB: rgb, DEPTH: depth, POSE: self.pose().astype(np.float32)}
         drawn = self.schedule.draw(self.seed, self.name, len(self.looks))
-        frames = corrupt_observation(frames, *drawn)
+        hurt = corrupt_observation(frames, *drawn)
         self.looks.append(
             {
-                RGB: frames[RGB],
-                DEPTH: frames[DEPTH],
+                RGB: hurt[RGB],
+                DEPTH: hurt[DEPTH],
+                CLEAN_RGB: rgb,
+                CLEAN_DEPTH: depth,
                 "concepts": concepts,
                 "free": free_target(simulator.space, simulator.xy, simulator.heading),
                 "shows": np.asarray(seen[:, landmarks(self.episode)].any(1), np.float32),

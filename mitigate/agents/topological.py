@@ -14,6 +14,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import DepthEncoder, RGBEncoder
 from mitigate.agents.mapping import TopologicalMap
@@ -31,12 +32,17 @@ class TopologicalAgent(nn.Module):
 
     Args:
         width: of view features of each sensor. planner: keyword arguments of ``Planner``.
+        adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
         blind: sensors that are blanked before they enter (the ablations): of ``SENSORS``.
     Raises ValueError for an unknown name in ``blind``.
     """
 
     def __init__(
-        self, width: int = 128, planner: dict[str, Any] | None = None, blind: tuple[str, ...] = ()
+        self,
+        width: int = 128,
+        planner: dict[str, Any] | None = None,
+        blind: tuple[str, ...] = (),
+        adapters: dict[str, Any] | None = None,
     ) -> None:
         super().__init__()
         unknown = set(blind) - set(SENSORS)
@@ -49,6 +55,8 @@ class TopologicalAgent(nn.Module):
         self.depth_encoder = DepthEncoder(width=width)
         self.waypoint_head = WaypointHead(width)
         self.planner = Planner(width, width, **(planner or {}))
+        if adapters:
+            insert_adapters(self, **adapters)
 
     @property
     def device(self) -> torch.device:

@@ -1,0 +1,206 @@
+"""Adapters change nothing when they come in, leave the backbone alone, and can be taken out."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections import OrderedDict
+
+import pytest
+import torch
+from torch import Tensor, nn
+
+from mitigate.agents import adapters
+from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.checkpoint import weights_sha
+from mitigate.keys import VIEWS
+
+
+class Bottleneck(nn.Module):
+    """ResNet-50's block: 1x1, 3x3, 1x1 with BatchNorm."""
+
+    def __init__(self, inputs: int, middle: int, stride: int) -> None:
+        super().__init__()
+        self.conv1, self.bn1 = nn.Conv2d(inputs, middle, 1, bias=False), nn.BatchNorm2d(middle)
+        self.conv2 = nn.Conv2d(middle, middle, 3, stride, 1, bias=False)
+        self.bn2 = nn.BatchNorm2d(middle)
+        self.conv3 = nn.Conv2d(middle, 4 * middle, 1, bias=False)
+        self.bn3 = nn.BatchNorm2d(4 * middle)
+        self.downsample = nn.Sequential(
+            nn.Conv2d(inputs, 4 * middle, 1, stride, bias=False), nn.BatchNorm2d(4 * middle)
+        )
+
+    def forward(self, x: Tensor) -> Tensor:
+        y = torch.relu(self.bn1(self.conv1(x)))
+        y = self.bn3(self.conv3(torch.relu(self.bn2(self.conv2(y)))))
+        return torch.relu(y + self.downsample(x))
+
+
+class ResNet(nn.Module):
+    """The shape of torchvision's ResNet-50, thin: layer1 to layer4 behind a stem."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.conv1, self.bn1 = nn.Conv2d(3, 8, 7, 2, 3, bias=False), nn.BatchNorm2d(8)
+        for i, (inputs, middle) in enumerate(((8, 4), (16, 8), (32, 16), (64, 32)), 1):
+            block = Bottleneck(inputs, middle, 1 if i == 1 else 2)
+            self.add_module(f"layer{i}", nn.Sequential(block, Bottleneck(4 * middle, middle, 1)))
+        self.fc = nn.Linear(128, 10)
+
+    def forward(self, x: Tensor) -> Tensor:
+        x = torch.relu(self.bn1(self.conv1(x)))
+        for i in range(1, 5):
+            x = self.get_submodule(f"layer{i}")(x)
+        return self.fc(x.mean((2, 3)))
+
+
+def ddppo() -> nn.Module:
+    """The shape of DDPPO's depth encoder, thin: GroupNorm, ``backbone`` and ``compression``."""
+
+    def stage(a: int, b: int) -> nn.Module:
+        return nn.Sequential(nn.Conv2d(a, b, 3, 2, 1, bias=False), nn.GroupNorm(4, b), nn.ReLU())
+
+    backbone = nn.Sequential()
+    for i, (a, b) in enumerate(((1, 8), (8, 16), (16, 32)), 1):
+        backbone.add_module(f"layer{i}", stage(a, b))
+    compression = nn.Sequential(nn.Conv2d(32, 16, 3, padding=1), nn.GroupNorm(1, 16), nn.ReLU())
+    return nn.Sequential(OrderedDict(backbone=backbone, compression=compression))
+
+
+ENCODERS = {
+    "resnet": (ResNet, [r"layer[1-4]"], (2, 3, 32, 32), 4),
+    "ddppo": (ddppo, [r"backbone\.layer\d", "compression"], (2, 1, 32, 32), 4),
+}
+
+
+@pytest.fixture(params=sorted(ENCODERS))
+def encoder(request):
+    make, targets, shape, count = ENCODERS[request.param]
+    torch.manual_seed(0)
+    return make().eval(), targets, torch.randn(shape), count
+
+
+def shaken(model: nn.Module) -> nn.Module:
+    for parameter in adapters.adapter_parameters(model):
+        nn.init.normal_(parameter, std=0.1)
+    return model
+
+
+def test_outputs_are_bit_identical_at_insertion(encoder):
+    model, targets, x, count = encoder
+    wanted, before = model(x), weights_sha(model)
+    assert len(insert_adapters(model, targets)) == count
+    assert torch.equal(model(x), wanted) and adapters.backbone_sha(model) == before
+
+
+def test_only_the_adapters_train_and_the_backbone_keeps_every_bit(encoder):
+    model, targets, x, _ = encoder
+    insert_adapters(model, targets)
+    before = adapters.backbone_sha(model)
+    model.eval()  # BatchNorm's running statistics stay, too
+    optimizer = torch.optim.SGD([p for p in model.parameters() if p.requires_grad], lr=0.1)
+    first = model(x)
+    for _ in range(3):
+        optimizer.zero_grad()
+        model(x).square().mean().backward()
+        optimizer.step()
+    assert adapters.backbone_sha(model) == before
+    assert not torch.equal(model(x), first)
+
+
+def test_removal_gives_the_model_back_and_a_folder_brings_them_in_again(encoder, tmp_path):
+    model, targets, x, count = encoder
+    clean, before = model(x), weights_sha(model)
+    insert_adapters(model, targets)
+    hurt = shaken(model)(x)
+    save_adapters(model, tmp_path)
+    remove_adapters(model)
+    assert torch.equal(model(x), clean) and weights_sha(model) == before
+    assert len(load_adapters(model, tmp_path)) == count
+    assert torch.equal(model(x), hurt) and not torch.equal(hurt, clean)
+
+
+def test_a_copy_has_adapters_of_its_own(encoder):
+    model, targets, x, _ = encoder
+    clean = model(x)
+    insert_adapters(model, targets)
+    twin = shaken(copy.deepcopy(model))
+    assert torch.equal(model(x), clean) and not torch.equal(twin(x), clean)
+    remove_adapters(twin)
+    assert torch.equal(twin(x), clean) and adapters.adapted(model)
+
+
+def test_the_share_on_the_reference_agent_is_between_one_and_four_per_cent():
+    agent = TopologicalAgent(
+        adapters={
+            "target_modules": [r"(rgb|depth)_encoder\.stages\.[01]", r"depth_encoder\.stages\.2"],
+            "ring": [r"rgb_encoder\.stages\.2"],
+            "ring_reduction": 5,
+        }
+    )
+    assert 0.01 <= adapters.trainable_share(agent) <= 0.04
+
+
+def test_a_ring_adapter_lets_a_view_see_its_neighbours_and_nothing_further():
+    torch.manual_seed(0)
+    model = nn.Sequential(nn.Conv2d(3, 8, 3, padding=1)).eval()
+    insert_adapters(model, [], ring=["0"])
+    shaken(model)
+    x = torch.randn(VIEWS, 3, 4, 4)
+    changed = x.clone()
+    changed[5] += 1.0
+    moved = (model(changed) - model(x)).abs().amax((1, 2, 3)) > 1e-6
+    assert moved.nonzero().flatten().tolist() == [4, 5, 6]
+
+
+def test_a_ring_closes_and_panoramas_do_not_mix():
+    torch.manual_seed(0)
+    model = nn.Sequential(nn.Conv2d(3, 8, 3, padding=1)).eval()
+    insert_adapters(model, [], ring=["0"])
+    shaken(model)
+    x = torch.randn(2 * VIEWS, 3, 4, 4)
+    changed = x.clone()
+    changed[0] += 1.0
+    moved = (model(changed) - model(x)).abs().amax((1, 2, 3)) > 1e-6
+    assert moved.nonzero().flatten().tolist() == [0, 1, VIEWS - 1]
+
+
+def test_a_target_that_matches_nothing_is_told_with_the_names_there_are():
+    with pytest.raises(ValueError, match=r"'layer9' matches none.*layer1"):
+        insert_adapters(ResNet(), ["layer9"])
+
+
+def test_a_module_without_channels_is_refused():
+    with pytest.raises(ValueError, match="channels of fc cannot be told"):
+        insert_adapters(ResNet(), ["fc"])
+
+
+def test_a_second_set_is_refused(encoder):
+    model, targets, _, _ = encoder
+    insert_adapters(model, targets)
+    with pytest.raises(ValueError, match="has adapters already"):
+        insert_adapters(model, targets)
+
+
+@pytest.mark.parametrize("spoil", ["missing", "cut", "settings", "backbone"])
+def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
+    torch.manual_seed(0)
+    model = ResNet()
+    insert_adapters(model, ["layer1"])
+    save_adapters(model, tmp_path)
+    remove_adapters(model)
+    weights, settings = tmp_path / adapters.WEIGHTS, tmp_path / adapters.SETTINGS
+    if spoil == "missing":
+        weights.unlink()
+    elif spoil == "cut":
+        weights.write_bytes(weights.read_bytes()[:100])
+    elif spoil == "settings":
+        settings.write_text(json.dumps({"adapters": 3}), encoding="utf-8")
+    else:
+        with torch.no_grad():
+            model.fc.bias.add_(1)
+    error = FileNotFoundError if spoil == "missing" else ValueError
+    with pytest.raises(error, match="is missing|cut short|another|trained on a backbone"):
+        load_adapters(model, tmp_path)
+    assert not adapters.adapted(model)
