@@ -1,75 +1,200 @@
-"""Compiled blurs for uint8 panoramas: a short line kernel and a Gaussian. Edges are replicated."""
+"""Compiled blurs of uint8 panoramas: a line and a Gaussian. Edges are replicated.
+
+Everything is 16-bit integer arithmetic on whole rows. Every intermediate is cast back to 16 bits:
+that is what lets LLVM use full-width vector instructions, about three times as fast as 32 bits.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from numba import njit
 
+LINE_UNITS = 256  # 256 * 255 still fits 16 bits: line taps are added up in groups of this weight
+
+_I16, _I32 = np.int16, np.int32
+
 
 @njit(cache=True)
-def _pad(view, ry, rx, out):
-    """Copy uint8 [H, W, 3] into out [H + 2 ry, (W + 2 rx) * 3], replicating the edges."""
+def _pad(view, y, rx, scale, row):
+    """Write row y of uint8 [H, W, 3], times scale, to row [3 (W + 2 rx)], replicating the edges."""
     height, width, _ = view.shape
-    for y in range(height + 2 * ry):
-        source = view[min(max(y - ry, 0), height - 1)]
-        row = out[y]
-        for x in range(rx):
-            for c in range(3):
-                row[3 * x + c] = source[0, c]
-                row[3 * (rx + width + x) + c] = source[width - 1, c]
-        middle = row[3 * rx : 3 * (rx + width)]
-        flat = source.reshape(-1)
-        for i in range(flat.size):
-            middle[i] = flat[i]
+    source = view[min(max(y, 0), height - 1)].reshape(-1)
+    middle = row[3 * rx : 3 * (rx + width)]
+    for i in range(source.size):
+        middle[i] = _I16(source[i]) * scale
+    for x in range(rx):
+        for c in range(3):
+            row[3 * x + c] = middle[c]
+            row[3 * (rx + width + x) + c] = middle[3 * width - 3 + c]
 
 
 @njit(cache=True)
-def convolve_taps(views, dy, dx, weights, out):
-    """Sparse convolution of uint8 [V, H, W, 3]; ``weights`` are uint32 that add up to 65536."""
+def _hat(row, out):
+    """out = (left + 2 row + right) / 4, rounded, for interleaved colours; out is 6 shorter."""
+    left, centre, right = row, row[3:], row[6:]
+    for i in range(out.size):
+        outer = _I16(_I16(left[i]) + _I16(right[i]))
+        out[i] = _I16(_I16(outer + _I16(2 * _I16(centre[i]))) + 2) >> 2
+
+
+@njit(cache=True)
+def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
+    for i in range(total.size):
+        part = _I16(total[i] + _I16(_I16(a[i]) * wa))
+        part = _I16(part + _I16(_I16(b[i]) * wb))
+        part = _I16(part + _I16(_I16(c[i]) * wc))
+        total[i] = _I16(part + _I16(_I16(d[i]) * wd))
+
+
+@njit(cache=True)
+def _mix(total, blurred, source, kept, target):
+    """target = (total blurred + source kept) / 65536, rounded; total is set to zero."""
+    for i in range(target.size):
+        mean = _I32(_I32(total[i]) * blurred)
+        target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * kept)) + _I32(32768)) >> 16
+        total[i] = 0
+
+
+@njit(cache=True)
+def line(views, dy, dx, weights, step, strength, out):
+    """(1 - strength) x + strength (mean of the taps), for uint8 [V, H, W, 3].
+
+    ``dy, dx`` int64 [4 n] are offsets in pixels and ``weights`` int16 [4 n] small integers, at most
+    LINE_UNITS for each four. With ``step`` 2 the taps lie 2 px apart in a row and the picture is
+    first smoothed along x by (1 2 1)/4, so that they do not miss what lies between.
+    """
     count, height, width, _ = views.shape
     ry, rx = np.max(np.abs(dy)), np.max(np.abs(dx))
     padded = np.empty((height + 2 * ry, 3 * (width + 2 * rx)), np.uint8)
-    acc = np.empty(3 * width, np.uint32)
+    wide = np.empty(padded.shape[1] + 6, np.uint8)
+    part, total = np.zeros(3 * width, np.int16), np.zeros(3 * width, np.int32)
+    sums = part.view(np.uint16)  # int16 sums may wrap; they are never negative
+    full = np.zeros(dy.size, np.bool_)  # before these taps, what was added up is moved to total
+    used = 0
+    for k in range(0, dy.size, 4):
+        four = np.sum(weights[k : k + 4])
+        full[k] = used + four > LINE_UNITS
+        used = four if full[k] else used + four
+    units = np.sum(weights)
+    blurred = _I32(round(strength * 65536.0 / units))
+    kept = _I32(65536 - blurred * units)
+    long = np.any(full)
     for v in range(count):
-        _pad(views[v], ry, rx, padded)
+        for y in range(height + 2 * ry):
+            if step == 2:
+                _pad(views[v], y - ry, rx + 1, _I16(1), wide)
+                _hat(wide, padded[y])
+            else:
+                _pad(views[v], y - ry, rx, _I16(1), padded[y])
         for y in range(height):
-            acc[:] = np.uint32(32768)
-            for k in range(dy.size):
-                start = 3 * (rx + dx[k])
-                source = padded[y + ry + dy[k], start : start + 3 * width]
-                weight = weights[k]
-                for i in range(3 * width):
-                    acc[i] += np.uint32(source[i]) * weight
-            target = out[v, y].reshape(-1)
-            for i in range(3 * width):
-                target[i] = acc[i] >> np.uint32(16)
+            for k in range(0, dy.size, 4):
+                if full[k]:
+                    for i in range(part.size):
+                        total[i] += sums[i]
+                        part[i] = 0
+                a = padded[y + ry + dy[k]][3 * (rx + dx[k]) :]
+                b = padded[y + ry + dy[k + 1]][3 * (rx + dx[k + 1]) :]
+                c = padded[y + ry + dy[k + 2]][3 * (rx + dx[k + 2]) :]
+                d = padded[y + ry + dy[k + 3]][3 * (rx + dx[k + 3]) :]
+                w = weights[k : k + 4]
+                _add_taps(part, a, b, c, d, w[0], w[1], w[2], w[3])
+            source, target = views[v, y].reshape(-1), out[v, y].reshape(-1)
+            if long:
+                for i in range(part.size):
+                    total[i] += sums[i]
+                    part[i] = 0
+                _mix(total, blurred, source, kept, target)
+            else:
+                _mix(sums, blurred, source, kept, target)
 
 
 @njit(cache=True)
-def gaussian(views, weights, out):
-    """Separable convolution of uint8 [V, H, W, 3]; ``weights`` float32 [r + 1], centre first."""
+def _smooth(row, near, far):
+    """row = (row + 2 near + far) / 4; all int16 in [0, 2^14]; near and far do not overlap row."""
+    for i in range(near.size):
+        outer = _I16(_I16(row[i] + far[i]) >> _I16(1))
+        row[i] = _I16(_I16(_I16(outer + near[i]) + _I16(1)) >> _I16(1))
+
+
+@njit(cache=True)
+def _start(total, centre, weight, a, b, wa, c, d, wc, rounding):
+    for i in range(total.size):
+        part = _I16((_I32(_I16(centre[i] + centre[i])) * _I32(weight)) >> _I32(16))
+        near = _I16((_I32(_I16(a[i] + b[i])) * _I32(wa)) >> _I32(16))
+        far = _I16((_I32(_I16(c[i] + d[i])) * _I32(wc)) >> _I32(16))
+        total[i] = _I16(_I16(_I16(rounding + part) + near) + far)
+
+
+@njit(cache=True)
+def _add_pairs(total, a, b, wa, c, d, wc):
+    for i in range(total.size):
+        near = _I16((_I32(_I16(a[i] + b[i])) * _I32(wa)) >> _I32(16))
+        far = _I16((_I32(_I16(c[i] + d[i])) * _I32(wc)) >> _I32(16))
+        total[i] = _I16(_I16(total[i] + near) + far)
+
+
+@njit(cache=True)
+def _weigh_rows(rows, centre, step, weights, rounding, total):
+    for k in range(1, weights.size, 2):
+        one, two = k * step, (k + 1) * step
+        a, b, c, d = rows[centre - one], rows[centre + one], rows[centre - two], rows[centre + two]
+        if k == 1:
+            _start(total, rows[centre], weights[0], a, b, weights[1], c, d, weights[2], rounding)
+        else:
+            _add_pairs(total, a, b, weights[k], c, d, weights[k + 1])
+
+
+@njit(cache=True)
+def _weigh_columns(row, centre, step, weights, rounding, total):
+    for k in range(1, weights.size, 2):
+        one, two = k * step, (k + 1) * step
+        a, b, c, d = (
+            row[centre - one :],
+            row[centre + one :],
+            row[centre - two :],
+            row[centre + two :],
+        )
+        if k == 1:
+            _start(total, row[centre:], weights[0], a, b, weights[1], c, d, weights[2], rounding)
+        else:
+            _add_pairs(total, a, b, weights[k], c, d, weights[k + 1])
+
+
+@njit(cache=True)
+def gaussian(views, weights, levels, out):
+    """Separable convolution of uint8 [V, H, W, 3].
+
+    ``weights`` int16 [r + 1] in 1/65536, r even, the centre (halved) first, are those of taps
+    2^levels pixels apart. Before them the picture is smoothed by (1 2 1)/4 with steps of 1, 2, ...
+    2^(levels - 1) pixels, so that the taps do not miss what lies between them ("a trous").
+    """
     count, height, width, _ = views.shape
-    r = weights.size - 1
-    padded = np.empty((height + 2 * r, 3 * (width + 2 * r)), np.uint8)
-    tall = np.empty(3 * (width + 2 * r), np.float32)
-    acc = np.empty(3 * width, np.float32)
+    r, step = weights.size - 1, 1 << levels
+    reach, size = r * step + step - 1, 3 * width
+    padded = np.empty((height + 2 * reach, 3 * (width + 2 * reach)), np.int16)
+    tall, spare = np.empty(padded.shape[1], np.int16), np.empty(padded.shape[1], np.int16)
+    total = np.empty(size, np.int16)
+    rounding = _I16((r + 1) // 2)  # a product is cut off, by half a unit on average
     for v in range(count):
-        _pad(views[v], r, r, padded)
+        rows = height + 2 * reach
+        for y in range(rows):
+            _pad(views[v], y - reach, reach, _I16(64), padded[y])
+        for level in range(levels):
+            gap = 1 << level
+            rows -= 2 * gap
+            for y in range(rows):
+                _smooth(padded[y], padded[y + gap], padded[y + 2 * gap])
         for y in range(height):
-            centre = padded[y + r]
-            for i in range(tall.size):
-                tall[i] = weights[0] * np.float32(centre[i])
-            for k in range(1, r + 1):
-                above, below, weight = padded[y + r - k], padded[y + r + k], weights[k]
+            _weigh_rows(padded, y + r * step, step, weights, rounding, tall)
+            length = tall.size
+            for level in range(levels):
+                gap = 3 << level
+                length -= 2 * gap
                 for i in range(tall.size):
-                    tall[i] += weight * np.float32(np.int32(above[i]) + np.int32(below[i]))
-            for i in range(3 * width):
-                acc[i] = weights[0] * tall[i + 3 * r] + np.float32(0.5)
-            for k in range(1, r + 1):
-                left, right = tall[3 * (r - k) :], tall[3 * (r + k) :]
-                weight = weights[k]
-                for i in range(3 * width):
-                    acc[i] += weight * (left[i] + right[i])
+                    spare[i] = tall[i]
+                _smooth(tall, spare[gap : gap + length], spare[2 * gap :])
+            half = _I16(rounding + 32)
+            _weigh_columns(tall, 3 * r * step, 3 * step, weights, half, total)
             target = out[v, y].reshape(-1)
-            for i in range(3 * width):
-                target[i] = np.uint8(np.int32(acc[i]))
+            for i in range(size):
+                target[i] = min(max(total[i], _I16(0)), _I16(16320)) >> 6

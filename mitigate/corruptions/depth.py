@@ -21,8 +21,8 @@ from mitigate.corruptions.keying import (
     field,
     mix,
     normal_table,
-    scramble,
     top_share,
+    view_streams,
 )
 
 NEAREST = np.float32(1e-3)  # metres: valid depth never falls below
@@ -37,7 +37,6 @@ ECHO_STRENGTH = 0.9
 ECHO_HERTZ = 20e6
 LIGHT_SPEED = 299_792_458.0  # metres a second
 STEP = 0.5  # metres at s = 1
-ECHO_CELLS = 1024  # of the phase table
 
 _U = np.uint64
 
@@ -67,19 +66,25 @@ class DepthSensor:
 
 @njit(inline="always")
 def _valid(z):
-    return z > np.float32(0) and z < np.float32(np.inf)
+    return (z > np.float32(0)) & (z < np.float32(np.inf))
 
 
 @njit(cache=True)
 def _add_noise(views, streams, base, square, z_max, table, out):
+    """Two loops over 256 pixels at a time: table look-ups, then arithmetic in vectors."""
+    draws = np.empty(256, np.float32)
     for v in range(views.shape[0]):
-        stream, source, target = streams[v], views[v], out[v]
-        for i in range(source.size):
-            word = mix(stream, _U(i >> 2))
-            n = table[(word >> _U((i & 3) << 4)) & _U(0xFFFF)]
-            z = source[i]
-            moved = z + (base + square * z * z) * n
-            target[i] = min(max(moved, NEAREST), z_max) if _valid(z) else z
+        stream = streams[v]
+        for start in range(0, views.shape[1], 256):
+            source, target = views[v, start : start + 256], out[v, start : start + 256]
+            for i in range(64):
+                word = mix(stream, _U((start >> 2) + i))
+                for j in range(4):
+                    draws[4 * i + j] = table[(word >> _U(16 * j + 4)) & _U(0xFFF)]
+            for i in range(source.size):
+                z = source[i]
+                moved = min(max(z + (base + square * z * z) * draws[i], NEAREST), z_max)
+                target[i] = moved if _valid(z) else z
 
 
 def _flat(views: np.ndarray) -> np.ndarray:
@@ -88,10 +93,9 @@ def _flat(views: np.ndarray) -> np.ndarray:
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """z + s (0.02 + 0.02 z^2) n, n ~ N(0, 1) for each pixel of each frame."""
-    names = [digest(key, "gaussian_noise", frame=True, view=v) for v in range(views.shape[0])]
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
-    streams, z_max = np.array(names, np.uint64), np.float32(sensor.z_max)
+    streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
     _add_noise(_flat(views), streams, base, square, z_max, normal_table(), _flat(out))
     return out
 
@@ -99,28 +103,32 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
 @lru_cache(maxsize=16)
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """uint8 [H, W]: 0 kept, 1 no reading, 2 reads z_max."""
-    smooth, ordered = field(value, height, width, HOLE_CORRELATION)
-    holes = smooth >= top_share(ordered, HOLE_SHARE * severity)
-    far = smooth >= top_share(ordered, HOLE_SHARE * FAR_SHARE * severity)
+    smooth, cells = field(value, height, width, HOLE_CORRELATION)
+    holes = smooth >= top_share(cells, HOLE_SHARE * severity)
+    far = smooth >= top_share(cells, HOLE_SHARE * FAR_SHARE * severity)
     return holes.astype(np.uint8) + far
 
 
 @njit(cache=True)
-def _drop(views, holes, down, right, missing, z_max, out):
+def _drop_span(source, holes, missing, z_max, target):
+    for x in range(source.size):
+        z, hole = source[x], holes[x]
+        read = missing if hole == 1 else z_max
+        kept = read if hole > 0 else min(max(z, NEAREST), z_max)
+        target[x] = kept if _valid(z) else z
+
+
+@njit(cache=True)
+def _drop(views, holes, streams, missing, z_max, out):
     count, height, width = views.shape
     for v in range(count):
-        shift = right[v]
+        down = np.int64(mix(streams[v], _U(0)) % _U(height))
+        shift = np.int64(mix(streams[v], _U(1)) % _U(width))
+        split = width - shift
         for y in range(height):
-            source, target, row = views[v, y], out[v, y], holes[(y + down[v]) % height]
-            for part in range(2):
-                start, end, offset = 0, width - shift, shift
-                if part == 1:
-                    start, end, offset = width - shift, width, shift - width
-                for x in range(start, end):
-                    z, hole = source[x], row[x + offset]
-                    read = missing if hole == 1 else z_max
-                    kept = min(max(z, NEAREST), z_max)
-                    target[x] = (read if hole > 0 else kept) if _valid(z) else z
+            source, target, row = views[v, y], out[v, y], holes[(y + down) % height]
+            _drop_span(source[:split], row[shift:], missing, z_max, target[:split])
+            _drop_span(source[split:], row[:shift], missing, z_max, target[split:])
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
@@ -128,71 +136,101 @@ def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
     still = Key(key.seed, key.episode, key.frame // HOLE_FRAMES)
-    names = [digest(still, "missing_offset", frame=True, view=v) for v in range(count)]
-    down = np.array([scramble(name, 0) % height for name in names])
-    right = np.array([scramble(name, 1) % width for name in names])
+    streams = view_streams(still, "missing_offset", count)
     out = np.empty_like(views)
     missing, z_max = np.float32(sensor.missing), np.float32(sensor.z_max)
-    _drop(views, holes, down, right, missing, z_max, out)
+    _drop(views, holes, streams, missing, z_max, out)
     return out
 
 
-@lru_cache(maxsize=32)
-def echo_table(severity: float) -> np.ndarray:
-    """float32 [1026]: over-estimation in metres for gaps 0 .. 2.5 m (two-path phasor sum)."""
-    gap = np.arange(ECHO_CELLS + 2) * (ECHO_GAP / ECHO_CELLS)
+def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
+    """Over-estimation in metres for ``gap`` metres to the farther surface (two-path phasor sum)."""
     scale = LIGHT_SPEED / (4.0 * math.pi * ECHO_HERTZ)
     beta, phase = ECHO_STRENGTH * severity, gap / scale
-    shift = scale * np.arctan2(beta * np.sin(phase), 1.0 + beta * np.cos(phase))
-    return np.maximum(shift, 0.0).astype(np.float32)
+    return scale * np.arctan2(beta * np.sin(phase), 1.0 + beta * np.cos(phase))
+
+
+@lru_cache(maxsize=32)
+def echo_polynomial(severity: float) -> np.ndarray:
+    """float32 [8]: p with echo_shift = gap p(gap) up to 0.01 mm, lowest power first.
+
+    It is the interpolation at Chebyshev's nodes of [0, 2.5] m, where the shift is smooth: a kernel
+    without table look-ups runs in vectors.
+    """
+    degree = 7
+    nodes = 0.5 * ECHO_GAP * (1.0 + np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
+    share = echo_shift(nodes, severity) / nodes
+    fit = np.polynomial.Polynomial.fit(nodes, share, degree, domain=[0.0, ECHO_GAP])
+    return fit.convert().coef.astype(np.float32)
 
 
 @njit(cache=True)
-def _farthest(clean, reach):
-    """In place: maximum over the (2 reach + 1)^2 square whose first corner is the pixel."""
-    rows, cols = clean.shape
-    have, want = 1, 2 * reach + 1
+def _larger(row, other):
+    """In place: row = max(row, other), float32; the two do not overlap."""
+    for x in range(row.size):
+        row[x] = row[x] if row[x] > other[x] else other[x]
+
+
+@njit(cache=True)
+def _farthest_along(row, spare, reach):
+    """In place: maximum over the 2 reach + 1 entries from each on (van Herk's doubling)."""
+    have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
-        for y in range(rows - step):
-            row, other = clean[y], clean[y + step]
-            for x in range(cols):
-                row[x] = max(row[x], other[x])
-        for y in range(rows):
-            row = clean[y]
-            for x in range(cols - step):
-                row[x] = max(row[x], row[x + step])
+        for x in range(size):
+            spare[x] = row[x]
+        _larger(row[: size - step], spare[step:])
         have += step
 
 
 @njit(cache=True)
-def _echo(views, reach, table, z_max, out):
+def _keep_valid(source, target):
+    for x in range(source.size):
+        z = source[x]
+        target[x] = z if _valid(z) else np.float32(0)
+
+
+@njit(cache=True)
+def _add_echo(source, far, p, z_max, target):
+    for x in range(source.size):
+        z = source[x]
+        gap = min(max(far[x] - z, np.float32(0)), np.float32(ECHO_GAP))
+        share = ((p[7] * gap + p[6]) * gap + p[5]) * gap + p[4]
+        share = (((share * gap + p[3]) * gap + p[2]) * gap + p[1]) * gap + p[0]
+        moved = min(max(z + max(share * gap, np.float32(0)), NEAREST), z_max)
+        target[x] = moved if _valid(z) else z
+
+
+@njit(cache=True)
+def _echo(views, reach, polynomial, z_max, out):
     count, height, width = views.shape
-    clean = np.empty((height + 2 * reach, width + 2 * reach), np.float32)
-    per_metre = np.float32(ECHO_CELLS / ECHO_GAP)
+    far = np.empty((height + 2 * reach, width + 2 * reach), np.float32)
+    spare = np.empty(width + 2 * reach, np.float32)
     for v in range(count):
-        clean[:] = 0
+        for y in range(height + 2 * reach):
+            row = far[y]
+            for x in range(row.size):
+                row[x] = np.float32(0)
         for y in range(height):
-            source, row = views[v, y], clean[y + reach, reach : reach + width]
-            for x in range(width):
-                row[x] = source[x] if _valid(source[x]) else np.float32(0)
-        _farthest(clean, reach)
+            row = far[y + reach]
+            _keep_valid(views[v, y], row[reach : reach + width])
+            _farthest_along(row, spare, reach)
+        have, want, rows = 1, 2 * reach + 1, height + 2 * reach
+        while have < want:
+            step = min(have, want - have)
+            rows -= step
+            for y in range(rows):
+                _larger(far[y, :width], far[y + step, :width])
+            have += step
         for y in range(height):
-            source, target, far = views[v, y], out[v, y], clean[y]
-            for x in range(width):
-                z = source[x]
-                gap = max(far[x] - z, np.float32(0)) if _valid(z) else np.float32(0)
-                place = min(gap * per_metre, np.float32(ECHO_CELLS))
-                cell = np.int32(place)
-                dz = table[cell] + (place - np.float32(cell)) * (table[cell + 1] - table[cell])
-                target[x] = min(max(z + dz, NEAREST), z_max) if _valid(z) else z
+            _add_echo(views[v, y], far[y, :width], polynomial, z_max, out[v, y])
 
 
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Over-estimate depth beside farther surfaces, as a second light path does."""
     reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
     out = np.empty_like(views)
-    _echo(views, reach, echo_table(severity), np.float32(sensor.z_max), out)
+    _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)
     return out
 
 

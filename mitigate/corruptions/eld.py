@@ -18,13 +18,13 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from mitigate.corruptions.keying import Key, digest, mix, normals, unit_normals
-from mitigate.corruptions.rgb import light_gain
+from mitigate.corruptions.keying import Key, mix, normal_table, unit_normals, view_streams
+from mitigate.corruptions.rgb import flat_rows, low_light_mask
 
 WHITE = 15583.0  # sensor units at full scale: 14 bits less the black level (Sony A7S2)
 DARKEST = 300.0  # exposure ratio at s = 1 (ELD trains on 100-300)
 GAMMA = 2.2
-LEVELS = 1024  # signal levels of the photon table: quarters of a grey level
+LEVELS = 4 * 255 + 1  # signal levels of the photon table: quarters of a grey level
 PHOTON_BITS = 8
 READ_BITS = 12
 
@@ -96,12 +96,17 @@ def _photon_table(means, points, deviates, out):
 
 @dataclass(frozen=True)
 class Tables:
-    """photons float32 [LEVELS, 256], read float32 [4096], decode uint8 [D], all in sensor units."""
+    """Look-up tables of one severity. int32 ones are sensor units in 1/256.
+
+    photons int32 [LEVELS * 256], read int32 [4096], row int32 [4096]; decode uint8 [D] gives the
+    grey level of a sum of the three plus ``offset``, in whole sensor units.
+    """
 
     photons: np.ndarray
     read: np.ndarray
+    row: np.ndarray
     decode: np.ndarray
-    row: float
+    offset: int
 
 
 @lru_cache(maxsize=16)
@@ -110,44 +115,48 @@ def tables(severity: float, camera: Camera = SONY_A7S2) -> Tables:
     noise = noise_at(severity, camera)
     signal = (np.arange(LEVELS) / (LEVELS - 1)) ** GAMMA * WHITE / noise.ratio
     points = (np.arange(1 << PHOTON_BITS) + 0.5) / (1 << PHOTON_BITS)
-    photons = np.empty((LEVELS, points.size))
-    _photon_table(signal / noise.gain, points, unit_normals(PHOTON_BITS), photons)
+    counts = np.empty((LEVELS, points.size))
+    _photon_table(signal / noise.gain, points, unit_normals(PHOTON_BITS), counts)
     middles = (np.arange(1 << READ_BITS) + 0.5) / (1 << READ_BITS)
-    read = noise.read * tukey_lambda(middles, noise.shape)
-    top = math.ceil(WHITE / noise.ratio)
-    decode = 255.0 * np.minimum(np.arange(top + 1) * noise.ratio / WHITE, 1.0) ** (1.0 / GAMMA)
-    return Tables(
-        (noise.gain * photons).astype(np.float32),
-        read.astype(np.float32),
-        np.rint(decode).astype(np.uint8),
-        noise.row,
-    )
+    parts = noise.gain * counts, noise.read * tukey_lambda(middles, noise.shape)
+    photons, read = (np.rint(256.0 * part).astype(np.int32) for part in parts)
+    row = np.rint(256.0 * noise.row * normal_table().astype(np.float64)).astype(np.int32)
+    lowest, highest = (int(f(read) + f(row) + f(photons)) // 256 for f in (np.min, np.max))
+    digital = np.clip(np.arange(lowest - 1, highest + 2), 0, WHITE / noise.ratio)
+    decode = np.rint(255.0 * (digital * noise.ratio / WHITE) ** (1.0 / GAMMA)).astype(np.uint8)
+    return Tables(photons.ravel(), read, row, decode, 1 - lowest)
 
 
 @njit(cache=True)
-def _sample(views, gain, streams, rows, photons, read, decode, out):
-    count, height, width, _ = views.shape
-    top = np.int32(decode.size - 1)
+def _levels(source, opacity, part, out):
+    """Darken one row as ``low_light`` does, but to quarters of a grey level."""
+    for i in range(part.size):
+        gap = np.int16(np.int16(-np.int16(source[i])) << 7)
+        part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
+    for i in range(part.size):
+        out[i] = np.int16(np.int16(np.int16(source[i]) << 6) + part[i] + 8) >> 4
+
+
+@njit(cache=True)
+def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
+    """uint8 [V, H, 3 W]. The indices are unsigned, or numba would test each for a negative one."""
+    count, height, size = views.shape
+    part, levels = np.empty(size, np.int16), np.empty(size, np.uint32)
+    words = np.empty(size // 3, np.uint64)
     for v in range(count):
-        stream = streams[v]
         for y in range(height):
-            shift = rows[v, y] + np.float32(0.5)
-            for x in range(width):
-                word = mix(stream, _U(y * width + x))
-                factor = gain[y, x]
+            target, first = out[v, y], _U(y * words.size)
+            _levels(views[v, y], opacity[y], part, levels)
+            for x in range(words.size):
+                words[x] = mix(streams[v], first + _U(x))
+            shift = row[mix(row_streams[v], _U(y)) >> _U(52)] + np.int32(256 * offset + 128)
+            for x in range(words.size):
+                word, start = words[x], _U(3 * x)
                 for c in range(3):
-                    bits = word >> _U(20 * c)
-                    level = (np.uint32(views[v, y, x, c]) * factor + np.uint32(32768)) >> 16
-                    value = photons[level, bits & _U(0xFF)]
-                    value += read[(bits >> _U(8)) & _U(0xFFF)] + shift
-                    d = np.int32(np.floor(value))
-                    out[v, y, x, c] = decode[min(max(d, np.int32(0)), top)]
-
-
-@lru_cache(maxsize=16)
-def _level_gain(key: Key, severity: float, height: int, width: int) -> np.ndarray:
-    gain = light_gain(key, severity, height, width) * (LEVELS - 1) / 255.0
-    return np.rint(gain * 65536.0).astype(np.uint32)
+                    i, bits = start + _U(c), word >> _U(20 * c)
+                    d = photons[(_U(levels[i]) << _U(8)) | (bits & _U(0xFF))] + shift
+                    d += read[(bits >> _U(8)) & _U(0xFFF)]
+                    target[i] = decode[_U(np.uint32(d) >> np.uint32(8))]
 
 
 def low_light_noise(
@@ -155,12 +164,11 @@ def low_light_noise(
 ) -> np.ndarray:
     """``low_light`` seen by a noisy sensor: same mask, same mean, uint8 [V, H, W, 3]."""
     count, height, width, _ = views.shape
-    table = tables(severity, camera)
-    gain = _level_gain(key.still(), severity, height, width)
-    names = [digest(key, "low_light_noise", frame=True, view=v) for v in range(count)]
-    streams = np.array(names, np.uint64)
-    names = [digest(key, "row_noise", frame=True, view=v) for v in range(count)]
-    rows = np.float32(table.row) * np.stack([normals(name, height) for name in names])
+    t = tables(severity, camera)
+    mask = low_light_mask(key.still(), severity, height, width)
+    streams = view_streams(key, "low_light_noise", count)
+    row_streams = view_streams(key, "row_noise", count)
     out = np.empty_like(views)
-    _sample(views, gain, streams, rows, table.photons, table.read, table.decode, out)
+    parts = t.photons, t.read, t.row, t.decode, t.offset
+    _sample(flat_rows(views), mask, streams, row_streams, *parts, flat_rows(out))
     return out

@@ -22,7 +22,7 @@ from numba import njit
 GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment
 MIX_A, MIX_B = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB  # splitmix64 multipliers
 MASK = (1 << 64) - 1
-NORMAL_BITS = 16  # size of the normal quantile table: |n| <= 4.3
+NORMAL_BITS = 12  # size of the normal quantile table: |n| <= 3.7, and 16 KB stay in the L1 cache
 FIELD_SIDE = 128  # cells along the shorter side of a random field, at every frame size
 
 _U = np.uint64
@@ -79,6 +79,19 @@ def mix(value, counter):
     return z ^ (z >> _S31)
 
 
+@njit(cache=True)
+def _fill_streams(value, out):
+    for view in range(out.size):
+        out[view] = mix(value, _U(view))
+
+
+def view_streams(key: Key, name: str, views: int) -> np.ndarray:
+    """uint64 [views]: the frame-scope digests of the draw called ``name``, one a view."""
+    out = np.empty(views, np.uint64)
+    _fill_streams(_U(digest(key, name, frame=True)), out)
+    return out
+
+
 def unit_normals(bits: int) -> np.ndarray:
     """float64 [2^bits]: standard normal quantiles at the middles of equal bins, variance one."""
     count = 1 << bits
@@ -89,7 +102,7 @@ def unit_normals(bits: int) -> np.ndarray:
 
 @lru_cache(maxsize=1)
 def normal_table() -> np.ndarray:
-    """float32 [65536]: the quantiles that pixel noise looks up."""
+    """float32 [4096]: the quantiles that pixel noise looks up."""
     return unit_normals(NORMAL_BITS).astype(np.float32)
 
 
@@ -97,7 +110,7 @@ def normal_table() -> np.ndarray:
 def _fill_normals(value, table, out):
     for i in range(out.size):
         word = mix(value, _U(i >> 2))
-        out[i] = table[(word >> _U((i & 3) << 4)) & _U(0xFFFF)]
+        out[i] = table[(word >> _U(((i & 3) << 4) + 4)) & _U(0xFFF)]
 
 
 def normals(value: int, count: int) -> np.ndarray:
@@ -128,34 +141,42 @@ def _blur_torus(noise, weights):
 
 
 @njit(cache=True)
+def _between(a, b, share, out):
+    for x in range(out.size):
+        out[x] = a[x] + share * (b[x] - a[x])
+
+
+@njit(cache=True)
 def _resize_torus(cells, height, width):
     rows, cols = cells.shape
     out = np.empty((height, width), np.float32)
+    left, share = np.empty(width, np.uint32), np.empty(width, np.float32)
+    for x in range(width):
+        u = (x + 0.5) * cols / width - 0.5 + cols
+        left[x] = int(u) % cols
+        share[x] = u - int(u)
+    line = np.empty(cols + 1, np.float32)
     for y in range(height):
-        v = (y + 0.5) * rows / height - 0.5
-        top = int(np.floor(v))
-        fy = np.float32(v - top)
-        a, b = top % rows, (top + 1) % rows
+        v = (y + 0.5) * rows / height - 0.5 + rows
+        above = int(v)
+        _between(cells[above % rows], cells[(above + 1) % rows], np.float32(v - above), line[:cols])
+        line[cols] = line[0]
+        row = out[y]
         for x in range(width):
-            u = (x + 0.5) * cols / width - 0.5
-            left = int(np.floor(u))
-            fx = np.float32(u - left)
-            i, j = left % cols, (left + 1) % cols
-            upper = cells[a, i] + fx * (cells[a, j] - cells[a, i])
-            lower = cells[b, i] + fx * (cells[b, j] - cells[b, i])
-            out[y, x] = upper + fy * (lower - upper)
+            i = left[x]
+            row[x] = line[i] + share[x] * (line[i + np.uint32(1)] - line[i])
     return out
 
 
 @lru_cache(maxsize=32)
 def field(value: int, height: int, width: int, correlation: float) -> tuple:
-    """A Gaussian random field on a torus and its sorted cells.
+    """A Gaussian random field on a torus, and the cells that it was resampled from.
 
     ``correlation`` is the standard deviation of the smoothing kernel as a fraction of the shorter
     side. The field is drawn on a grid whose shorter side has ``FIELD_SIDE`` cells and resampled, so
     a frame and its half-size copy get the same pattern.
 
-    Returns (float32 [height, width] with unit standard deviation, float32 sorted cells).
+    Returns (float32 [height, width] with unit standard deviation, float32 [cells]).
     """
     scale = FIELD_SIDE / min(height, width)
     rows, cols = max(1, round(height * scale)), max(1, round(width * scale))
@@ -165,12 +186,11 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
     weights = (weights / np.sqrt(np.sum(weights**2))).astype(np.float32)
     cells = _blur_torus(normals(value, rows * cols).reshape(rows, cols), weights)
     smooth = _resize_torus(cells, height, width)
-    ordered = np.sort(cells, axis=None)
-    smooth.flags.writeable = ordered.flags.writeable = False
-    return smooth, ordered
+    smooth.flags.writeable = cells.flags.writeable = False
+    return smooth, cells.ravel()
 
 
-def top_share(ordered: np.ndarray, share: float) -> float:
-    """The level that the top ``share`` of the sorted cells reach; infinity for share 0."""
-    count = round(share * ordered.size)
-    return float("inf") if count == 0 else float(ordered[ordered.size - count])
+def top_share(cells: np.ndarray, share: float) -> float:
+    """The level that the top ``share`` of the cells reach; infinity for share 0."""
+    place = cells.size - round(share * cells.size)
+    return float("inf") if place == cells.size else float(np.partition(cells, place)[place])

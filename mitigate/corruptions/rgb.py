@@ -4,8 +4,8 @@ Every public function takes (views, severity in (0, 1], key, heading) and return
 same shape. Lengths are fractions of the frame. Formulas and sources: SUITE section 2; constants
 without a source were chosen by this project.
 
-Darkening, dirt and glare are one operation, ``out = x gain + offset``, with a mask kept in 16-bit
-fixed point.
+Darkening, dirt and glare are one operation, ``out = x + (colour - x) alpha``, with an opacity mask
+of 16 bits that is kept for the episode.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from mitigate.corruptions import blur
 from mitigate.corruptions.keying import Key, digest, field, top_share, uniform
 
 BLUR_LENGTH = 0.10  # of W at s = 1; ImageNet-C kernels are 3-14 % of W
+LONG_BLUR = 12.0  # px: from here every second column is enough
 BLUR_ANGLE = 10.0  # degrees either side of horizontal: yaw turns dominate
 DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
 SPATTER_CORRELATION = 0.018  # of min(H, W)
@@ -30,62 +31,100 @@ SPATTER_COLOURS = ((63, 42, 20), (175, 238, 238))  # mud, water (ImageNet-C)
 FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # width over the image diagonal
 FLARE_HALO, FLARE_HALO_WIDTH = 0.30, 0.35
 FLARE_TINT = (1.0, 0.96, 0.88)
+GLOW_REACH, GLOW_CELLS = 1.5, 16384  # of the radial table: less than 0.04 grey levels a cell
 DEFOCUS_SIGMA = 5.0 / 224.0  # of min(H, W); ImageNet-C disks have radii 3-10 px at 224
 DEFOCUS_SPREAD = 0.2
 DEFOCUS_LEAST = 0.15  # px: a narrower Gaussian changes nothing
+LEAST_TAP_SIGMA = 1.15  # of the distance of two taps: keeps the mean error under 0.4 grey levels
 DISK_RADIUS = 0.5  # of min(H, W)
+NEUTRAL = (1.0, 1.0, 1.0)
+BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
 
 # ---------------------------------------------------------------------------------- masks
 
 
-def _fixed(gain: np.ndarray, offset: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Gain in [0, 1] and offset in [0, 255] as uint16 fixed point; the rounding half is inside."""
-    wide = np.minimum(np.rint(gain * 65536.0), 65535).astype(np.uint16)
-    return wide.ravel(), (np.rint(offset * 256.0) + 128).astype(np.uint16).ravel()
+@njit(cache=True)
+def _expand(share, weight, out):
+    """out int16 [H, 3 W] = min(share [H, W] times weight of the channel, 1) in 1/32768."""
+    for y in range(share.shape[0]):
+        row, target = share[y], out[y]
+        for c in range(3):
+            scale = np.float32(weight[c] * 32768.0)
+            for x in range(row.size):
+                value = min(row[x] * scale + np.float32(0.5), np.float32(32767.0))
+                target[3 * x + c] = np.int16(np.int32(value))
+
+
+def _opacity(share: np.ndarray, strength: float, tint: tuple[float, float, float]) -> np.ndarray:
+    """Opacity mask int16 [H, 3 W] of the float32 [H, W] shares >= 0, times strength and tint."""
+    out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
+    _expand(share, strength * np.array(tint), out)
+    return out
 
 
 @njit(cache=True)
-def _affine(views, gain, offset, out):
-    """out = views gain + offset on flat uint8 [V, N] with uint16 masks [N]."""
+def _cover(views, alpha, colour, out):
+    """out = x + (colour - x) alpha for uint8 [V, H, 3 W]; int16 alpha [H, 3 W], colour [3 W].
+
+    Two loops over a row of 16-bit numbers, which is what compiles to full-width vector code.
+    """
+    part = np.empty(colour.size, np.int16)
     for v in range(views.shape[0]):
-        source, target = views[v], out[v]
-        for i in range(source.size):
-            product = (np.uint32(source[i]) << np.uint32(8)) * np.uint32(gain[i])
-            target[i] = ((product >> np.uint32(16)) + np.uint32(offset[i])) >> np.uint32(8)
+        for y in range(views.shape[1]):
+            source, opacity, target = views[v, y], alpha[y], out[v, y]
+            for i in range(part.size):
+                gap = np.int16((colour[i] - np.int16(source[i])) << 7)
+                part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
+            for i in range(part.size):
+                target[i] = source[i] + ((part[i] + 32) >> 6)
 
 
-def _apply(views: np.ndarray, gain: np.ndarray, offset: np.ndarray) -> np.ndarray:
-    out = np.empty_like(views)
-    count = views.shape[0]
-    _affine(views.reshape(count, -1), gain, offset, out.reshape(count, -1))
+@lru_cache(maxsize=64)
+def _colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
+    return np.tile(np.array(colour, np.int16), width)
+
+
+def flat_rows(views: np.ndarray) -> np.ndarray:
+    """The same memory as [V, H, 3 W]."""
+    return views.reshape(views.shape[0], views.shape[1], -1)
+
+
+def _cover_into(views, alpha, colour: tuple[int, int, int], out: np.ndarray) -> np.ndarray:
+    _cover(flat_rows(views), alpha, _colour_row(colour, views.shape[2]), flat_rows(out))
     return out
+
+
+def _covered(views: np.ndarray, alpha: np.ndarray, colour: tuple[int, int, int]) -> np.ndarray:
+    return _cover_into(views, alpha, colour, np.empty_like(views))
 
 
 # ---------------------------------------------------------------------------------- the eight
 
 
 @lru_cache(maxsize=64)
-def line_taps(length: float, angle: float, mix: float) -> tuple:
-    """Taps (dy, dx, weights) of (1 - mix) identity + mix line(length px, angle rad).
+def line_taps(length: float, angle: float, step: int = 1) -> tuple:
+    """Taps (dy, dx, weights) of a line of ``length`` px at ``angle`` rad; a multiple of four.
 
-    Each column of the line weighs what the segment covers of it, shared between the two nearest
-    rows. Weights are uint32 and add up to 65536.
+    Every ``step``-th column of the line weighs what the segment covers of it, shared between the
+    two nearest rows, in small integers: full columns weigh step LINE_UNITS / length, at least 2.
     """
     half = 0.5 * length * math.cos(angle)
-    taps = {(0, 0): (1.0 - mix) * 65536.0}
-    reach = math.ceil(half - 0.5)
-    for x in range(-reach, reach + 1):
-        cover = max(0.0, min(x + 0.5, half) - max(x - 0.5, -half))
-        weight = 65536.0 * mix * cover / (2.0 * half)
-        y = x * math.tan(angle)
+    units = max(2.0, math.floor(step * blur.LINE_UNITS / length)) / step
+    taps: dict[tuple[int, int], int] = {}
+    reach = math.ceil(half / step - 0.5) * step
+    for x in range(-reach, reach + 1, step):
+        weight = round(units * max(0.0, min(x + 0.5 * step, half) - max(x - 0.5 * step, -half)))
+        y = abs(x) * math.tan(abs(angle))
         low = math.floor(y)
-        for row, share in ((low, 1.0 - (y - low)), (low + 1, y - low)):
-            taps[row, x] = taps.get((row, x), 0.0) + weight * share
-    rounded = {at: round(weight) for at, weight in taps.items() if round(weight) > 0}
-    rounded[0, 0] = rounded.get((0, 0), 0) + 65536 - sum(rounded.values())
-    places = np.array(list(rounded), np.int64)
-    weights = np.array(list(rounded.values()), np.uint32)
+        upper = round(weight * (y - low))
+        sign = 1 if x * angle >= 0 else -1  # a line is the same seen from either end
+        for row, share in ((low, weight - upper), (low + 1, upper)):
+            if share > 0:
+                taps[sign * row, x] = share
+    places = np.array(list(taps) + [(0, 0)] * (-len(taps) % 4), np.int64)
+    weights = np.zeros(len(places), np.int16)
+    weights[: len(taps)] = list(taps.values())
     return places[:, 0].copy(), places[:, 1].copy(), weights
 
 
@@ -95,61 +134,64 @@ def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> n
     if length < 1.0:
         return views.copy()
     angle = math.radians(BLUR_ANGLE * (2.0 * uniform(digest(key, "motion_blur")) - 1.0))
-    dy, dx, weights = line_taps(length, angle, 0.5 + 0.5 * severity)
+    step = 1 if length < LONG_BLUR else 2
     out = np.empty_like(views)
-    blur.convolve_taps(views, dy, dx, weights, out)
+    dy, dx, weights = line_taps(length, angle, step)
+    blur.line(views, dy, dx, weights, step, 0.5 + 0.5 * severity, out)
     return out
 
 
 @lru_cache(maxsize=32)
 def light_ramp(value: int, height: int, width: int) -> np.ndarray:
-    """float64 [H, W] in [0, 1]: a linear ramp along an angle, or the distance to one light."""
-    y = (np.arange(height)[:, None] + 0.5) / height
-    x = (np.arange(width)[None, :] + 0.5) / width
+    """float32 [H, W] in [0, 1]: a linear ramp along an angle, or the distance to one light."""
+    y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
     if uniform(value, 0) < 0.5:
         angle = 2.0 * math.pi * uniform(value, 1)
-        along = (x - 0.5) * math.cos(angle) + (y - 0.5) * math.sin(angle)
-        return 0.5 + along / (abs(math.cos(angle)) + abs(math.sin(angle)))
+        reach = abs(math.cos(angle)) + abs(math.sin(angle))
+        down, right = (y - 0.5) * (math.sin(angle) / reach), (x - 0.5) * (math.cos(angle) / reach)
+        return np.add.outer((0.5 + down).astype(np.float32), right.astype(np.float32))
     u, v = uniform(value, 2), uniform(value, 3)
     far = math.hypot(max(u, 1.0 - u) * width, max(v, 1.0 - v) * height)
-    return np.sqrt(((x - u) * width) ** 2 + ((y - v) * height) ** 2) / far
+    down, right = ((y - v) * (height / far)) ** 2, ((x - u) * (width / far)) ** 2
+    return np.sqrt(np.add.outer(down.astype(np.float32), right.astype(np.float32)))
 
 
-def light_gain(key: Key, severity: float, height: int, width: int) -> np.ndarray:
-    """float64 [H, W]: the share of light left, 1 - s (0.60 + 0.37 t)."""
+def light_loss(key: Key, severity: float, height: int, width: int) -> np.ndarray:
+    """float32 [H, W]: the share of light taken away, s (0.60 + 0.37 t)."""
     ramp = light_ramp(digest(key, "low_light"), height, width)
-    return 1.0 - severity * (DARK_BASE + DARK_RAMP * ramp)
+    return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
 
 
 @lru_cache(maxsize=16)
-def _low_light_mask(key: Key, severity: float, height: int, width: int) -> tuple:
-    gain = np.repeat(light_gain(key, severity, height, width)[..., None], 3, axis=2)
-    return _fixed(gain, np.zeros_like(gain))
+def low_light_mask(key: Key, severity: float, height: int, width: int) -> np.ndarray:
+    """int16 [H, 3 W]: the opacity of the dark, in 1/32768; ``key`` is that of the episode."""
+    return _opacity(light_loss(key, severity, height, width), 1.0, NEUTRAL)
 
 
 def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Darken by a gradient mask that all views of the episode share."""
-    _, height, width, _ = views.shape
-    return _apply(views, *_low_light_mask(key.still(), severity, height, width))
+    mask = low_light_mask(key.still(), severity, *views.shape[1:3])
+    return _covered(views, mask, BLACK)
 
 
 @lru_cache(maxsize=16)
-def _spatter_mask(key: Key, severity: float, height: int, width: int) -> tuple:
-    smooth, ordered = field(digest(key, "spatter"), height, width, SPATTER_CORRELATION)
-    level = top_share(ordered, SPATTER_COVER * severity)
-    if math.isinf(level):
-        alpha = np.zeros((height, width, 1))
-    else:
-        cover = np.clip((smooth.astype(np.float64) - level) / SPATTER_EDGE, 0.0, 1.0)
-        alpha = ((0.5 + 0.5 * severity) * cover)[..., None]
-    colour = np.array(SPATTER_COLOURS[uniform(digest(key, "spatter_colour")) < 0.5], float)
-    return _fixed(np.repeat(1.0 - alpha, 3, axis=2), alpha * colour)
+def _spatter_mask(key: Key, severity: float, height: int, width: int) -> np.ndarray:
+    smooth, cells = field(digest(key, "spatter"), height, width, SPATTER_CORRELATION)
+    level = top_share(cells, SPATTER_COVER * severity)
+    cover = np.clip((smooth - np.float32(level)) * np.float32(1.0 / SPATTER_EDGE), 0.0, 1.0)
+    return _opacity(cover, 0.5 + 0.5 * severity, NEUTRAL)
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Cover the top 0.45 s of a random field with mud or water; the lens is dirty all episode."""
-    _, height, width, _ = views.shape
-    return _apply(views, *_spatter_mask(key.still(), severity, height, width))
+    still = key.still()
+    mask = _spatter_mask(still, severity, *views.shape[1:3])
+    return _covered(views, mask, _spatter_colour(still))
+
+
+@lru_cache(maxsize=16)
+def _spatter_colour(key: Key) -> tuple[int, int, int]:
+    return SPATTER_COLOURS[uniform(digest(key, "spatter_colour")) < 0.5]
 
 
 def flare_centres(key: Key, views: int, height: int, width: int, heading) -> list:
@@ -177,32 +219,62 @@ def flare_centres(key: Key, views: int, height: int, width: int, heading) -> lis
     return centres
 
 
-@lru_cache(maxsize=64)
-def _flare_mask(x: float, y: float, severity: float, height: int, width: int) -> tuple:
-    dy, dx = np.arange(height)[:, None] + 0.5 - y, np.arange(width)[None, :] + 0.5 - x
-    r = np.sqrt(dx**2 + dy**2) / math.hypot(height, width)
+@lru_cache(maxsize=1)
+def _glow_table() -> np.ndarray:
+    """float32 [GLOW_CELLS + 1]: the light at r = 0 .. 1.5 image diagonals, before severity."""
+    r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
     glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
-    glow += FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)
-    light = np.minimum(severity * glow[..., None] * np.array(FLARE_TINT), 1.0)
-    return _fixed(1.0 - light, 255.0 * light)
+    return (glow + FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)).astype(np.float32)
+
+
+@njit(cache=True)
+def _look_up(down, right, table, out):
+    """out[y, x] = table at the nearest cell to sqrt(down[y] + right[x]), all float32."""
+    for y in range(down.size):
+        for x in range(right.size):
+            out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
+
+
+@lru_cache(maxsize=64)
+def _flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
+    cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
+    down = ((np.arange(height) + 0.5 - y) * cells) ** 2
+    right = ((np.arange(width) + 0.5 - x) * cells) ** 2
+    glow = np.empty((height, width), np.float32)
+    _look_up(down.astype(np.float32), right.astype(np.float32), _glow_table(), glow)
+    return _opacity(glow, severity, FLARE_TINT)
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Screen blend with a radial glow from a fixed direction in the world, where a view sees it."""
     count, height, width, _ = views.shape
-    out = views.copy()
+    out = np.empty_like(views)
     for view, centre in enumerate(flare_centres(key, count, height, width, heading)):
-        if centre is not None:
+        if centre is None:
+            out[view] = views[view]
+        else:
             mask = _flare_mask(*centre, severity, height, width)
-            out[view] = _apply(views[view : view + 1], *mask)[0]
+            _cover_into(views[view : view + 1], mask, WHITE, out[view : view + 1])
     return out
 
 
 @lru_cache(maxsize=64)
-def gaussian_weights(sigma: float) -> np.ndarray:
-    """float32 [r + 1]: one side of a normalised Gaussian, centre first, cut at 3 sigma."""
-    weights = np.exp(-0.5 * (np.arange(math.ceil(3.0 * sigma) + 1) / sigma) ** 2)
-    return (weights / (2.0 * weights.sum() - weights[0])).astype(np.float32)
+def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
+    """The arguments ``weights, levels`` of ``blur.gaussian`` for ``sigma`` px, cut at 3 sigma.
+
+    Smoothing by (1 2 1)/4 with a step of h pixels has variance h^2 / 2; the taps add the rest. They
+    keep a sigma of at least LEAST_TAP_SIGMA of their distance.
+    """
+    levels, variance = 0, sigma**2
+    while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:
+        variance -= 0.5 * 4**levels
+        levels += 1
+    spread = math.sqrt(variance) / 2**levels
+    r = max(2, 2 * math.ceil(1.5 * spread))
+    weights = np.exp(-0.5 * (np.arange(r + 1) / spread) ** 2)
+    weights = np.rint(weights * (65536.0 / (2.0 * weights.sum() - weights[0])))
+    weights[0] = min(32768.0 - weights[1:].sum(), 32767.0)
+    return weights.astype(np.int16), levels
 
 
 def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
@@ -212,30 +284,36 @@ def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
     if sigma < DEFOCUS_LEAST:
         return views.copy()
     out = np.empty_like(views)
-    blur.gaussian(views, gaussian_weights(sigma), out)
+    weights, levels = gaussian_weights(sigma)
+    blur.gaussian(views, weights, levels, out)
     return out
 
 
 @lru_cache(maxsize=32)
-def disk_spans(severity: float, height: int, width: int) -> tuple:
-    """The rows of the disk: (y, first x, end x)."""
+def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
+    """int64 [H, 2]: the first and end column of the disk in each row."""
     radius = DISK_RADIUS * severity * min(height, width)
-    spans = []
-    for y in range(height):
-        reach = radius**2 - (y + 0.5 - 0.5 * height) ** 2
-        if reach >= 0.0:
-            half = math.sqrt(reach)
-            first = max(0, math.ceil(0.5 * width - half - 0.5))
-            end = min(width, math.floor(0.5 * width + half - 0.5) + 1)
-            spans.append((y, first, end))
-    return tuple(spans)
+    reach = radius**2 - (np.arange(height) + 0.5 - 0.5 * height) ** 2
+    half = np.sqrt(np.maximum(reach, 0.0))
+    first = np.maximum(0, np.ceil(0.5 * width - half - 0.5))
+    end = np.minimum(width, np.floor(0.5 * width + half - 0.5) + 1)
+    return np.stack([first, np.where(reach < 0.0, first, end)], axis=1).astype(np.int64)
+
+
+@njit(cache=True)
+def _blacken(frames, spans):
+    """In place: uint8 [V, H, 3 W] is black inside the spans."""
+    for v in range(frames.shape[0]):
+        for y in range(frames.shape[1]):
+            row = frames[v, y]
+            for i in range(3 * spans[y, 0], 3 * spans[y, 1]):
+                row[i] = 0
 
 
 def foreign_object(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """A black disk of radius 0.5 s min(H, W) at the centre."""
     out = views.copy()
-    for y, first, end in disk_spans(severity, *views.shape[1:3]):
-        out[:, y, first:end] = 0
+    _blacken(flat_rows(out), disk_spans(severity, *views.shape[1:3]))
     return out
 
 

@@ -17,7 +17,7 @@ from mitigate.corruptions import depth, eld, rgb
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
 
-SUITE_VERSION = "1.0"  # changes when any pixel of any corruption changes
+SUITE_VERSION = "1.1"  # changes when any pixel of any corruption changes
 
 _RGB = {
     "motion_blur": rgb.motion_blur,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mitigate.corruptions import DepthSensor, Key, corrupt
-from mitigate.corruptions.depth import echo_table
+from mitigate.corruptions.depth import echo_polynomial, echo_shift
 
 WALL = np.full((12, 96, 128), 4.0, np.float32)
 
@@ -75,10 +75,20 @@ def test_multipath_overestimates_beside_a_farther_surface_only():
 
 
 def test_an_echo_is_never_beyond_the_farther_surface(scene):
-    assert (echo_table(1.0)[:-1] <= np.arange(1025) * 2.5 / 1024 + 1e-6).all()
+    gaps = np.linspace(0, 2.5, 500)
+    assert (echo_shift(gaps, 1.0) <= gaps + 1e-9).all()
     depth = scene.draw(96, 128)[1]
     out = corrupt(depth, "multipath", 1.0, key=Key(0, "a"))
     assert (out >= depth).all() and out.max() <= depth.max() + 1e-5
+
+
+@pytest.mark.parametrize("severity", [1e-3, 0.1, 0.6, 1.0])
+def test_the_echo_polynomial_is_the_phasor_sum_to_a_hundredth_of_a_millimetre(severity):
+    gaps = np.linspace(0, 2.5, 5001)
+    coefficients = echo_polynomial(severity)
+    assert coefficients.dtype == np.float32
+    fitted = gaps * np.polynomial.polynomial.polyval(gaps, coefficients.astype(float))
+    assert np.abs(fitted - echo_shift(gaps, severity)).max() < 1e-5
 
 
 @pytest.mark.parametrize("hole", [0.0, np.nan, np.inf, -3.0])

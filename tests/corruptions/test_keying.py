@@ -91,7 +91,7 @@ def test_the_compiled_hash_is_splitmix64():
     value = keying.digest(Key(0, "a"), "x")
     words = [keying.scramble(value, i) for i in range(3)]
     table = keying.normal_table()
-    expected = [table[(words[i >> 2] >> (16 * (i & 3))) & 0xFFFF] for i in range(12)]
+    expected = [table[(words[i >> 2] >> (16 * (i & 3) + 4)) & 0xFFF] for i in range(12)]
     assert keying.normals(value, 12).tolist() == np.array(expected).tolist()
 
 
@@ -115,13 +115,13 @@ def test_a_field_has_unit_spread_and_the_correlation_asked_for():
 
 def test_a_field_wraps_and_is_the_same_at_half_size():
     value = keying.digest(Key(0, "f"), "x")
-    full, ordered = keying.field(value, 256, 320, 0.018)
+    full, cells = keying.field(value, 256, 320, 0.018)
     half, _ = keying.field(value, 128, 160, 0.018)
     pooled = full.reshape(128, 2, 160, 2).mean((1, 3))
     assert np.abs(pooled - half).mean() < 0.04
     seam, inside = np.abs(full[:, 0] - full[:, -1]), np.abs(np.diff(full, axis=1))
     assert seam.mean() < 2 * inside.mean()
     for share in (0.05, 0.3, 0.5):
-        level = keying.top_share(ordered, share)
+        level = keying.top_share(cells, share)
         assert (full >= level).mean() == pytest.approx(share, abs=0.01)
-    assert keying.top_share(ordered, 0.0) == float("inf")
+    assert keying.top_share(cells, 0.0) == float("inf")

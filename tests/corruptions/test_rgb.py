@@ -33,15 +33,45 @@ def test_motion_blur_under_one_pixel_is_the_identity(scene):
     assert (corrupt(frame, "motion_blur", 0.25, key=Key(0, "a")) != frame).any()
 
 
-@pytest.mark.parametrize("length, angle", [(1.3, 0.1), (6.4, -0.17), (38.4, 0.05)])
-def test_the_blur_line_has_its_length_and_angle(length, angle):
-    dy, dx, weights = kernels.line_taps(length, angle, 1.0)
-    share = weights / 65536
-    assert share.sum() == 1.0
-    assert (share @ dx, share @ dy) == pytest.approx((0, 0), abs=1e-3)
+@pytest.mark.parametrize(
+    "length, angle, step",
+    [(1.3, 0.1, 1), (6.4, -0.17, 1), (12.0, 0.1, 2), (38.4, 0.05, 2), (192.0, -0.1, 2)],
+)
+def test_the_blur_line_has_its_length_and_angle(length, angle, step):
+    dy, dx, weights = kernels.line_taps(length, angle, step)
+    share = weights / weights.sum()
+    assert len(weights) % 4 == 0
+    assert (share @ dx, share @ dy) == pytest.approx((0, 0), abs=1e-9)
     spread = np.sqrt(12 * (share @ dx**2))
-    assert spread == pytest.approx(length * np.cos(angle), rel=0.05, abs=0.6)
-    assert (share @ (dx * dy)) == pytest.approx(np.tan(angle) * (share @ dx**2), abs=0.05)
+    assert spread == pytest.approx(length * np.cos(angle), rel=0.05, abs=0.6 * step)
+    square = share @ dx**2
+    assert (share @ (dx * dy)) == pytest.approx(np.tan(angle) * square, rel=0.02, abs=0.05)
+
+
+@pytest.mark.parametrize("size", [(64, 64), (224, 224), (240, 640), (60, 2000)])
+@pytest.mark.parametrize("severity", [0.6, 1.0])
+def test_motion_blur_is_a_line_filter_to_less_than_half_a_grey_level(size, severity, scene):
+    import cv2
+
+    frame = scene.draw(*size)[0]
+    length, key = 0.10 * severity * size[1], Key(0, "a")
+    angle = np.radians(10 * (2 * kernels.uniform(kernels.digest(key, "motion_blur")) - 1))
+    half = 0.5 * length * np.cos(angle)
+    reach = int(np.ceil(half)) + 1
+    line = np.zeros((2 * reach + 1, 2 * reach + 1))
+    for x in range(-reach, reach + 1):
+        cover = max(0.0, min(x + 0.5, half) - max(x - 0.5, -half))
+        y = x * np.tan(angle)
+        low = int(np.floor(y))
+        for row, share in ((low, 1 - (y - low)), (low + 1, y - low)):
+            if share * cover > 0:
+                line[reach + row, reach + x] += share * cover
+    border = cv2.BORDER_REPLICATE
+    blurred = cv2.filter2D(frame.astype(np.float64), -1, line / line.sum(), borderType=border)
+    exact = (0.5 - 0.5 * severity) * frame + (0.5 + 0.5 * severity) * blurred
+    out = corrupt(frame, "motion_blur", severity, key=key)
+    assert np.abs(out - exact).mean() < 0.4  # 0.25 of it is the rounding to grey levels
+    assert abs((out - exact).mean()) < 0.1 and np.abs(out - exact).max() < 4
 
 
 def test_motion_blur_keeps_half_of_a_point_at_small_severity():
@@ -49,7 +79,7 @@ def test_motion_blur_keeps_half_of_a_point_at_small_severity():
     frame[50, 100] = 200
     out = corrupt(frame, "motion_blur", 0.5, key=Key(0, "a"))
     assert out[50, 100, 0] == pytest.approx(200 * (0.25 + 0.75 / 10.05), abs=6)
-    assert out.sum() == pytest.approx(frame.sum(), rel=0.05)
+    assert int(out.sum()) == pytest.approx(int(frame.sum()), rel=0.05)
 
 
 @pytest.mark.parametrize("episode", ["a", "b", "c", "d"])
@@ -135,17 +165,38 @@ def test_flare_is_a_screen_blend_that_never_darkens(scene):
     assert (out >= frame).all() and out[int(y), int(x), 0] == 255
 
 
-def test_defocus_is_the_gaussian_blur_it_says(scene):
+@pytest.mark.parametrize("sigma", [0.2, 0.9, 2.3, 2.4, 3.0, 5.0, 6.4, 12.0])
+def test_defocus_is_the_gaussian_blur_it_says(sigma, scene):
     import cv2
 
-    frame = scene.draw(224, 224)[0]
-    weights = kernels.gaussian_weights(3.0)
-    assert weights[0] + 2 * weights[1:].sum() == pytest.approx(1.0, abs=1e-6)
+    frame = scene.draw(240, 320)[0]
     out = np.empty_like(frame)[None]
-    kernels.blur.gaussian(frame[None], weights, out)
+    kernels.blur.gaussian(frame[None], *kernels.gaussian_weights(sigma), out)
     border = cv2.BORDER_REPLICATE
-    exact = cv2.GaussianBlur(frame.astype(np.float64), (19, 19), 3.0, borderType=border)
-    assert np.abs(out[0] - exact).max() <= 0.51
+    exact = cv2.GaussianBlur(frame.astype(np.float64), (0, 0), sigma, borderType=border)
+    assert np.abs(out[0] - exact).mean() <= 0.3  # 0.25 of it is the rounding to grey levels
+    assert abs((out[0] - exact).mean()) < 0.03 and np.abs(out[0] - exact).max() < 2
+
+
+@pytest.mark.parametrize("sigma", [2.4, 4.9, 9.8])
+def test_defocus_is_a_gaussian_even_for_white_noise(sigma):
+    import cv2
+
+    frame = np.random.default_rng(0).integers(0, 256, (200, 200, 3), dtype=np.uint8)
+    out = np.empty_like(frame)[None]
+    kernels.blur.gaussian(frame[None], *kernels.gaussian_weights(sigma), out)
+    border = cv2.BORDER_REPLICATE
+    exact = cv2.GaussianBlur(frame.astype(np.float64), (0, 0), sigma, borderType=border)
+    assert np.abs(out[0] - exact).mean() <= 0.5
+
+
+@pytest.mark.parametrize("sigma", [0.15, 0.5, 1.0, 2.5, 8.0, 40.0])
+@pytest.mark.parametrize("grey", [0, 1, 128, 255])
+def test_defocus_leaves_a_plain_frame_as_it_is(sigma, grey):
+    frame = np.full((1, 90, 70, 3), grey, np.uint8)
+    out = np.empty_like(frame)
+    kernels.blur.gaussian(frame, *kernels.gaussian_weights(sigma), out)
+    assert (out == grey).all()
 
 
 def test_a_foreign_object_is_a_centred_disk():
