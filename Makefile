@@ -7,10 +7,10 @@ ARGS ?=
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install train evaluate sweep table export test lint bench doctor clean
+.PHONY: help install train evaluate sweep table table2 export test lint bench doctor clean
 
 help: ## list the targets
-	@grep -E '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z]+):.*## /\1|/' \
+	@grep -E '^[a-z0-9]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9]+):.*## /\1|/' \
 	  | awk -F'|' '{printf "  make %-10s %s\n", $$1, $$2}'
 
 $(VENV)/.stamp: pyproject.toml
@@ -38,6 +38,9 @@ sweep: $(VENV)/.stamp-sweep ## many runs, one table: ARGS="recipe=da_per_frame,d
 
 table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --out report"
 	$(BIN)/python -m mitigate.table $(ARGS)
+
+table2: $(VENV)/.stamp ## train and evaluate the paper's Table II: ARGS="seeds=[0] jobs=2"
+	$(BIN)/python -m mitigate.table2 $(ARGS)
 
 export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/a NAME=mine
 	$(BIN)/python -m mitigate.export $(RUN) $(NAME) $(ARGS)

@@ -49,6 +49,7 @@ class ViewDistillation(PerceptionRecipe):
     ) -> None:
         super().__init__(agent, modality, **others)
         self.teacher = load_teacher(agent, teacher)
+        self.teacher_sha = checkpoint.weights_sha(self.teacher)
         self.w_labels, self.w_feat = w_labels, w_feat
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
@@ -90,6 +91,7 @@ class TeacherStudent(ImitationRecipe):
         if unknown:
             raise ValueError(f"match={unknown} is unknown; choose from {', '.join(FEATURES)}.")
         self.teacher = load_teacher(agent, teacher)
+        self.teacher_sha = checkpoint.weights_sha(self.teacher)
         self.w_il, self.w_kl, self.w_feat = w_il, w_kl, w_feat
         self.temperature, self.match = temperature, tuple(match)
 

@@ -44,7 +44,7 @@ class Retention:
 class Grid:
     """All results of one split, suite version and success rule.
 
-    ``columns`` maps a column's label to its (name, agent sha); ``seeds`` to the seeds it ran with.
+    ``columns`` maps a column's label to its (name, agent shas); ``seeds`` to the seeds it ran with.
     ``cells[label, corruption, severity, metric]`` is float64 [N], one value an episode, the mean
     over the column's seeds, NaN where a row is missing.
     """
@@ -52,7 +52,7 @@ class Grid:
     split: str
     suite: str
     rule: str
-    columns: dict[str, tuple[str, str]]
+    columns: dict[str, tuple[str, tuple[str, ...]]]
     seeds: dict[str, tuple[int, ...]]
     episodes: tuple[str, ...]
     cells: dict[tuple[str, str, float, str], np.ndarray]
@@ -139,21 +139,30 @@ def grids(rows: Iterable[Row]) -> list[Grid]:
     return [_grid(key, groups[key]) for key in sorted(groups)]
 
 
-def label_columns(pairs: Iterable[tuple[str, str]]) -> dict[str, tuple[str, str]]:
-    """Return label -> (name, agent sha); the sha is shown where one name has several agents."""
-    unique = list(dict.fromkeys(pairs))
-    agents = defaultdict(list)
-    for name, agent in unique:
-        agents[name].append(agent)
-    return {
-        (name if len(agents[name]) == 1 else f"{name} ({agent[:6]})"): (name, agent)
-        for name, agent in unique
-    }
+def label_columns(
+    measured: Iterable[tuple[str, str, int]],
+) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return label -> (name, agents) of all (name, agent sha, seed).
+
+    Agents of one name that ran with a seed each of their own are the training seeds of one column.
+    Otherwise each is a column, with its sha in the label.
+    """
+    seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
+    for name, agent, seed in measured:
+        seeds[name][agent].add(seed)
+    columns = {}
+    for name, agents in seeds.items():
+        apart = sum(len(s) for s in agents.values()) == len(set().union(*agents.values()))
+        if apart:
+            columns[name] = (name, tuple(agents))
+        else:
+            columns |= {f"{name} ({agent[:6]})": (name, (agent,)) for agent in agents}
+    return columns
 
 
 def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
-    columns = label_columns((row["name"], row["agent"]) for row in rows)
-    labels = {pair: label for label, pair in columns.items()}
+    columns = label_columns((row["name"], row["agent"], row["seed"]) for row in rows)
+    labels = {(name, agent): x for x, (name, agents) in columns.items() for agent in agents}
     episodes = tuple(sorted({row["episode_id"] for row in rows}, key=_natural))
     place = {episode: index for index, episode in enumerate(episodes)}
     seeds: dict[str, set[int]] = defaultdict(set)

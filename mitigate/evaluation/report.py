@@ -59,7 +59,7 @@ def _heading(section: Section) -> str:
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
     seeds = sorted({seed for column in columns for seed in grid.seeds[column]})
-    agents = ", ".join(f"{column} `{grid.columns[column][1]}`" for column in columns)
+    agents = ", ".join(f"{x} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns)
     return (
         f"## {grid.split}, {at}\n\n"
         f"N = {len(grid.episodes)} episodes, seed {', '.join(map(str, seeds))}, corruption suite "

@@ -123,6 +123,15 @@ def test_two_agents_of_one_name_are_told_apart():
     assert lines(made)["Corruption"] == ["base (012345)", "base (ba9876)"]
 
 
+def test_agents_with_a_seed_each_of_their_own_are_one_column():
+    """They are the training seeds of one recipe."""
+    made = column(8, ALL) + column(4, ALL, agent="ba9876543210", seed=1)
+    (section,) = sections(made)
+    assert section.columns == ("base",)
+    assert section.value("base", "clean") == pytest.approx(0.6)
+    assert "`0123456789ab` `ba9876543210`" in markdown([section])
+
+
 def test_seeds_are_averaged_within_an_episode():
     made = column(8, ALL) + column(4, ALL, seed=1)
     (section,) = sections(made)

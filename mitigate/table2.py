@@ -1,0 +1,238 @@
+"""The paper's Table II with our agent: ``python -m mitigate.table2 seeds=[0] jobs=2``.
+
+Trains and evaluates every column for every seed, several cells at a time, each in processes of its
+own. The same command again goes on where the last one stopped: trainings resume, evaluations go on,
+finished cells are kept. Then the report is written from the rows of all cells.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from omegaconf import DictConfig, OmegaConf
+from tqdm import tqdm
+
+from mitigate import cli
+from mitigate.files import atomic_text
+
+BASE = "checkpoints/base"
+COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"
+
+
+@dataclass
+class Table2Config:
+    """Types of ``conf/table2.yaml``; the meaning of each entry is written there."""
+
+    out: str = "runs/table2"
+    columns: dict[str, Any] = field(default_factory=dict)
+    seeds: list[int] = field(default_factory=list)
+    split: str = "val_unseen"
+    episodes: int | None = None
+    severity: float = 0.6
+    train: list[str] = field(default_factory=list)
+    jobs: int = 2
+    paper: dict[str, Any] = field(default_factory=dict)
+
+
+ConfigStore.instance().store(name="table2_schema", node=Table2Config)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One column under one seed, in a folder of its own."""
+
+    column: str
+    options: tuple[str, ...] | None
+    seed: int
+    folder: Path
+
+    def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
+        """What makes the cell: ("train" or "evaluate", arguments after ``python -m``)."""
+        weights, found = BASE, []
+        if self.options is not None:
+            run = self.folder / "run"
+            weights = str(run / "agent")
+            found.append(
+                (
+                    "train",
+                    [
+                        "mitigate.train",
+                        *self.options,
+                        *cfg.train,
+                        f"seed={self.seed}",
+                        f"folder={run}",
+                        "evaluation.enabled=false",
+                    ],
+                )
+            )
+        count = "null" if cfg.episodes is None else cfg.episodes
+        found.append(
+            (
+                "evaluate",
+                [
+                    "mitigate.evaluate",
+                    f"checkpoint={weights}",
+                    f"name={self.column}",
+                    f"seed={self.seed}",
+                    f"split={cfg.split}",
+                    f"episodes={count}",
+                    f"severity={cfg.severity}",
+                    f"out={self.folder / 'evaluation'}",
+                ],
+            )
+        )
+        return found
+
+
+def run(cfg: DictConfig) -> Path:
+    """Make all cells and the report; return the report's path.
+
+    Raises ValueError for settings that make no sense, and if a cell failed (after the others are
+    done), with the end of its log.
+    """
+    out = Path(cfg.out)
+    made = cells(cfg)
+    with ThreadPoolExecutor(cfg.jobs) as pool, tqdm(total=len(made), desc="cells") as bar:
+        failed = []
+        for cell, problem in zip(made, pool.map(lambda c: make(c, cfg, bar), made), strict=True):
+            if problem:
+                failed.append(f"{cell.column}, seed {cell.seed}: {problem}")
+    if len(failed) == len(made):
+        raise ValueError("Every cell failed. " + " ".join(failed))
+    report = write_report(cfg, out)
+    if failed:
+        raise ValueError("Some cells failed; run again to go on with them. " + " ".join(failed))
+    return report
+
+
+def cells(cfg: DictConfig) -> list[Cell]:
+    """All cells of the table, seed by seed, so that a partial table holds every column."""
+    if not cfg.seeds or not cfg.columns or cfg.jobs < 1:
+        raise ValueError(
+            f"columns, seeds ({list(cfg.seeds)}) and jobs ({cfg.jobs}) must not be empty or 0."
+        )
+    out = Path(cfg.out)
+    return [
+        Cell(
+            str(column),
+            None if options is None else tuple(options),
+            seed,
+            out / "cells" / f"{column}-seed{seed}",
+        )
+        for seed in cfg.seeds
+        for column, options in cfg.columns.items()
+    ]
+
+
+def make(cell: Cell, cfg: DictConfig, bar: tqdm) -> str | None:
+    """Train and evaluate one cell; return what went wrong, if anything did."""
+    cell.folder.mkdir(parents=True, exist_ok=True)
+    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+    with open(cell.folder / LOG, "a", encoding="utf-8") as log:
+        for kind, arguments in cell.commands(cfg):
+            process = subprocess.Popen(
+                [sys.executable, "-m", *arguments],
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                env=environment,
+            )
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            _add_cost(cell.folder / COST, kind, used.ru_utime + used.ru_stime)
+            if process.returncode:
+                end = (cell.folder / LOG).read_text(encoding="utf-8").strip().splitlines()[-1:]
+                return f"{kind} ended with {process.returncode} ({' '.join(end)})"
+    bar.update()
+    return None
+
+
+_LOCK = threading.Lock()
+
+
+def _add_cost(path: Path, kind: str, seconds: float) -> None:
+    """Add CPU seconds to a cell's account, which counts all its runs."""
+    with _LOCK:
+        cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        cost[kind] = round(cost.get(kind, 0.0) + seconds, 1)
+        with atomic_text(path) as file:
+            json.dump(cost, file)
+
+
+def write_report(cfg: DictConfig, out: Path) -> Path:
+    """Write ``table.md`` with its pictures, and ``table2.md`` with the paper beside it."""
+    from mitigate.evaluation import report, rows
+    from mitigate.evaluation.sections import sections
+
+    found = rows.gather([out / "cells"])
+    report.write(found, out)
+    section = next(s for s in sections(found) if s.severity == cfg.severity)
+    paper = OmegaConf.to_container(cfg.paper)
+    assert isinstance(paper, dict)
+    with atomic_text(out / REPORT) as file:
+        file.write(beside(section, paper, costs(out)))
+    print((out / REPORT).read_text(encoding="utf-8"), flush=True)
+    return out / REPORT
+
+
+def costs(out: Path) -> dict[str, float]:
+    """Mean CPU minutes of training by column."""
+    spent: dict[str, list[float]] = {}
+    for path in sorted((out / "cells").glob(f"*/{COST}")):
+        seconds = json.loads(path.read_text(encoding="utf-8")).get("train", 0.0)
+        spent.setdefault(path.parent.name.rpartition("-seed")[0], []).append(seconds / 60)
+    return {column: sum(minutes) / len(minutes) for column, minutes in spent.items()}
+
+
+def beside(section: Any, paper: dict[str, list], spent: dict[str, float]) -> str:
+    """Markdown of our table with the paper's figure after each of ours, in brackets."""
+    from mitigate.evaluation.sections import label
+
+    theirs = {
+        name: dict(zip(paper["columns"], values, strict=True))
+        for name, values in paper.items()
+        if name != "columns"
+    }
+
+    def cell(value: str, name: str, column: str) -> str:
+        reference = theirs.get(name, {}).get(column)
+        return value if reference is None else f"{value} ({reference})"
+
+    lines = [["Corruption", *section.columns], ["---", *["---:"] * len(section.columns)]]
+    clean = [100 * section.value(c, "clean") for c in section.columns]
+    lines.append(["Clean SR", *(f"{value:.1f}" for value in clean)])
+    for block, names in section.blocks.items():
+        title = f"PRS-SR ({block})"
+        kept = {c: section.retained.get((c, block, "SR")) for c in section.columns}
+        values = {c: "–" if r is None else f"{r.estimate.value:.2f}" for c, r in kept.items()}
+        lines.append([f"**{title}**", *(cell(v, title, c) for c, v in values.items())])
+        for name in names:
+            rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
+            lines.append([label(name), *(cell(v, name, c) for c, v in rates.items())])
+    lines.append(["Training, CPU minutes", *(f"{spent.get(c, 0.0):.0f}" for c in section.columns)])
+    table = "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+    return (
+        "SR in %, in brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65). "
+        "Intervals are in table.md.\n\n" + table + "\n"
+    )
+
+
+@hydra.main(version_base="1.3", config_path=str(cli.CONF), config_name="table2")
+def hydra_main(cfg: DictConfig) -> None:
+    """Hydra's entry."""
+    run(cfg)
+
+
+if __name__ == "__main__":
+    from mitigate import table2  # by name, so that its classes exist once
+
+    cli.main(table2.hydra_main, "table2")

@@ -1,0 +1,170 @@
+"""Distillation leaves the teacher alone, moves the student, and asks both the same question."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from mitigate import checkpoint, seeding
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.checkpoint import weights_sha
+from mitigate.corruptions import Schedule
+from mitigate.trainer import Trainer
+from recipes.conv_adapter import ConvAdapterRecipe
+from recipes.imitation import PARTS, ImitationRecipe
+from recipes.ts_distill import TeacherStudent, ViewDistillation, policy_kl
+
+SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
+ADAPTERS = {"target_modules": [r"(rgb|depth)_encoder\.stages\.1"], "ring": [r"rgb.*stages\.2"]}
+EPISODES = {"episodes": 1, "apartments": 2, "follow_oracle": 1.0}
+VIEWS = {"panoramas": 1, "apartments": 2}
+
+
+def small(seed: int = 0, **options) -> TopologicalAgent:
+    """An untrained agent that sees free space everywhere."""
+    seeding.seed_everything(seed, "agent")
+    agent = TopologicalAgent(16, SMALL, **options)
+    with torch.no_grad():
+        agent.waypoint_head.out.bias.fill_(8.0)
+    return agent
+
+
+def missing_data() -> Schedule:
+    """Every frame loses half of its depth."""
+    return Schedule("per_episode", 1.0, clean_share=0.0, names=("missing_data",))
+
+
+@pytest.fixture(scope="module")
+def teacher(tmp_path_factory) -> str:
+    folder = tmp_path_factory.mktemp("teacher")
+    checkpoint.save_weights(small(seed=1), folder)
+    return str(folder)
+
+
+@pytest.fixture(scope="module")
+def recipe(teacher) -> TeacherStudent:
+    return TeacherStudent(small(), teacher, schedule=missing_data(), **EPISODES)
+
+
+@pytest.fixture(scope="module")
+def batch(recipe) -> dict:
+    recipe.train()
+    return recipe.batch(0)
+
+
+def gradients(recipe: TeacherStudent, loss: torch.Tensor) -> set[str]:
+    """The agent's parts that ``loss`` reaches; the teacher must never be one."""
+    recipe.zero_grad()
+    loss.backward(retain_graph=True)
+    assert all(p.grad is None for p in recipe.teacher.parameters())
+    return {
+        part
+        for part in PARTS
+        if any(
+            p.grad is not None and p.grad.abs().sum() > 0
+            for p in getattr(recipe.agent, part).parameters()
+        )
+    }
+
+
+def test_each_term_reaches_what_it_should_and_nothing_else(recipe, batch):
+    values = recipe(batch)
+    everything = {"rgb_encoder", "depth_encoder", "planner"}
+    assert gradients(recipe, values["kl"]) == everything
+    assert gradients(recipe, values["feat_nodes"]) == everything
+    assert gradients(recipe, values["feat_views"]) == {"rgb_encoder", "depth_encoder"}
+    assert gradients(recipe, values["waypoints"]) == {"depth_encoder", "waypoint_head"}
+
+
+def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
+    """The teacher's own waypoints, from clean depth, would be others."""
+    views, _ = recipe.perception(batch)
+    student = recipe.plan(recipe.agent, batch, views)["logits"]
+    with torch.no_grad():
+        wanted = recipe.plan(recipe.teacher, batch, batch["clean_views"])["logits"]
+    assert torch.equal(torch.isfinite(student), torch.isfinite(wanted))
+    assert torch.equal(torch.isfinite(student), batch["decisions"].allowed)
+    assert not np.allclose(batch["depth"].numpy(), 0) and torch.isfinite(
+        policy_kl(student, wanted, 2.0)
+    )
+
+
+def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
+    shas = []
+    for kind in ("imitation", "distillation"):
+        agent = small()
+        common = {"schedule": missing_data(), "seed": 3, **EPISODES}
+        made = (
+            ImitationRecipe(agent, **common)
+            if kind == "imitation"
+            else TeacherStudent(agent, teacher, w_kl=0.0, w_feat=0.0, **common)
+        )
+        Trainer(made, steps=2, folder=tmp_path / kind, seed=3).fit()
+        shas.append(weights_sha(agent))
+    assert shas[0] == shas[1] != weights_sha(small())
+
+
+def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
+    agent = small()
+    made = TeacherStudent(agent, teacher, schedule=missing_data(), **EPISODES)
+    before, start = weights_sha(made.teacher), weights_sha(agent)
+    made.train()
+    assert not made.teacher.training
+    Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
+    assert weights_sha(made.teacher) == before == made.teacher_sha and weights_sha(agent) != start
+
+
+def test_kl_is_zero_only_for_equal_policies_and_ignores_what_is_no_candidate():
+    student = torch.tensor([[1.0, 2.0, float("-inf")]], requires_grad=True)
+    assert policy_kl(student, student.detach(), 2.0) == 0
+    teacher = torch.tensor([[2.0, 1.0, float("-inf")]])
+    found = policy_kl(student, teacher, 1.0)
+    p = torch.tensor([2.0, 1.0]).softmax(0)
+    q = torch.tensor([1.0, 2.0]).softmax(0)
+    assert found.item() == pytest.approx((p * (p / q).log()).sum().item(), rel=1e-5)
+    found.backward()
+    assert torch.isfinite(student.grad).all()
+
+
+@pytest.mark.parametrize("modality", ["rgb", "depth"])
+@pytest.mark.parametrize("kind", ["views", "adapters"])
+def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
+    def made():
+        schedule = Schedule("per_episode", 0.6)
+        if kind == "views":
+            return ViewDistillation(small(), modality, teacher, schedule=schedule, **VIEWS)
+        agent = small(adapters=ADAPTERS)
+        return ConvAdapterRecipe(agent, modality, schedule=schedule, **VIEWS)
+
+    whole, first, second = made(), made(), made()
+    Trainer(whole, steps=3, folder=tmp_path / "whole", seed=0).fit()
+    trainer = Trainer(first, steps=3, folder=tmp_path / "cut", seed=0, save_every=1)
+    for step in range(2):
+        trainer._step(step)
+    trainer._save(2)
+    Trainer(second, steps=3, folder=tmp_path / "cut", seed=0, save_every=1).fit()
+    assert weights_sha(whole.agent) == weights_sha(second.agent)
+
+
+def test_adapters_train_alone(tmp_path):
+    agent = small(adapters=ADAPTERS)
+    made = ConvAdapterRecipe(agent, "rgb", schedule=Schedule("per_episode", 0.6), **VIEWS)
+    start = weights_sha(agent)
+    Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
+    assert made.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
+
+
+def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
+    with pytest.raises(FileNotFoundError, match="make train RECIPE=da_per_episode"):
+        TeacherStudent(small(), str(tmp_path), schedule=missing_data(), **EPISODES)
+
+
+def test_an_unknown_feature_is_refused(teacher):
+    with pytest.raises(ValueError, match="match=.*views, nodes"):
+        TeacherStudent(small(), teacher, match=("logits",), schedule=missing_data(), **EPISODES)
+
+
+def test_adapters_are_asked_for_where_there_are_none():
+    with pytest.raises(ValueError, match="no adapters in its rgb encoder"):
+        ConvAdapterRecipe(small(), "rgb", schedule=Schedule("clean", 0.0), **VIEWS)
