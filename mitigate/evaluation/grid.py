@@ -73,11 +73,14 @@ class Grid:
         return [label for label in self.columns if label in measured]
 
     def blocks_at(self, severity: float) -> dict[str, tuple[str, ...]]:
-        """Return the blocks with a measured corruption at ``severity``; "Other" holds the rest."""
+        """Return the measured corruptions at ``severity`` by block; "Other" holds the rest."""
         measured = {name for _, name, at, _ in self.cells if at == severity and name != "clean"}
         other = tuple(sorted(measured.difference(*BLOCKS.values())))
-        blocks = BLOCKS | {"Other": other}
-        return {block: names for block, names in blocks.items() if measured & set(names)}
+        blocks = {
+            block: tuple(name for name in names if name in measured)
+            for block, names in (BLOCKS | {"Other": other}).items()
+        }
+        return {block: names for block, names in blocks.items() if names}
 
     def measured(self, label: str, metric: str = "success") -> np.ndarray:
         """Return which episodes [N] the clean cell of a column holds."""

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
-from mitigate.evaluation.grid import METRICS, Grid
+from mitigate.evaluation.grid import BLOCKS, METRICS, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Section, label, sections
@@ -97,8 +97,11 @@ def _notes(section: Section) -> str:
             "little."
         )
     found = section.retained.items()
-    if any(len(r.corruptions) < len(section.blocks[block]) for (_, block, _), r in found):
-        notes.append("† over k of the K corruptions: the others are not complete.")
+    if any(len(r.corruptions) < section.whole(block) for (_, block, _), r in found):
+        notes.append("† over k of the K corruptions: the others are not measured or not complete.")
+    absent = [n for b, names in section.blocks.items() for n in BLOCKS.get(b, ()) if n not in names]
+    if absent:
+        notes.append(f"Not measured: {', '.join(map(label, absent))}.")
     if section.gained:
         notes.append("Differences of PRS in bold have intervals that exclude zero.")
     if section.gaps:

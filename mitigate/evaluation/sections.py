@@ -10,7 +10,7 @@ import numpy as np
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import METRICS, Gap, Grid, Retention, grids
+from mitigate.evaluation.grid import BLOCKS, METRICS, Gap, Grid, Retention, grids
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 
@@ -59,9 +59,13 @@ class Section:
         """Return whether a cell lacks episodes."""
         return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
 
+    def whole(self, block: str) -> int:
+        """Return how many corruptions a PRS over ``block`` stands for, measured or not."""
+        return len(BLOCKS.get(block, self.blocks[block]))
+
     def marks(self, found: Retained, block: str) -> str:
         """Return the signs of a PRS that lacks corruptions or episodes, or is near the floor."""
-        held, wanted = len(found.corruptions), len(self.blocks[block])
+        held, wanted = len(found.corruptions), self.whole(block)
         fewer = "*" * (found.episodes < len(self.grid.episodes))
         return fewer + f" † {held}/{wanted}" * (held < wanted) + " ‡" * found.near_floor
 
