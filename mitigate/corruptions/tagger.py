@@ -1,0 +1,164 @@
+"""Parts of speech (Universal POS tags) of instructions: an installed spaCy pipeline, or our own.
+
+Our own tagger knows the closed word classes and the verbs, adjectives and adverbs of navigation
+(``words.py``), decides words of two classes by their neighbours, and calls every other word a noun.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from mitigate.corruptions import words
+
+TOKEN = re.compile(r"\[\w+\]|<\w+>|[^\W_]+(?:['’][^\W_]+)*|[^\w\s]|_", re.UNICODE)
+WORD = re.compile(r"[^\W_]")
+SENTENCE_ENDS = frozenset(".!?;:")
+_NUMBER = re.compile(r"\d+(?:st|nd|rd|th)?$")
+_BEFORE_NOUN = frozenset({"DET", "ADJ", "NUM"})
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word or mark of a text: ``text[start:end]``, its lower case and its tag."""
+
+    text: str
+    start: int
+    lower: str
+    tag: str = "X"
+
+    @property
+    def end(self) -> int:
+        """Return the place after the last character."""
+        return self.start + len(self.text)
+
+    @property
+    def is_word(self) -> bool:
+        """Return whether this is a word, and neither a mark nor a ``[MASK]``."""
+        return bool(WORD.match(self.text))
+
+
+def tokens(text: str) -> list[Token]:
+    """Split ``text`` into words, marks and bracketed tokens such as ``[MASK]``, untagged."""
+    return [
+        Token(m.group(), m.start(), m.group().lower().replace("’", "'"))
+        for m in TOKEN.finditer(text)
+    ]
+
+
+def tag(text: str) -> list[Token]:
+    """Return the tokens of ``text`` with the tags of our own tagger."""
+    found = tokens(text)
+    tagged: list[Token] = []
+    for index, token in enumerate(found):
+        before = tagged[-1] if tagged else None
+        after = found[index + 1] if index + 1 < len(found) else None
+        tagged.append(Token(token.text, token.start, token.lower, _tag(token, before, after)))
+    return tagged
+
+
+def best() -> Callable[[str], list[Token]]:
+    """Return the tagger to use: an installed English spaCy pipeline's, else :func:`tag`."""
+    pipeline = _spacy()
+    return tag if pipeline is None else lambda text: _spacy_tags(pipeline, text)
+
+
+@lru_cache(maxsize=1)
+def _spacy() -> Any | None:
+    """Load the installed English spaCy pipeline that comes first by name; None without one."""
+    try:
+        import spacy
+    except ImportError:
+        return None
+    names = sorted(name for name in spacy.util.get_installed_models() if name.startswith("en_"))
+    return spacy.load(names[0], exclude=["ner", "lemmatizer"]) if names else None
+
+
+def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
+    """Tags of ``pipeline`` on our tokens; words it misreads in instructions keep our tags."""
+    own = tag(text)
+    places = {token.idx: token.pos_ for token in pipeline(text)}
+    return [
+        token
+        if token.lower in words.OVERRIDES or token.start not in places
+        else Token(token.text, token.start, token.lower, places[token.start])
+        for token in own
+    ]
+
+
+def _tag(token: Token, before: Token | None, after: Token | None) -> str:
+    word = token.lower
+    if not token.is_word:
+        return "X" if len(word) > 1 else "PUNCT"
+    if _NUMBER.match(word):
+        return "NUM" if word.isdigit() else "ADJ"
+    if word.endswith(("'m", "'re", "'ve", "'ll", "'d")):
+        return "PRON"
+    if word in words.AMBIGUOUS:
+        return _by_context(word, before, after)
+    if word in words.TAGS:
+        return words.TAGS[word]
+    if word.endswith("ly"):
+        return "ADV"
+    if word.endswith("ing") and not _follows_determiner(before):
+        return "VERB"
+    if word.endswith(("ed", "ish", "ous", "ful", "less")) and after is not None and after.is_word:
+        return "ADJ"
+    return "NOUN"
+
+
+def _by_context(word: str, before: Token | None, after: Token | None) -> str:
+    """Tag a word of two classes: verb where a clause begins, noun after a determiner."""
+    options = words.AMBIGUOUS[word]
+    if word in ("left", "right"):
+        return _side(before, after)
+    if word in ("that", "this", "these", "those", "one"):
+        return options[0] if _begins_noun(after) else options[1]
+    if word == "to":
+        return "PART" if after is not None and after.lower in words.VERBS else "ADP"
+    if word in words.PARTICLES:
+        return "ADP" if _begins_noun(after) else "ADV"
+    if options == ("VERB", "NOUN"):
+        return "NOUN" if _follows_determiner(before) or _within_noun(before) else "VERB"
+    if options == ("ADJ", "NOUN"):
+        return "ADJ" if after is not None and _can_be_noun(after) else "NOUN"
+    if options == ("ADJ", "VERB"):
+        return "ADJ" if _follows_determiner(before) or _after_copula(before) else "VERB"
+    return options[0]
+
+
+def _side(before: Token | None, after: Token | None) -> str:
+    if before is not None and before.lower in words.POSSESSORS:
+        return "ADJ" if after is not None and _can_be_noun(after) else "NOUN"
+    if before is not None and before.lower in ("have", "has", "you've", "having"):
+        return "VERB"
+    return "ADV"
+
+
+def _follows_determiner(before: Token | None) -> bool:
+    return before is not None and (before.tag in _BEFORE_NOUN or before.lower in words.POSSESSORS)
+
+
+def _within_noun(before: Token | None) -> bool:
+    return before is not None and before.lower in ("of", "with", "to", "by", "from", "in", "at")
+
+
+def _after_copula(before: Token | None) -> bool:
+    return before is not None and before.lower in ("is", "are", "be", "was", "were", "very")
+
+
+def _begins_noun(after: Token | None) -> bool:
+    if after is None or not after.is_word:
+        return False
+    known = words.TAGS.get(after.lower)
+    return known in (None, "DET", "ADJ", "NUM", "PRON") or after.lower in words.AMBIGUOUS_NOUNS
+
+
+def _can_be_noun(after: Token) -> bool:
+    if not after.is_word:
+        return False
+    known = words.TAGS.get(after.lower)
+    return known in (None, "ADJ", "NUM") or after.lower in words.AMBIGUOUS_NOUNS
