@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
+from mitigate.corruptions.words import bag
+
 COMMANDS = (
     "walk|go|head|turn|take|make|stop|wait|exit|enter|leave|continue|proceed|move|pass|climb|"
     "descend|ascend|step|keep|stay|stand|cross|follow|veer|bear|face|come|hang|pivot|rotate|"
@@ -14,11 +16,15 @@ COMMANDS = (
 )
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
 _JOIN = r"(?:\s*[,;]\s*(?:and\s+)?|\s+(?:and|but)\s+|\s*,?\s*(?:and\s+)?\bthen\b\s*,?\s*)"
-_SPLIT = re.compile(rf"{_JOIN}(?=(?:{_ADVERBS}\s*,?\s+)*(?:{COMMANDS})\b)", re.IGNORECASE)
+_SPLIT = re.compile(
+    rf"{_JOIN}(?=(?:{_ADVERBS}\s*,?\s+)*(?!go back\b)(?:(?:{COMMANDS})\b"
+    rf"|(?:in|at|once|when|after|from) (?:the|you|inside) [^,.;]{{1,40}}? (?:{COMMANDS})\b))",
+    re.IGNORECASE,
+)
 _SENTENCE = re.compile(r"(?<=[.!?;])\s+|\n+|(?<=[a-z)])\.(?=[A-Z])")
 _LEAD = re.compile(
-    rf"^(?:(?:and|then|next|now|finally|lastly|first|afterwards|after that|from there|"
-    rf"once there|next up|so|also|second|secondly|okay|ok|please)\b\s*,?\s*(?!to\b|side\b))+",
+    r"^(?:(?:and|then|next|now|finally|lastly|first|afterwards|after that|from there|"
+    r"once there|next up|so|also|second|secondly|okay|ok|please)\b\s*,?\s*(?!to\b|side\b))+",
     re.IGNORECASE,
 )
 _BEGINS_CONDITION = re.compile(
@@ -26,15 +32,15 @@ _BEGINS_CONDITION = re.compile(
     re.IGNORECASE,
 )
 _COMMAND = re.compile(rf"(?:{_ADVERBS}\s+)*\b(?:{COMMANDS})\b", re.IGNORECASE)
-_NO_COMMAND_AFTER = frozenset(
+_NO_COMMAND_AFTER = bag(
     "you to and or will you'll the a an your of that which then we it this can should have must "
-    "with by first second next last his her no in at on from inside before after as".split()
+    "with by first second next last his her no in at on from inside before after as"
 )
 
 
 @dataclass(frozen=True)
 class Clause:
-    """One command: ``when`` it holds ("once you reach the bed", may be empty) and the ``main`` part."""
+    """One command, ``main``, and ``when`` it holds ("once you reach the bed"; may be empty)."""
 
     when: str
     main: str

@@ -2,13 +2,14 @@
 
 Five families after NavTrust: style (four manners), capitals, masks, misleading prefixes in front of
 the instruction (black box) and in the agent's system prompt (white box). Each is a pure function of
-(text, severity, key); severity 0 changes nothing, and what a severity changes a higher one does too.
+(text, severity, key). Severity 0 changes nothing; what one severity changes, a higher one does too.
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from mitigate.corruptions import words
@@ -22,10 +23,12 @@ FAMILY = {
     **dict.fromkeys(MANNERS, "style"),
     **{name: name for name in INSTRUCTION if name not in MANNERS},
 }
-SPOKEN = frozenset({"NOUN", "PROPN", "VERB", "ADP"})  # what capitals stress
-SLIGHT = frozenset("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ".split())  # what masks may hide
-_SLOT = re.compile(r"\{\{?\s*(?:instruction|task|goal|command|query|input)\s*\}?\}|<task>|<instruction>",
-    re.IGNORECASE)  # fmt: skip
+SPOKEN = words.bag("NOUN PROPN VERB ADP")  # what capitals stress
+SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")  # what masks may hide
+_SLOT = re.compile(
+    r"\{\{?\s*(?:instruction|task|goal|command|query|input)\s*\}?\}|<task>|<instruction>",
+    re.IGNORECASE,
+)
 
 
 @dataclass(frozen=True)
@@ -77,14 +80,14 @@ def corrupt_instruction(
         rewritten = uniform(digest(key, name)) < severity
         return restyle(text, name, key, rewrite).text if rewritten else text
     if name == "capitalize":
-        return _replaced(text, _eligible(text, name), severity, key, name, str.upper)
+        return _replaced(text, severity, key, name, str.upper)
     if name == "mask":
         if not mask_token or not mask_token.strip():
             raise ValueError(
                 "The mask token is empty: give the agent tokenizer's own, such as [MASK] (BERT) or "
                 "<mask> (RoBERTa). A tokenizer that has none takes the default '[MASK]' as text."
             )
-        return _replaced(text, _eligible(text, name), severity, key, name, lambda _: mask_token)
+        return _replaced(text, severity, key, name, lambda _: mask_token)
     return " ".join((*_stack(severity, key, split), text))
 
 
@@ -121,20 +124,20 @@ def _stack(severity: float, key: Key, split: str) -> list[str]:
 
 
 def _eligible(text: str, name: str) -> list[Token]:
-    """Return the tokens that a family may change."""
-    tokens = [token for token in best()(text) if token.is_word]
+    """Return the tokens that capitals or masks may change."""
+    found = [token for token in best()(text) if token.is_word]
     if name == "capitalize":
-        return [token for token in tokens if token.tag in SPOKEN]
-    return [t for t in tokens if t.tag in SLIGHT and t.lower not in words.SPATIAL]
+        return [token for token in found if token.tag in SPOKEN]
+    return [t for t in found if t.tag in SLIGHT and t.lower not in words.SPATIAL]
 
 
-def _replaced(text, eligible, severity, key, name, change) -> str:
-    """Return ``text`` with the share ``severity`` of the eligible tokens changed, nested in it."""
-    stream = digest(key, name)
+def _replaced(text: str, severity: float, key: Key, name: str, change: Callable[[str], str]) -> str:
+    """Return ``text`` with the share ``severity`` of its eligible words changed."""
+    eligible, stream = _eligible(text, name), digest(key, name)
     order = sorted(range(len(eligible)), key=lambda i: (uniform(stream, i), i))
-    count = math.floor(severity * len(eligible) + 0.5)
-    chosen = sorted((eligible[i] for i in order[:count]), key=lambda t: t.start, reverse=True)
-    for token in chosen:
+    chosen = order[: math.floor(severity * len(eligible) + 0.5)]
+    for place in sorted(chosen, reverse=True):
+        token = eligible[place]
         text = text[: token.start] + change(token.text) + text[token.end :]
     return text
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from mitigate.corruptions.words import bag
+
 # canonical name -> other names; a phrase of several words is joined before nouns are read
 SYNONYMS: dict[str, tuple[str, ...]] = {
     "sofa": ("couch", "settee", "loveseat", "love seat", "sofas", "couches"),
@@ -50,25 +52,27 @@ SYNONYMS: dict[str, tuple[str, ...]] = {
     "ping pong": ("table tennis",),
 }
 # nouns that name no landmark: parts of the way, of speech, of politeness
-PLAIN = frozenset(
-    "way side direction front time moment end middle center centre left right hand distance point "
-    "area place space position spot part portion piece set pair row couple number bit kind type "
-    "sort lot foot feet meter meters metre metres yard yards inch inches pace paces degree degrees "
-    "minute minutes second seconds turn walk stop exit path route course journey trip task "
-    "instruction instructions step-by-step destination goal target thing one something anything "
-    "everything line length edge view sight reach direction directions bearing heading angle "
-    "look back rest move pass face head climb start beginning work wait favour favor friend buddy "
-    "pal sir madam thanks thank welcome luck guess sense idea matter case order regard attention "
-    "care fact least first then while location arrival completion entirety manner traversal "
-    "passing proximity vicinity immediacy left-hand right-hand quarter half inside outside "
-    "outer opposite following far near next other others same slight straight forward ahead "
-    "around through past double single day job mind problem question word rush hurry minute "
-    "step-through please folks mate guys hey hi hello there ok okay sure rotation maneuver "
-    "manoeuvre orientation motion movement progress travel approach procedure directive "
-    "bunch help fun guidance navigation permission outset juncture breather completion course "
-    "ascent descent leave colleague greetings cooperation gratitude kindness pleasure request "
-    "briefing conclusion sequence plan adventure explanation everyone today day morning "
-    "requirement transit interior exterior nd rd th st".split()
+PLAIN = bag(
+    """
+    way side direction front time moment end middle center centre left right hand distance
+    point area place space position spot part portion piece set pair row couple number bit
+    kind type sort lot foot feet meter meters metre metres yard yards inch inches pace paces
+    degree degrees minute minutes second seconds turn walk stop exit path route course
+    journey trip task instruction instructions step-by-step destination goal target thing
+    one something anything everything line length edge view sight reach directions bearing
+    heading angle look back rest move pass face head climb start beginning work wait favour
+    favor friend buddy pal sir madam thanks thank welcome luck guess sense idea matter case
+    order regard attention care fact least first then while location arrival completion
+    entirety manner traversal passing proximity vicinity immediacy left-hand right-hand
+    quarter half inside outside outer opposite following far near next other others same
+    slight straight forward ahead around through past double single day job mind problem
+    question word rush hurry step-through please folks mate guys hey hi hello there ok okay
+    sure rotation maneuver manoeuvre orientation motion movement progress travel approach
+    procedure directive bunch help fun guidance navigation permission outset juncture
+    breather ascent descent leave colleague greetings cooperation gratitude kindness
+    pleasure request briefing conclusion sequence plan adventure explanation everyone today
+    morning requirement transit interior exterior nd rd th st
+    """
 )
 
 CANONICAL = {form: name for name, forms in SYNONYMS.items() for form in forms if " " not in form}

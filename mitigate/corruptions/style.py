@@ -25,8 +25,8 @@ Rewrite = Callable[[str, str], str]
 class Restyled:
     """A rewritten instruction: ``text``, what the gate refused on the way, and the outcome.
 
-    ``tries``: rewrites the gate looked at. ``passed``: False if all were refused and ``text`` is the
-    original. ``plain``: clauses whose own rewrite was refused or that no template fits.
+    ``tries``: rewrites the gate looked at. ``passed``: False if all were refused and ``text`` is
+    the original. ``plain``: clauses whose own rewrite was refused or that no template fits.
     """
 
     text: str
@@ -74,7 +74,7 @@ class _Draw:
 def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int]:
     """Return ``text`` in a manner and how many clauses kept their words.
 
-    The first attempt uses templates and synonyms, the second templates alone, the third frames alone.
+    The first attempt uses templates and synonyms, the second templates, the third frames alone.
     """
     draw, voice = _Draw(stream), phrases.VOICES[manner]
     parts = clauses(text)
@@ -83,11 +83,15 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int]
         said = _say(clause, voice, draw, attempt)
         plain += said is None
         place = "first" if index == 0 else "last" if index == len(parts) - 1 else "middle"
+        if clause.when:
+            place, last = "when", ""
         frame = last
         while frame == last:
             frame = draw(voice.frames[place])
         last = frame
         sentences.append(_framed(frame, clause.when, said or clause.main))
+    if sentences[0].endswith(","):
+        sentences[1] = sentences[1] if sentences[1][:2] == "I " else _lowered(sentences[1])
     return " ".join(part for part in (*sentences, draw(voice.closers)) if part), plain
 
 
@@ -109,12 +113,16 @@ def _say(clause: Clause, voice: phrases.Voice, draw: _Draw, attempt: int) -> str
     return None
 
 
+def _lowered(text: str) -> str:
+    return text[:1].lower() + text[1:]
+
+
 def _framed(frame: str, when: str, said: str) -> str:
     """Return one sentence; a command that does not begin with a verb is not put after "to"."""
     if not re.match(phrases.BARE_VERB, said, re.IGNORECASE):
         frame = "{}"
-    body = said if frame == "{}" else frame.format(said[0].lower() + said[1:])
+    body = said if frame == "{}" else frame.format(_lowered(said))
     if when:
-        body = f"{when}, {body[0].lower() + body[1:] if not body.startswith('I ') else body}"
+        body = f"{when}, {body if body.startswith('I ') else _lowered(body)}"
     body = body.rstrip(" ,")
     return body[0].upper() + body[1:] + ("" if body.endswith((".", "!", "?")) else ".")

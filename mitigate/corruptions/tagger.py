@@ -97,13 +97,19 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
         return "NUM" if word.isdigit() else "ADJ"
     if word.endswith(("'m", "'re", "'ve", "'ll", "'d")):
         return "PRON"
+    if word == "there":
+        return "PRON" if after is not None and after.lower in ("is", "are", "will") else "ADV"
+    if word == "back":
+        return "NOUN" if _determined(before) and not _can_be_noun(after) else "ADV"
+    if word == "passed" and before is not None and before.tag == "AUX":
+        return "VERB"
     if word in words.AMBIGUOUS:
         return _by_context(word, before, after)
     if word in words.TAGS:
         return words.TAGS[word]
     if word.endswith("ly"):
         return "ADV"
-    if word.endswith("ing") and not _follows_determiner(before):
+    if word.endswith("ing") and not _determined(before):
         return "VERB"
     if word.endswith(("ed", "ish", "ous", "ful", "less")) and after is not None and after.is_word:
         return "ADJ"
@@ -112,42 +118,40 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
 
 def _by_context(word: str, before: Token | None, after: Token | None) -> str:
     """Tag a word of two classes: verb where a clause begins, noun after a determiner."""
-    options = words.AMBIGUOUS[word]
+    first, second = words.AMBIGUOUS[word]
     if word in ("left", "right"):
         return _side(before, after)
-    if word in ("that", "this", "these", "those", "one"):
-        return options[0] if _begins_noun(after) else options[1]
     if word == "to":
         return "PART" if after is not None and after.lower in words.VERBS else "ADP"
-    if word in words.PARTICLES:
-        return "ADP" if _begins_noun(after) else "ADV"
-    if options == ("VERB", "NOUN"):
-        return "NOUN" if _follows_determiner(before) or _within_noun(before) else "VERB"
-    if options == ("ADJ", "NOUN"):
-        return "ADJ" if after is not None and _can_be_noun(after) else "NOUN"
-    if options == ("ADJ", "VERB"):
-        return "ADJ" if _follows_determiner(before) or _after_copula(before) else "VERB"
-    return options[0]
+    if (first, second) == ("DET", "PRON"):
+        return first if _begins_noun(after) else second
+    if (first, second) == ("ADP", "ADV"):
+        of = after is not None and after.lower == "of"
+        return first if of or _begins_noun(after) else second
+    if (first, second) == ("VERB", "NOUN"):
+        told = before is not None and before.tag in ("PART", "AUX")
+        return first if told or not (_determined(before) or _governed(before)) else second
+    if (first, second) == ("ADJ", "NOUN"):
+        return first if _can_be_noun(after) else second
+    known = _determined(before) or (before is not None and before.tag == "AUX")
+    return first if known else second
 
 
 def _side(before: Token | None, after: Token | None) -> str:
+    """Tag "left" or "right": after "the" or "your" a noun, or an adjective if a noun follows."""
     if before is not None and before.lower in words.POSSESSORS:
-        return "ADJ" if after is not None and _can_be_noun(after) else "NOUN"
+        return "ADJ" if _can_be_noun(after) else "NOUN"
     if before is not None and before.lower in ("have", "has", "you've", "having"):
         return "VERB"
     return "ADV"
 
 
-def _follows_determiner(before: Token | None) -> bool:
+def _determined(before: Token | None) -> bool:
     return before is not None and (before.tag in _BEFORE_NOUN or before.lower in words.POSSESSORS)
 
 
-def _within_noun(before: Token | None) -> bool:
+def _governed(before: Token | None) -> bool:
     return before is not None and before.lower in ("of", "with", "to", "by", "from", "in", "at")
-
-
-def _after_copula(before: Token | None) -> bool:
-    return before is not None and before.lower in ("is", "are", "be", "was", "were", "very")
 
 
 def _begins_noun(after: Token | None) -> bool:
@@ -157,8 +161,9 @@ def _begins_noun(after: Token | None) -> bool:
     return known in (None, "DET", "ADJ", "NUM", "PRON") or after.lower in words.AMBIGUOUS_NOUNS
 
 
-def _can_be_noun(after: Token) -> bool:
-    if not after.is_word:
+def _can_be_noun(after: Token | None) -> bool:
+    if after is None or not after.is_word:
         return False
-    known = words.TAGS.get(after.lower)
-    return known in (None, "ADJ", "NUM") or after.lower in words.AMBIGUOUS_NOUNS
+    if after.lower in words.AMBIGUOUS:
+        return after.lower in words.AMBIGUOUS_NOUNS
+    return words.TAGS.get(after.lower) in (None, "ADJ", "NUM")
