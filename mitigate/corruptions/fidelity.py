@@ -107,9 +107,18 @@ class Facts:
     denials: int
 
 
+@dataclass(frozen=True)
+class _Reading:
+    """The facts of a text, its words in canonical form, and each landmark's first clause."""
+
+    facts: Facts
+    words: frozenset[str]
+    clause: dict[str, int]
+
+
 def facts(text: str) -> Facts:
     """Return what ``text`` says."""
-    return _read(text)[0]
+    return _read(text).facts
 
 
 def check(original: str, rewritten: str) -> list[str]:
@@ -117,16 +126,19 @@ def check(original: str, rewritten: str) -> list[str]:
 
     Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
     invented", "landmark order", "number lost", "number invented", "compass lost", "compass
-    invented", "attribute lost", "attribute invented", "relation lost", "relation invented", "denial".
+    invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
+    "denial".
     Words are compared through the synonyms of ``landmarks.py``. Turns are not compared: their
-    directions are.
+    directions are. Landmarks of one clause may change places.
     """
-    (old, known), (new, kept) = _read(original), _read(rewritten)
+    before, after = _read(original), _read(rewritten)
+    (old, known), (new, kept) = (before.facts, before.words), (after.facts, after.words)
     found = []
     if old.directions != new.directions:
         found.append(f"directions: {_listed(old.directions)} -> {_listed(new.directions)}")
     found += _changes("landmark", old.landmarks, new.landmarks, known, kept)
-    if _shared(old.landmarks, new.landmarks) != _shared(new.landmarks, old.landmarks):
+    clauses = [before.clause[name] for name in after.clause if name in before.clause]
+    if clauses != sorted(clauses):
         found.append(f"landmark order: {_listed(old.landmarks)} -> {_listed(new.landmarks)}")
     found += _counted("number", old.numbers, new.numbers)
     found += _changes("compass", old.compass, new.compass, known, kept)
@@ -155,18 +167,12 @@ def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
     return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old]
 
 
-def _shared(names: Iterable[str], others: Sequence[str]) -> list[str]:
-    """Return the names also in ``others``, in the order in which they first come."""
-    return [name for name in dict.fromkeys(names) if name in others]
-
-
 def _listed(names: Iterable[str]) -> str:
     return ", ".join(names) or "none"
 
 
-@lru_cache(maxsize=4096)
-def _read(text: str) -> tuple[Facts, frozenset[str]]:
-    """Return the facts, and every word and landmark phrase of ``text``, normalised."""
+@lru_cache(maxsize=512)
+def _read(text: str) -> _Reading:
     found = tag(text)
     names = _names(found)
     turned = directions.about_turns(found)
@@ -180,7 +186,21 @@ def _read(text: str) -> tuple[Facts, frozenset[str]]:
         turns=directions.turns(found, turned),
         denials=sum(token.lower in DENIALS for token in found),
     )
-    return said, frozenset(name for _, name, _ in names) | {_same(t) for t in found}
+    clause: dict[str, int] = {}
+    for place, name, is_landmark in names:
+        if is_landmark:
+            clause.setdefault(name, _clause(found, place))
+    return _Reading(said, frozenset(n for _, n, _ in names) | {_same(t) for t in found}, clause)
+
+
+def _clause(found: list[Token], place: int) -> int:
+    """Return the number of the clause, one command, that holds ``place``."""
+    return sum(
+        token.lower in SENTENCE_ENDS
+        or token.lower == "then"
+        or (token.lower in ("and", ",") and found[index + 1].tag == "VERB")
+        for index, token in enumerate(found[:place])
+    )
 
 
 def _relations(found: list[Token]) -> list[str]:

@@ -77,7 +77,7 @@ def corrupt_instruction(
     if severity == 0.0:
         return text
     if name in MANNERS:
-        rewritten = uniform(digest(key, name)) < severity
+        rewritten = is_rewritten(name, severity, key)
         return restyle(text, name, key, rewrite).text if rewritten else text
     if name == "capitalize":
         return _replaced(text, severity, key, name, str.upper)
@@ -89,6 +89,11 @@ def corrupt_instruction(
             )
         return _replaced(text, severity, key, name, lambda _: mask_token)
     return " ".join((*_stack(severity, key, split), text))
+
+
+def is_rewritten(manner: str, severity: float, key: Key) -> bool:
+    """Return whether the episode of ``key`` is among the share ``severity`` said in a manner."""
+    return uniform(digest(key, manner)) < severity
 
 
 def inject_system_prompt(

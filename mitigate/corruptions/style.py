@@ -26,13 +26,15 @@ class Restyled:
     """A rewritten instruction: ``text``, what the gate refused on the way, and the outcome.
 
     ``tries``: rewrites the gate looked at. ``passed``: False if all were refused and ``text`` is
-    the original. ``plain``: clauses whose own rewrite was refused or that no template fits.
+    the original. ``plain``: how many of the ``clauses`` kept their words, because no
+    template fits them or the gate refused what it gave.
     """
 
     text: str
     tries: int
     passed: bool
     plain: int
+    clauses: int
     refused: tuple[str, ...]
 
 
@@ -43,21 +45,21 @@ def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) ->
     replaced by the rewrite by rule.
     """
     refused: list[str] = []
-    tries = 0
+    tries = count = 0
     if rewrite is not None:
         spoken = rewrite(text, manner).strip()
         tries, problems = 1, check(text, spoken) if spoken else ["empty answer"]
         if not problems:
-            return Restyled(spoken, tries, True, 0, ())
+            return Restyled(spoken, tries, True, 0, 0, ())
         refused += problems
     for attempt in range(TRIES):
-        spoken, plain = _speak(text, manner, digest(key, f"style-{manner}-{attempt}"), attempt)
+        spoken, plain, count = _speak(text, manner, digest(key, f"{manner}-{attempt}"), attempt)
         tries += 1
         problems = check(text, spoken)
         if not problems:
-            return Restyled(spoken, tries, True, plain, tuple(refused))
+            return Restyled(spoken, tries, True, plain, count, tuple(refused))
         refused += problems
-    return Restyled(text, tries, False, 0, tuple(refused))
+    return Restyled(text, tries, False, count, count, tuple(refused))
 
 
 class _Draw:
@@ -71,8 +73,8 @@ class _Draw:
         return options[int(uniform(self._stream, self._count) * len(options))]
 
 
-def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int]:
-    """Return ``text`` in a manner and how many clauses kept their words.
+def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int, int]:
+    """Return ``text`` in a manner, how many clauses kept their words, and of how many.
 
     The first attempt uses templates and synonyms, the second templates, the third frames alone.
     """
@@ -92,7 +94,7 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int]
         sentences.append(_framed(frame, clause.when, said or clause.main))
     if sentences[0].endswith(","):
         sentences[1] = sentences[1] if sentences[1][:2] == "I " else _lowered(sentences[1])
-    return " ".join(part for part in (*sentences, draw(voice.closers)) if part), plain
+    return " ".join(part for part in (*sentences, draw(voice.closers)) if part), plain, len(parts)
 
 
 def _say(clause: Clause, voice: phrases.Voice, draw: _Draw, attempt: int) -> str | None:

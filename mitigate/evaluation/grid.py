@@ -12,10 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
-from mitigate.corruptions import DEPTH, RGB
+from mitigate.corruptions import DEPTH, INSTRUCTION, RGB
 from mitigate.evaluation.rows import Row, upsert
 
-BLOCKS = {"RGB": RGB, "Depth": DEPTH}  # the paper's two blocks, in its order
+BLOCKS = {"RGB": RGB, "Depth": DEPTH, "Instruction": INSTRUCTION}  # the paper's, in its order
+PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt: these have no row
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}
 
@@ -76,8 +77,13 @@ class Grid:
         """Return the blocks with a measured corruption at ``severity``; "Other" holds the rest."""
         measured = {name for _, name, at, _ in self.cells if at == severity and name != "clean"}
         other = tuple(sorted(measured.difference(*BLOCKS.values())))
+        absent = {PROMPT_ONLY} - measured
         blocks = BLOCKS | {"Other": other}
-        return {block: names for block, names in blocks.items() if measured & set(names)}
+        return {
+            block: tuple(name for name in names if name not in absent)
+            for block, names in blocks.items()
+            if measured & set(names)
+        }
 
     def measured(self, label: str, metric: str = "success") -> np.ndarray:
         """Return which episodes [N] the clean cell of a column holds."""

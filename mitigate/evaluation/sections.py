@@ -19,6 +19,10 @@ LABELS = {  # the paper's Table II
     "low_light": "L-L w/o noise",
     "low_light_noise": "L-L w/ noise",
     "black_out": "Black-out",
+    "capitalize": "Capitalizing",
+    "mask": "Masking",
+    "black_box": "Black-box prompt",
+    "white_box": "White-box prompt",
 }
 
 
