@@ -3,10 +3,10 @@
 ``python -m mitigate.corrupt_episodes IN OUT family=black_box severity=0.5 [seed=0] [split=test]
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]]``
 
-``instruction_text`` is changed and the old text kept as ``original_text``. Tokens are made again for
-the tokenizer named (``vocabulary``: the file's own ``instruction_vocab``; else a folder or hub name
-for transformers), or removed with a notice: an agent that reads stale tokens hears the clean words.
-Instructions in other languages than English pass through and are counted. Beside OUT comes
+``instruction_text`` is changed and the old text kept as ``original_text``. Tokens are made again
+for the tokenizer named (``vocabulary``: the file's own ``instruction_vocab``; else a folder or hub
+name for transformers), or removed with a notice: an agent that reads stale tokens hears the clean
+words. Instructions in other languages than English pass through and are counted. Beside OUT comes
 ``OUT.summary.json``.
 """
 
@@ -97,12 +97,21 @@ def run(
     episodes = tqdm(read_episodes(source, hidden_goals=True), unit="episode", disable=None)
     write_episodes(out, _changed(episodes, corrupted, words, counts), extras)
     summary = {
-        **{"source": str(source), "family": family, "severity": severity, "seed": seed},
-        **{"split": split, "suite": SUITE_VERSION, "tokenizer": tokenizer, "mask_token": mask},
-        **{"episodes": counts.episodes, "changed": counts.changed},
-        **{"skipped_languages": dict(counts.skipped_languages), "tokens": dict(counts.tokens)},
-        **({"gate": _rates(counts.gate)} if family in MANNERS else {}),
+        "source": str(source),
+        "family": family,
+        "severity": severity,
+        "seed": seed,
+        "split": split,
+        "suite": SUITE_VERSION,
+        "tokenizer": tokenizer,
+        "mask_token": mask,
+        "episodes": counts.episodes,
+        "changed": counts.changed,
+        "skipped_languages": dict(counts.skipped_languages),
+        "tokens": dict(counts.tokens),
     }
+    if family in MANNERS:
+        summary["gate"] = _rates(counts.gate)
     with atomic_text(f"{out}.summary.json") as file:
         json.dump(summary, file, indent=2, ensure_ascii=False)
         file.write("\n")
@@ -170,10 +179,12 @@ def _restyled(
 def _rates(gate: Counter) -> dict[str, Any]:
     rewrites = gate["rewrites"]
     return {
-        **{"rewrites": rewrites, "kept_original": rewrites - gate["passed"]},
+        "rewrites": rewrites,
+        "kept_original": rewrites - gate["passed"],
         "pass_rate_first": round(gate["passed_at_once"] / rewrites, 4) if rewrites else None,
         "pass_rate": round(gate["passed"] / rewrites, 4) if rewrites else None,
-        **{"clauses": gate["clauses"], "clauses_kept": gate["clauses_kept"]},
+        "clauses": gate["clauses"],
+        "clauses_kept": gate["clauses_kept"],
     }
 
 

@@ -88,7 +88,7 @@ def corrupt_instruction(
                 "<mask> (RoBERTa). A tokenizer that has none takes the default '[MASK]' as text."
             )
         return _replaced(text, severity, key, name, lambda _: mask_token)
-    return " ".join((*_stack(severity, key, split), text))
+    return " ".join((*stacked(severity, key, split), text))
 
 
 def is_rewritten(manner: str, severity: float, key: Key) -> bool:
@@ -109,14 +109,14 @@ def inject_system_prompt(
         return NotApplicable("white_box", "the agent has no system prompt")
     if severity == 0.0:
         return prompt
-    added = " ".join(_stack(severity, key, split))
+    added = " ".join(stacked(severity, key, split))
     slot = _SLOT.search(prompt)
     if slot is None:
         return f"{prompt.rstrip()}\n{added}"
     return f"{prompt[: slot.start()]}{added}\n{prompt[slot.start() :]}"
 
 
-def _stack(severity: float, key: Key, split: str) -> list[str]:
+def stacked(severity: float, key: Key, split: str) -> list[str]:
     """Return the sentences in front: of each family one, drawn by key; the share ``severity``."""
     bank, stream = prefixes(split), digest(key, "prefixes")
     drawn = [

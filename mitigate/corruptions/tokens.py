@@ -1,4 +1,4 @@
-"""Tokens of corrupted instructions: by the vocabulary of an R2R-CE file, or by a named tokenizer."""
+"""Tokens of corrupted instructions: by an R2R-CE file's vocabulary, or by a named tokenizer."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 VOCABULARY = "vocabulary"
-_WORD = re.compile(r"\w+|[^\w\s]", re.UNICODE)
+_WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
 
 
 class Tokenizer(Protocol):
@@ -21,9 +21,12 @@ class Tokenizer(Protocol):
 
 
 class FileVocabulary:
-    """The ``instruction_vocab`` of an R2R-CE file: lower-case words and marks, one number each."""
+    """The ``instruction_vocab`` of an R2R-CE file: lower-case words and marks, one number each.
 
-    mask_token = None
+    It has no mask: "[MASK]" is read as an unknown word.
+    """
+
+    mask_token: str | None = None
 
     def __init__(self, vocabulary: Mapping[str, Any]) -> None:
         self._numbers = vocabulary["word2idx_dict"]
@@ -34,7 +37,7 @@ class FileVocabulary:
         ids = [
             self._numbers.get(word, self._unknown)
             for word in _WORD.findall(text.lower())
-            if word in self._numbers or word[0].isalnum()
+            if word in self._numbers or len(word) > 1 or word.isalnum()
         ]
         return _fitted(ids, length, self._pad)
 
