@@ -11,11 +11,14 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import accumulate
 
 from mitigate.corruptions import directions, landmarks
-from mitigate.corruptions.directions import at
+from mitigate.corruptions.directions import MOTION, STOPS, TURN_VERBS, at
 from mitigate.corruptions.tagger import SENTENCE_ENDS, Token, tag
 from mitigate.corruptions.words import bag
+
+__all__ = ["ATTRIBUTES", "COLOURS", "MOTION", "STOPS", "TURN_VERBS", "Facts", "check", "facts"]
 
 COMPASS = re.compile(r"(?:north|south|east|west)(?:east|west)?(?:ern|erly|wards?|bound)?$|o'clock$")
 COLOURS = bag(
@@ -186,21 +189,27 @@ def _read(text: str) -> _Reading:
         turns=directions.turns(found, turned),
         denials=sum(token.lower in DENIALS for token in found),
     )
+    numbers = _clauses(found)
     clause: dict[str, int] = {}
     for place, name, is_landmark in names:
         if is_landmark:
-            clause.setdefault(name, _clause(found, place))
+            clause.setdefault(name, numbers[place])
     return _Reading(said, frozenset(n for _, n, _ in names) | {_same(t) for t in found}, clause)
 
 
-def _clause(found: list[Token], place: int) -> int:
-    """Return the number of the clause, one command, that holds ``place``."""
-    return sum(
+def _clauses(found: list[Token]) -> list[int]:
+    """Return for every token the number of its clause, one command."""
+    ends = [
         token.lower in SENTENCE_ENDS
         or token.lower == "then"
-        or (token.lower in ("and", ",") and found[index + 1].tag == "VERB")
-        for index, token in enumerate(found[:place])
-    )
+        or (
+            token.lower in ("and", ",")
+            and index + 1 < len(found)
+            and found[index + 1].tag == "VERB"
+        )
+        for index, token in enumerate(found)
+    ]
+    return [0, *accumulate(ends)][: len(found)]
 
 
 def _relations(found: list[Token]) -> list[str]:

@@ -13,7 +13,7 @@ from mitigate.corruptions.clauses import COMMANDS
 BARE_VERB = (
     rf"(?:just |simply |slowly |carefully |immediately |directly )?(?:{COMMANDS}|execute|perform|"
     r"effect|pop|hop|scoot|stroll|wander|cruise|mosey|depart|vacate|withdraw|cease|maintain|transit|"
-    r"egress|transition|reorient|reverse|betake)\b"
+    r"egress|transition|reorient|reverse|betake|carry)\b"
 )
 _WALK = (
     r"(?:walk|go|head|proceed|continue|move|travel|advance|come|run|step|keep (?:going|walking)|"
@@ -224,7 +224,7 @@ VOICES = {
             "exit_by": ("make your way out {by} {rest}", "depart {by} {rest}"),
             "enter": ("enter into {rest}", "make your way into {rest}", "proceed into {rest}"),
             "exit": ("depart from {rest}", "take your leave of {rest}", "withdraw from {rest}"),
-            "ahead": ("proceed {straight}{rest}", "continue in a direction {straight}{rest}"),
+            "ahead": ("proceed {straight}{rest}", "carry on {straight}{rest}"),
             "toward": ("make your way {to} {rest}", "betake yourself {to} {rest}",
                 "proceed {to} {rest}"),
             "along": ("make your way {along} {rest}", "proceed {along} {rest}"),

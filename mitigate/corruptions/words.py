@@ -83,7 +83,7 @@ _CLASSES: dict[str, str] = {
         horizontal vertical alternate previous
     """,
     "VERB": """
-        go goes going went gone walk walking walks walked proceed proceeds proceeding
+        carry go goes going went gone walk walking walks walked proceed proceeds proceeding
         continue continues continuing continued head move moves moving moved enter enters
         entering entered exit exits exiting exited leave leaves leaving leads leading lead
         led reach reaches reaching reached stop stops stopping stopped wait waits waiting
