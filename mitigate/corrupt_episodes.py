@@ -1,7 +1,7 @@
 """Corrupt the instructions of a VLN-CE episode file of any size, R2R-CE, RxR-CE or our own:
 
 ``python -m mitigate.corrupt_episodes IN OUT family=black_box severity=0.5 [seed=0] [split=test]
-[tokenizer=vocabulary|NAME] [mask_token=[MASK]]``
+[tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``
 
 ``instruction_text`` is changed and the old text kept as ``original_text``. Tokens are made again
 for the tokenizer named (``vocabulary``: the file's own ``instruction_vocab``; else a folder or hub
@@ -40,6 +40,7 @@ OPTIONS: dict[str, Callable[[str], Any]] = {
     "split": str,
     "tokenizer": str,
     "mask_token": str,
+    "tagger": str,
 }
 
 
@@ -64,13 +65,14 @@ def run(
     split: str = "test",
     tokenizer: str | None = None,
     mask_token: str | None = None,
+    tagger: str = "own",
     rewrite: Rewrite | None = None,
 ) -> dict[str, Any]:
     """Corrupt the file ``source`` into ``out`` and return the summary that is written beside it.
 
-    Args: family: one of INSTRUCTION but "white_box". severity, split, mask_token and rewrite: see
+    Args: family: one of INSTRUCTION but "white_box". seed: with the episode id, the key of each
+    draw, as in an evaluation. tokenizer: see above. The others are those of
     ``corrupt_instruction``; the mask token is by default the tokenizer's own, else "[MASK]".
-    seed: with the episode id, the key of each draw, as in an evaluation.
 
     Raises ValueError or FileNotFoundError for wrong options or files; then ``out`` is untouched.
     """
@@ -92,7 +94,9 @@ def run(
         key, text = Key(seed, episode.episode_id), episode.instruction.text
         if family in MANNERS and text.strip():
             return _restyled(text, family, severity, key, rewrite, counts.gate)
-        return corrupt_instruction(text, family, severity, key, split=split, mask_token=mask)
+        return corrupt_instruction(
+            text, family, severity, key, split=split, mask_token=mask, tagger=tagger
+        )
 
     episodes = tqdm(read_episodes(source, hidden_goals=True), unit="episode", disable=None)
     write_episodes(out, _changed(episodes, corrupted, words, counts), extras)
@@ -105,6 +109,7 @@ def run(
         "suite": SUITE_VERSION,
         "tokenizer": tokenizer,
         "mask_token": mask,
+        "tagger": tagger,
         "episodes": counts.episodes,
         "changed": counts.changed,
         "skipped_languages": dict(counts.skipped_languages),

@@ -17,7 +17,7 @@ from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.prefixes import prefixes
 from mitigate.corruptions.style import MANNERS, Rewrite, restyle
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
-from mitigate.corruptions.tagger import Token, best
+from mitigate.corruptions.tagger import Token, named
 
 FAMILY = {
     **dict.fromkeys(MANNERS, "style"),
@@ -48,6 +48,7 @@ def corrupt_instruction(
     split: str = "test",
     mask_token: str = "[MASK]",
     rewrite: Rewrite | None = None,
+    tagger: str = "own",
 ) -> str:
     """Corrupt the words of one instruction.
 
@@ -60,6 +61,7 @@ def corrupt_instruction(
         split: of the prefix bank: "train", "validation" or "test".
         mask_token: what stands for a hidden word.
         rewrite: (text, manner) -> text, a language model in place of the rules for styles.
+        tagger: what finds the eligible words, "own" or "spacy".
 
     Raises ValueError for a wrong name, severity, key, split or mask token, and for an empty text.
     """
@@ -80,14 +82,18 @@ def corrupt_instruction(
         rewritten = is_rewritten(name, severity, key)
         return restyle(text, name, key, rewrite).text if rewritten else text
     if name == "capitalize":
-        return _replaced(text, severity, key, name, str.upper)
+        return _replaced(
+            text, _eligible(text, name, tagger), severity, digest(key, name), str.upper
+        )
     if name == "mask":
         if not mask_token or not mask_token.strip():
             raise ValueError(
                 "The mask token is empty: give the agent tokenizer's own, such as [MASK] (BERT) or "
                 "<mask> (RoBERTa). A tokenizer that has none takes the default '[MASK]' as text."
             )
-        return _replaced(text, severity, key, name, lambda _: mask_token)
+        return _replaced(
+            text, _eligible(text, name, tagger), severity, digest(key, name), lambda _: mask_token
+        )
     return " ".join((*stacked(severity, key, split), text))
 
 
@@ -128,17 +134,18 @@ def stacked(severity: float, key: Key, split: str) -> list[str]:
     return [drawn[i] for i in order[:count]]
 
 
-def _eligible(text: str, name: str) -> list[Token]:
+def _eligible(text: str, name: str, tagger: str) -> list[Token]:
     """Return the tokens that capitals or masks may change."""
-    found = [token for token in best()(text) if token.is_word]
+    found = [token for token in named(tagger)(text) if token.is_word]
     if name == "capitalize":
         return [token for token in found if token.tag in SPOKEN]
     return [t for t in found if t.tag in SLIGHT and t.lower not in words.SPATIAL]
 
 
-def _replaced(text: str, severity: float, key: Key, name: str, change: Callable[[str], str]) -> str:
-    """Return ``text`` with the share ``severity`` of its eligible words changed."""
-    eligible, stream = _eligible(text, name), digest(key, name)
+def _replaced(
+    text: str, eligible: list[Token], severity: float, stream: int, change: Callable[[str], str]
+) -> str:
+    """Return ``text`` with the share ``severity`` of the eligible words changed."""
     order = sorted(range(len(eligible)), key=lambda i: (uniform(stream, i), i))
     chosen = order[: math.floor(severity * len(eligible) + 0.5)]
     for place in sorted(chosen, reverse=True):

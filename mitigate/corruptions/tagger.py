@@ -1,6 +1,6 @@
-"""Parts of speech (Universal POS tags) of instructions: an installed spaCy pipeline, or our own.
+"""Parts of speech (Universal POS tags) of instructions: by our own tagger or by spaCy's.
 
-Our own tagger knows the closed word classes and the verbs, adjectives and adverbs of navigation
+Our own knows the closed word classes and the verbs, adjectives and adverbs of navigation
 (``words.py``), decides words of two classes by their neighbours, and calls every other word a noun.
 """
 
@@ -16,6 +16,7 @@ from mitigate.corruptions import words
 
 TOKEN = re.compile(r"\[\w+\]|<\w+>|[^\W_]+(?:['’][^\W_]+)*|[^\w\s]|_", re.UNICODE)
 WORD = re.compile(r"[^\W_]")
+TAGGERS = ("own", "spacy")
 SENTENCE_ENDS = frozenset(".!?;:")
 _NUMBER = re.compile(r"\d+(?:st|nd|rd|th)?$")
 _BEFORE_NOUN = frozenset({"DET", "ADJ", "NUM"})
@@ -60,32 +61,46 @@ def tag(text: str) -> list[Token]:
     return tagged
 
 
-def best() -> Callable[[str], list[Token]]:
-    """Return the tagger to use: an installed English spaCy pipeline's, else :func:`tag`."""
+def named(name: str = "own") -> Callable[[str], list[Token]]:
+    """Return the tagger ``name``: "own" (:func:`tag`), or "spacy", an installed English pipeline.
+
+    "own" is the default, so that equal keys give equal words on every machine.
+    Raises ValueError for another name, or if there is no such pipeline.
+    """
+    if name not in TAGGERS:
+        raise ValueError(f"There is no tagger {name!r}. Choose one of: {', '.join(TAGGERS)}.")
+    if name == "own":
+        return tag
     pipeline = _spacy()
-    return tag if pipeline is None else lambda text: _spacy_tags(pipeline, text)
+    return lambda text: _spacy_tags(pipeline, text)
 
 
 @lru_cache(maxsize=1)
-def _spacy() -> Any | None:
-    """Load the installed English spaCy pipeline that comes first by name; None without one."""
+def _spacy() -> Any:
+    """Load the installed English spaCy pipeline that comes first by name."""
     try:
         import spacy
+
+        names = sorted(n for n in spacy.util.get_installed_models() if n.startswith("en_"))
     except ImportError:
-        return None
-    names = sorted(name for name in spacy.util.get_installed_models() if name.startswith("en_"))
-    return spacy.load(names[0], exclude=["ner", "lemmatizer"]) if names else None
+        names = []
+    if not names:
+        raise ValueError(
+            "tagger=spacy needs spaCy and an English pipeline, and none is installed: install the "
+            "extra nlp (pip install -e '.[nlp]') and a pipeline such as en_core_web_sm, or use "
+            "tagger=own."
+        )
+    return spacy.load(names[0], exclude=["ner", "lemmatizer"])
 
 
 def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
     """Tags of ``pipeline`` on our tokens; words it misreads in instructions keep our tags."""
-    own = tag(text)
     places = {token.idx: token.pos_ for token in pipeline(text)}
     return [
         token
         if token.lower in words.OVERRIDES or token.start not in places
         else Token(token.text, token.start, token.lower, places[token.start])
-        for token in own
+        for token in tag(text)
     ]
 
 
