@@ -21,7 +21,7 @@ _WALK = (
 )
 _TAIL = (
     r"(?P<rest>|,.*|\s(?:at|into|onto|in|and|through|toward|towards|to|before|after|when|once|past|"
-    r"down|up|by|on|out|from|around|again|then|until|along|as|just|immediately|across|onto|"
+    r"down|up|by|on|out|from|around|again|then|there|until|along|as|just|immediately|across|onto|"
     r"next|where|so|for|between|behind|under|over)\b.*)$"
 )
 
@@ -54,11 +54,12 @@ PATTERNS = {
     "through": _pattern(rf"^(?:{_WALK}|pass) through (?P<rest>(?!to\b)\S.*)$"),
     "enter": _pattern(rf"^(?:enter|{_WALK} (?:into|inside)) (?P<rest>(?!(?:and|to|then)\b)\S.*)$"),
     "exit_by": _pattern(
-        rf"^(?:exit|leave|{_WALK} out|{_WALK} outside) (?P<by>through|via|from|by) (?P<rest>\S.*)$"
+        rf"^(?:exit|leave|{_WALK} out|{_WALK} outside) (?P<by>through|via|from|by|onto|into|to|"
+        r"towards?) (?P<rest>\S.*)$"
     ),
     "exit": _pattern(
         rf"^(?:exit|leave|{_WALK} out of) "
-        r"(?P<rest>(?!(?:and|to|through|via|from|out|then|by)\b)(?!.*\bout\b)\S.*)$"
+        r"(?P<rest>(?!(?:and|to|through|via|from|out|then|by|onto|into|towards?|at|on|in|when)\b)(?!.*\bout\b)\S.*)$"
     ),
     "ahead": _pattern(
         rf"^{_WALK} (?P<straight>straight ahead|straight forward|straight|forward|ahead)" + _TAIL
