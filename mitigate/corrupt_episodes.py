@@ -24,7 +24,7 @@ from typing import Any
 from tqdm import tqdm
 
 from mitigate.corruptions import INSTRUCTION, SUITE_VERSION, Key, corrupt_instruction
-from mitigate.corruptions.instruction import is_rewritten
+from mitigate.corruptions.instruction import check_text, is_rewritten
 from mitigate.corruptions.style import MANNERS, Rewrite, restyle
 from mitigate.corruptions.suite import check_name, check_severity
 from mitigate.corruptions.tokens import Tokenizer, tokenizer_for
@@ -92,7 +92,8 @@ def run(
 
     def corrupted(episode: Episode) -> str:
         key, text = Key(seed, episode.episode_id), episode.instruction.text
-        if family in MANNERS and text.strip():
+        if family in MANNERS:
+            check_text(text)
             return _restyled(text, family, severity, key, rewrite, counts.gate)
         return corrupt_instruction(
             text, family, severity, key, split=split, mask_token=mask, tagger=tagger

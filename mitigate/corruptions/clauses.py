@@ -51,7 +51,7 @@ def clauses(text: str) -> list[Clause]:
     found = []
     for sentence in _SENTENCE.split(text.strip()):
         pending = ""
-        for part in _SPLIT.split(_LEAD.sub("", sentence) or sentence):
+        for part in _SPLIT.split(_led(sentence)):
             part = (pending + part).strip().rstrip(".!;,").strip()
             pending = ""
             if not part:
@@ -62,7 +62,7 @@ def clauses(text: str) -> list[Clause]:
             found.append(_clause(part))
         if pending:
             found.append(_clause(pending.rstrip(", ")))
-    return found
+    return found or [Clause("", text.strip())]
 
 
 def _hanging(part: str) -> bool:
@@ -71,11 +71,16 @@ def _hanging(part: str) -> bool:
 
 
 def _clause(part: str) -> Clause:
-    body = _LEAD.sub("", part) or part
+    body = _led(part)
     divided = _divided(body)
     if divided is None:
-        return Clause("", body.strip())
-    return Clause(divided[0].strip(" ,"), _LEAD.sub("", divided[1]).strip())
+        return Clause("", body)
+    return Clause(divided[0].strip(" ,"), _led(divided[1]))
+
+
+def _led(text: str) -> str:
+    """Return ``text`` without leading words such as "and then", unless nothing else is there."""
+    return _LEAD.sub("", text).strip(" ,") or text.strip()
 
 
 def _divided(body: str) -> tuple[str, str] | None:

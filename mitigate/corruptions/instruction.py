@@ -19,10 +19,6 @@ from mitigate.corruptions.style import MANNERS, Rewrite, restyle
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 from mitigate.corruptions.tagger import Token, named
 
-FAMILY = {
-    **dict.fromkeys(MANNERS, "style"),
-    **{name: name for name in INSTRUCTION if name not in MANNERS},
-}
 SPOKEN = words.bag("NOUN PROPN VERB ADP")  # what capitals stress
 SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")  # what masks may hide
 _SLOT = re.compile(
@@ -75,7 +71,7 @@ def corrupt_instruction(
             "inject_system_prompt(prompt, severity, key). For an agent without a prompt it is not "
             "applicable; 'black_box' puts the same sentences in front of the instruction."
         )
-    _check_text(text)
+    check_text(text)
     if severity == 0.0:
         return text
     if name in MANNERS:
@@ -154,7 +150,8 @@ def _replaced(
     return text
 
 
-def _check_text(text: str) -> None:
+def check_text(text: str) -> None:
+    """Raise ValueError if ``text`` holds no word."""
     if not isinstance(text, str) or not any(character.isalnum() for character in text):
         raise ValueError(
             f"The instruction is empty: {text!r:.60} holds no word. Give the sentence that the "

@@ -126,5 +126,5 @@ def _framed(frame: str, when: str, said: str) -> str:
     body = said if frame == "{}" else frame.format(_lowered(said))
     if when:
         body = f"{when}, {body if body.startswith('I ') else _lowered(body)}"
-    body = body.rstrip(" ,")
+    body = body.rstrip(" ,") or said
     return body[0].upper() + body[1:] + ("" if body.endswith((".", "!", "?")) else ".")

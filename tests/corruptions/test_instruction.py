@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from hashlib import sha256
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -12,6 +14,7 @@ from hypothesis import strategies as st
 
 from mitigate.corruptions import (
     INSTRUCTION,
+    SUITE_VERSION,
     Corruption,
     Key,
     NotApplicable,
@@ -19,6 +22,7 @@ from mitigate.corruptions import (
     inject_system_prompt,
     words,
 )
+from mitigate.corruptions.fidelity import check
 from mitigate.corruptions.prefixes import SPLITS, prefixes
 from mitigate.corruptions.style import MANNERS
 from mitigate.corruptions.tagger import tag, tokens
@@ -29,9 +33,13 @@ TEXT = (
     "then stop next to the small lamp on your right."
 )
 KEY = Key(3, "17")
+PIECES = (
+    *("and", "then", ",", ".", ";", "at the", "once you reach", "turn", "left", "right", "walk"),
+    *("go", "past", "sofa", "door", "stop", "please", "next", "first", "in", "I", "'", "-", "Exit"),
+    *("out of", "up", "stairs", "around", "180 degrees", "two", "don't", "until", "{", "{rest}"),
+)
 SEVERITIES = [i / 20 for i in range(21)]
 texts = st.text(max_size=200).map(lambda text: f"{text} go to the sofa")
-severities = st.floats(0, 1)
 
 
 @given(text=texts, name=st.sampled_from(SPOKEN), episode=st.text(max_size=5))
@@ -43,6 +51,19 @@ def test_severity_zero_changes_nothing_and_any_unicode_passes(text, name, episod
         changed = corrupt_instruction(text, name, severity, key)
         assert changed == corrupt_instruction(text, name, severity, key)
         assert changed.encode("utf-8", "surrogatepass")
+
+
+@given(
+    chosen=st.lists(st.sampled_from(PIECES), min_size=1, max_size=25).filter(
+        lambda chosen: any(piece[-1].isalnum() for piece in chosen)
+    ),
+    manner=st.sampled_from(MANNERS),
+)
+@settings(max_examples=300, deadline=None)
+def test_no_pile_of_words_breaks_the_rewriter_or_slips_through_its_gate(chosen, manner):
+    text = " ".join(chosen)
+    assert check(text, text) == []
+    assert check(text, corrupt_instruction(text, manner, 1.0, KEY)) == []
 
 
 @pytest.mark.parametrize("name", SPOKEN)
@@ -196,3 +217,17 @@ def test_white_box_goes_before_the_task_slot_and_never_runs_clean():
 def test_the_suite_knows_the_families():
     assert Corruption("black_box", 0.5).modality == "instruction"
     assert len(INSTRUCTION) == 8 and set(MANNERS) < set(INSTRUCTION)
+
+
+def test_the_words_of_this_suite_version():
+    """A change here changes results: raise SUITE_VERSION with it."""
+    path = Path(__file__).parents[1] / "safeguard/handwritten.txt"
+    texts = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    said = [
+        corrupt_instruction(text, name, severity, Key(0, str(index)))
+        for name in SPOKEN
+        for severity in (0.5, 1.0)
+        for index, text in enumerate(texts)
+    ]
+    assert SUITE_VERSION == "1.0"
+    assert sha256("\n".join(said).encode()).hexdigest()[:16] == "b3888f3e739f9bda"
