@@ -137,9 +137,9 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
     """Return one Corruption for each name; ``clean`` has severity 0."""
-    from mitigate.corruptions import CLEAN, DEPTH, RGB, Corruption
+    from mitigate.corruptions import CLEAN, DEPTH, INSTRUCTION, RGB, Corruption
 
-    allowed = ("clean", *RGB, *DEPTH)
+    allowed = ("clean", *RGB, *DEPTH, *INSTRUCTION)
     for name in names:
         if name not in allowed:
             raise ValueError(cli.unknown("condition", name, allowed))

@@ -173,7 +173,7 @@ def write_report(cfg: DictConfig, out: Path) -> Path:
     from mitigate.evaluation import report, rows
     from mitigate.evaluation.sections import sections
 
-    found = rows.gather([out / "cells"])
+    found = rows.gather([cell.folder for cell in cells(cfg) if cell.folder.is_dir()])
     report.write(found, out)
     section = next(s for s in sections(found) if s.severity == cfg.severity)
     paper = OmegaConf.to_container(cfg.paper)

@@ -8,11 +8,11 @@ import pytest
 from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 
-from mitigate import cli, evaluate, train
+from mitigate import cli, evaluate, table2, train
 from mitigate.corruptions import NAMES
 
 YAMLS = sorted(path.relative_to(cli.CONF) for path in cli.CONF.rglob("*.yaml"))
-PRIMARY = ("train", "evaluate")
+PRIMARY = tuple(module.__name__.split(".")[-1] for module in (train, evaluate, table2))
 GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
 
@@ -112,7 +112,7 @@ def complaint(monkeypatch, capsys, *options: str) -> str:
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("recipe=da_per_epsiode", ["Did you mean da_per_episode?", "base, da_per_episode"]),
+        ("recipe=da_per_epsiode", ["Did you mean da_per_episode?", "ablation, base, "]),
         ("recpie=base", ["Did you mean recipe?"]),
         ("severty=0.5", ["Did you mean severity?"]),
         ("trainer.stps=4", ["Did you mean trainer.steps?"]),

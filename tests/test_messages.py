@@ -57,7 +57,7 @@ def test_a_severity_out_of_range(evaluation):
 
 def test_an_unknown_corruption(evaluation):
     text = evaluation("conditions=[clean,spater]")
-    for part in ("no condition 'spater'", "Did you mean spatter?", "black_out, clean"):
+    for part in ("no condition 'spater'", "Did you mean spatter?", "black_out, capitalize, clean"):
         assert part in text
 
 

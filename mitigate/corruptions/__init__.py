@@ -1,12 +1,18 @@
-"""Corruptions: what can happen to a frame, keyed, monotone and the same everywhere."""
+"""Corruptions: what can happen to a frame or an instruction, keyed and the same everywhere."""
 
 from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.instruction import (
+    NotApplicable,
+    corrupt_instruction,
+    inject_system_prompt,
+)
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.corruptions.schedule import MODES, Schedule
 from mitigate.corruptions.suite import (
     CLEAN,
     DEPTH,
+    INSTRUCTION,
     NAMES,
     RGB,
     SUITE_VERSION,
@@ -18,6 +24,7 @@ from mitigate.corruptions.suite import (
 __all__ = [
     "CLEAN",
     "DEPTH",
+    "INSTRUCTION",
     "MODES",
     "NAMES",
     "RGB",
@@ -25,8 +32,11 @@ __all__ = [
     "Corruption",
     "DepthSensor",
     "Key",
+    "NotApplicable",
     "Schedule",
     "corrupt",
+    "corrupt_instruction",
     "corrupt_normalised",
     "corrupt_observation",
+    "inject_system_prompt",
 ]

@@ -17,7 +17,7 @@ from mitigate.corruptions import depth, eld, rgb
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
 
-SUITE_VERSION = "1.1"  # changes when any pixel of any corruption changes
+SUITE_VERSION = "1.1"  # changes when any pixel or word of any corruption changes
 
 _RGB = {
     "motion_blur": rgb.motion_blur,
@@ -38,6 +38,11 @@ _DEPTH = {
 RGB = tuple(_RGB)
 DEPTH = tuple(_DEPTH)
 NAMES = RGB + DEPTH
+# what is done to the words before an episode begins: see instruction.py
+INSTRUCTION = (
+    *("friendly", "novice", "professional", "formal"),
+    *("capitalize", "mask", "black_box", "white_box"),
+)
 SENSOR = DepthSensor()
 
 
@@ -69,7 +74,7 @@ def check_severity(severity: float) -> float:
 
 @dataclass(frozen=True)
 class Corruption:
-    """What is done to the frames: ``name`` ("clean" or one of NAMES) at ``severity`` in [0, 1].
+    """What is done: ``name`` ("clean", one of NAMES or INSTRUCTION) at ``severity`` in [0, 1].
 
     Raises ValueError for an unknown name, a severity outside [0, 1], or "clean" with severity > 0.
     """
@@ -78,19 +83,21 @@ class Corruption:
     severity: float
 
     def __post_init__(self) -> None:
-        check_name(self.name, ("clean", *NAMES))
+        check_name(self.name, ("clean", *NAMES, *INSTRUCTION))
         object.__setattr__(self, "severity", check_severity(self.severity))
         if self.name == "clean" and self.severity > 0.0:
             raise ValueError(
                 f"'clean' has severity 0, but {self.severity} was given. Use CLEAN, or name the "
-                f"corruption that is meant: {', '.join(NAMES)}."
+                f"corruption that is meant: {', '.join((*NAMES, *INSTRUCTION))}."
             )
 
     @property
     def modality(self) -> str:
-        """Which entry is hurt: "rgb", "depth", or "none" for clean frames."""
+        """What is hurt: "rgb", "depth", "instruction", or "none" for clean episodes."""
         if self.name == "clean":
             return "none"
+        if self.name in INSTRUCTION:
+            return "instruction"
         return "rgb" if self.name in _RGB else "depth"
 
 
@@ -188,9 +195,10 @@ def corrupt_observation(
     """A new observation dict in which the modality concerned is hurt (see ``mitigate.keys``).
 
     The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
+    A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
     Raises ValueError if the modality is missing, and as ``corrupt`` does.
     """
-    if corruption.modality == "none":
+    if corruption.modality in ("none", "instruction"):
         return dict(obs)
     entry = keys.RGB if corruption.modality == "rgb" else keys.DEPTH
     if entry not in obs:

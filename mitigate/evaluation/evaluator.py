@@ -7,7 +7,9 @@ as they come, and an interrupted evaluation continues where it stopped.
 from __future__ import annotations
 
 import multiprocessing
+import warnings
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -16,7 +18,15 @@ import torch
 from tqdm import tqdm
 
 from mitigate.checkpoint import weights_sha
-from mitigate.corruptions import SUITE_VERSION, Corruption, Key, corrupt_observation
+from mitigate.corruptions import (
+    SUITE_VERSION,
+    Corruption,
+    Key,
+    NotApplicable,
+    corrupt_instruction,
+    corrupt_observation,
+    inject_system_prompt,
+)
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import SUCCESS_METRES, from_vlnce
 from mitigate.envs.episodes import Episode
@@ -27,7 +37,10 @@ _FLUSH = 20  # rows between two writes
 
 
 class Agent(Protocol):
-    """What can be evaluated: any object that turns observations into low-level actions."""
+    """What can be evaluated: any object that turns observations into low-level actions.
+
+    An agent that works with a prompt has it in an attribute ``system_prompt``, read at ``reset``.
+    """
 
     def reset(self, instruction: str) -> None: ...
     def act(self, observation: Mapping[str, np.ndarray]) -> int: ...
@@ -57,7 +70,35 @@ def run_episode(
 ) -> dict[str, Any]:
     """Run one episode to STOP or the step limit and return its measures."""
     simulator.reset(episode)
-    agent.reset(episode.instruction.text)
+    with _instructed(agent, episode, corruption, seed):
+        return _walk(agent, simulator, episode, corruption, seed)
+
+
+@contextmanager
+def _instructed(
+    agent: Agent, episode: Episode, corruption: Corruption, seed: int
+) -> Iterator[None]:
+    """Reset the agent with the instruction, and the prompt, that the corruption leaves it."""
+    text, key = episode.instruction.text, Key(seed, episode.episode_id)
+    prompt = getattr(agent, "system_prompt", None)
+    try:
+        if corruption.name == "white_box":
+            injected = inject_system_prompt(prompt, corruption.severity, key)
+            if isinstance(injected, NotApplicable):
+                raise ValueError(f"{corruption.name!r} is not applicable: {injected.reason}.")
+            agent.system_prompt = injected  # type: ignore[attr-defined]
+        elif corruption.modality == "instruction":
+            text = corrupt_instruction(text, corruption.name, corruption.severity, key)
+        agent.reset(text)
+        yield
+    finally:
+        if prompt is not None:
+            agent.system_prompt = prompt  # type: ignore[attr-defined]
+
+
+def _walk(
+    agent: Agent, simulator: Simulator, episode: Episode, corruption: Corruption, seed: int
+) -> dict[str, Any]:
     looks = 0
 
     def frames() -> dict[str, np.ndarray]:
@@ -106,10 +147,12 @@ def evaluate(
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
-    Args: conditions: corruptions to meet, ``CLEAN`` among them for PRS. name: the table's column.
+    Args: conditions: corruptions to meet, ``CLEAN`` among them for PRS; "white_box" is left out
+    with a warning if the agent has no ``system_prompt``. name: the table's column.
     split: what the rows say. seed: of the corruptions' keys. workers: processes; the rows do not
     depend on it. size: pixels of a view.
     """
+    conditions = _applicable(agent, conditions, name)
     known = {rows.identity(row) for row in rows.read(out)} if Path(out).exists() else set()
     label = {
         "agent": weights_sha(agent)[:12],
@@ -137,6 +180,20 @@ def evaluate(
     _run_all(agent, todo, Path(out), workers, size, f"{name} {split}")
     wanted = {rows.identity(job[2]) for job in jobs}
     return [row for row in rows.read(out) if rows.identity(row) in wanted]
+
+
+def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Corruption]:
+    """Return the conditions that the agent can meet, and warn of the others."""
+    if getattr(agent, "system_prompt", None):
+        return conditions
+    kept = [condition for condition in conditions if condition.name != "white_box"]
+    if len(kept) < len(conditions):
+        warnings.warn(
+            f"white_box is not applicable to {name}: the agent has no system prompt to inject "
+            "into. No rows are written for it, and it is no part of the PRS.",
+            stacklevel=3,
+        )
+    return kept
 
 
 def _run_all(

@@ -12,10 +12,11 @@ from functools import cached_property
 
 import numpy as np
 
-from mitigate.corruptions import DEPTH, RGB
+from mitigate.corruptions import DEPTH, INSTRUCTION, RGB
 from mitigate.evaluation.rows import Row, upsert
 
-BLOCKS = {"RGB": RGB, "Depth": DEPTH}  # the paper's two blocks, in its order
+BLOCKS = {"RGB": RGB, "Depth": DEPTH, "Instruction": INSTRUCTION}  # the paper's, in its order
+PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt: these have no row
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
-from mitigate.evaluation.grid import BLOCKS, METRICS, Grid
+from mitigate.evaluation.grid import BLOCKS, METRICS, PROMPT_ONLY, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Section, label, sections
@@ -85,6 +85,8 @@ def _table(section: Section) -> str:
                 lines.append([f"PRS-{metric} against {section.reference}", *cells])
         for name in names:
             lines.append([label(name), *(_rate(section, c, name) for c in section.columns)])
+        if _prompt_not_applicable(section, block):
+            lines.append([label(PROMPT_ONLY), *["n/a"] * len(section.columns)])
     lines.insert(1, ["---", *["---:"] * len(section.columns)])
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
 
@@ -99,9 +101,19 @@ def _notes(section: Section) -> str:
     found = section.retained.items()
     if any(len(r.corruptions) < section.whole(block) for (_, block, _), r in found):
         notes.append("† over k of the K corruptions: the others are not measured or not complete.")
-    absent = [n for b, names in section.blocks.items() for n in BLOCKS.get(b, ()) if n not in names]
+    absent = [
+        n
+        for b, names in section.blocks.items()
+        for n in BLOCKS.get(b, ())
+        if n not in (*names, PROMPT_ONLY)
+    ]
     if absent:
         notes.append(f"Not measured: {', '.join(map(label, absent))}.")
+    if any(_prompt_not_applicable(section, block) for block in section.blocks):
+        notes.append(
+            f"n/a: {label(PROMPT_ONLY)} changes an agent's system prompt; no agent here has one, "
+            "so it is not applicable and no part of the PRS."
+        )
     if section.gained:
         notes.append("Differences of PRS in bold have intervals that exclude zero.")
     if section.gaps:
@@ -112,6 +124,10 @@ def _notes(section: Section) -> str:
             for gap in section.gaps
         ]
     return "\n".join(notes)
+
+
+def _prompt_not_applicable(section: Section, block: str) -> bool:
+    return block == "Instruction" and PROMPT_ONLY not in section.blocks[block]
 
 
 def _rate(section: Section, column: str, corruption: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import BLOCKS, METRICS, Gap, Grid, Retention, grids
+from mitigate.evaluation.grid import BLOCKS, METRICS, PROMPT_ONLY, Gap, Grid, Retention, grids
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 
@@ -19,6 +19,10 @@ LABELS = {  # the paper's Table II
     "low_light": "L-L w/o noise",
     "low_light_noise": "L-L w/ noise",
     "black_out": "Black-out",
+    "capitalize": "Capitalizing",
+    "mask": "Masking",
+    "black_box": "Black-box prompt",
+    "white_box": "White-box prompt",
 }
 
 
@@ -60,8 +64,12 @@ class Section:
         return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
 
     def whole(self, block: str) -> int:
-        """Return how many corruptions a PRS over ``block`` stands for, measured or not."""
-        return len(BLOCKS.get(block, self.blocks[block]))
+        """Return how many corruptions a PRS over ``block`` stands for, measured or not.
+
+        One that does not apply (:data:`PROMPT_ONLY`) counts only where it was measured.
+        """
+        held = self.blocks[block]
+        return sum(n in held or n != PROMPT_ONLY for n in BLOCKS.get(block, held))
 
     def marks(self, found: Retained, block: str) -> str:
         """Return the signs of a PRS that lacks corruptions or episodes, or is near the floor."""

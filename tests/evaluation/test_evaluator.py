@@ -5,7 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mitigate.corruptions import CLEAN, NAMES, Corruption
+from mitigate.corruptions import (
+    CLEAN,
+    INSTRUCTION,
+    NAMES,
+    Corruption,
+    Key,
+    corrupt_instruction,
+    inject_system_prompt,
+)
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import load_episodes
 from mitigate.evaluation import evaluator
@@ -130,6 +138,51 @@ def test_a_corruption_hurts_its_sensor_at_every_look(name, hurt, whole):
     for before, after in zip(clean, agent.seen, strict=True):
         assert np.array_equal(before[whole], after[whole])
         assert not np.array_equal(before[hurt], after[hurt])
+
+
+class Listener:
+    """Keeps what it was told and what its prompt was, and stops at once."""
+
+    def __init__(self, prompt: str | None = None) -> None:
+        self.told: list[tuple[str, str | None]] = []
+        if prompt is not None:
+            self.system_prompt = prompt
+
+    def reset(self, instruction: str) -> None:
+        self.told.append((instruction, getattr(self, "system_prompt", None)))
+
+    def act(self, observation) -> int:
+        return STOP
+
+
+@pytest.mark.parametrize("name", [name for name in INSTRUCTION if name != "white_box"])
+def test_the_agent_hears_the_corrupted_instruction_of_its_episode(name):
+    simulator, agent = Simulator(SIZE), Listener()
+    for episode in load_episodes("val_seen")[:3]:
+        run_episode(agent, simulator, episode, Corruption(name, 1.0), 7)
+        clean, key = episode.instruction.text, Key(7, episode.episode_id)
+        assert agent.told[-1][0] == corrupt_instruction(clean, name, 1.0, key) != clean
+
+
+def test_white_box_hurts_the_prompt_for_one_episode_and_never_runs_without_one():
+    episode, simulator, prompt = load_episodes("val_seen")[0], Simulator(SIZE), "Do: {task}"
+    agent = Listener(prompt)
+    run_episode(agent, simulator, episode, Corruption("white_box", 0.5), 7)
+    hurt = inject_system_prompt(prompt, 0.5, Key(7, episode.episode_id))
+    assert agent.told == [(episode.instruction.text, hurt)] and agent.system_prompt == prompt
+    with pytest.raises(ValueError, match="not applicable: the agent has no system prompt"):
+        run_episode(Listener(), simulator, episode, Corruption("white_box", 0.5), 7)
+
+
+def test_instruction_rows_are_rows_like_others_and_white_box_is_left_out_with_a_warning(tmp_path):
+    conditions = [CLEAN, Corruption("black_box", 0.5), Corruption("white_box", 0.5)]
+    with pytest.warns(UserWarning, match="white_box is not applicable to test"):
+        rows = run(tmp_path, conditions=conditions)
+    assert [(r["corruption"], r["severity"]) for r in rows] == [
+        ("clean", 0.0),
+        ("black_box", 0.5),
+    ] * 2
+    assert all(rows[0].keys() == row.keys() for row in rows)
 
 
 def test_the_random_control_repeats_itself_and_rarely_succeeds():

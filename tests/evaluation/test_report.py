@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mitigate import table
-from mitigate.corruptions import DEPTH, NAMES, RGB
+from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
 from mitigate.evaluation import rows
 from mitigate.evaluation.report import markdown, sections, write
 from tests.evaluation.made_rows import cell, column, row
@@ -151,9 +151,23 @@ def test_controls_without_corruption_get_a_clean_table():
 
 
 def test_corruptions_outside_the_suite_have_their_own_block():
-    (section,) = sections(column(8, {"black_box": 2, "mask": 6}))
-    assert section.blocks == {"Other": ("black_box", "mask")}
+    (section,) = sections(column(8, {"fog": 2, "rain": 6}))
+    assert section.blocks == {"Other": ("fog", "rain")}
     assert section.retained["base", "Other", "SR"].estimate.value == pytest.approx(0.5)
+
+
+def test_instruction_families_have_their_own_block_and_white_box_is_not_applicable():
+    spoken = dict.fromkeys((name for name in INSTRUCTION if name != "white_box"), 4)
+    made = column(8, spoken)
+    (section,) = sections(made)
+    assert section.blocks == {"Instruction": tuple(spoken)} and section.gaps == []
+    found, text = lines(made), markdown([section])
+    assert found["**PRS-SR (Instruction)**"][0].startswith("**0.50**")
+    assert found["White-box prompt"] == ["n/a"] and found["Black-box prompt"] == ["40.0"]
+    assert "not applicable and no part of the PRS" in text
+    prompted = lines(column(8, spoken | {"white_box": 8}))
+    assert prompted["White-box prompt"] == ["80.0"]
+    assert prompted["**PRS-SR (Instruction)**"][0].startswith("**0.56**")
 
 
 def test_pictures_show_what_was_measured(tmp_path):

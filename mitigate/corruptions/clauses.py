@@ -1,0 +1,94 @@
+"""Instructions cut into clauses, one command each, without the words that only join them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from mitigate.corruptions.words import bag
+
+COMMANDS = (
+    "walk|go|head|turn|take|make|stop|wait|exit|enter|leave|continue|proceed|move|pass|climb|"
+    "descend|ascend|step|keep|stay|stand|cross|follow|veer|bear|face|come|hang|pivot|rotate|"
+    "halt|pause|travel|advance|look|find|navigate|approach|reach|traverse|spin|swing|hug|run|"
+    "you will|you'll|you should|you are done|you're done|get|start|begin|circle|curve|open|use|"
+    "position|locate|end|search"
+)
+_ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
+_JOIN = r"(?:\s*[,;]\s*(?:and\s+)?|\s+(?:and|but)\s+|\s*,?\s*(?:and\s+)?\bthen\b\s*,?\s*)"
+_SPLIT = re.compile(
+    rf"{_JOIN}(?=(?:{_ADVERBS}\s*,?\s+)*(?!go back\b)(?:(?:{COMMANDS})\b"
+    rf"|(?:in|at|once|when|after|from) (?:the|you|inside) [^,.;]{{1,40}}? (?:{COMMANDS})\b))",
+    re.IGNORECASE,
+)
+_SENTENCE = re.compile(r"(?<=[.!?;])\s+|\n+|(?<=[a-z)])\.(?=[A-Z])")
+_LEAD = re.compile(
+    r"^(?:(?:and|then|next|now|finally|lastly|first|afterwards|after that|from there|"
+    r"once there|next up|so|also|second|secondly|okay|ok|please)\b\s*,?\s*(?!to\b|side\b))+",
+    re.IGNORECASE,
+)
+_BEGINS_CONDITION = re.compile(
+    r"(?:once|when|as|after|before|upon|at|in|on|from|with|inside|if|until|while)\b(?! to\b)",
+    re.IGNORECASE,
+)
+_COMMAND = re.compile(rf"(?:{_ADVERBS}\s+)*\b(?:{COMMANDS})\b", re.IGNORECASE)
+_NO_COMMAND_AFTER = bag(
+    "you to and or will you'll the a an your of that which then we it this can should have must "
+    "with by first second next last his her no in at on from inside before after as"
+)
+
+
+@dataclass(frozen=True)
+class Clause:
+    """One command, ``main``, and ``when`` it holds ("once you reach the bed"; may be empty)."""
+
+    when: str
+    main: str
+
+
+def clauses(text: str) -> list[Clause]:
+    """Return the clauses of ``text`` in order, without joining words and end marks."""
+    found = []
+    for sentence in _SENTENCE.split(text.strip()):
+        pending = ""
+        for part in _SPLIT.split(_led(sentence)):
+            part = (pending + part).strip().rstrip(".!;,").strip()
+            pending = ""
+            if not part:
+                continue
+            if _hanging(part):
+                pending = part + ", "
+                continue
+            found.append(_clause(part))
+        if pending:
+            found.append(_clause(pending.rstrip(", ")))
+    return found or [Clause("", text.strip())]
+
+
+def _hanging(part: str) -> bool:
+    """Return whether ``part`` is only the condition of the command that follows."""
+    return bool(_BEGINS_CONDITION.match(part)) and _divided(part) is None
+
+
+def _clause(part: str) -> Clause:
+    body = _led(part)
+    divided = _divided(body)
+    if divided is None:
+        return Clause("", body)
+    return Clause(divided[0].strip(" ,"), _led(divided[1]))
+
+
+def _led(text: str) -> str:
+    """Return ``text`` without leading words such as "and then", unless nothing else is there."""
+    return _LEAD.sub("", text).strip(" ,") or text.strip()
+
+
+def _divided(body: str) -> tuple[str, str] | None:
+    """Return (condition, command) of "at the bench, turn left", with or without its comma."""
+    if not _BEGINS_CONDITION.match(body):
+        return None
+    for match in _COMMAND.finditer(body):
+        before = body[: match.start()].rstrip()
+        if match.start() and before.lower().split()[-1].strip(",") not in _NO_COMMAND_AFTER:
+            return before, body[match.start() :]
+    return None

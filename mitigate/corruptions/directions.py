@@ -1,0 +1,162 @@
+"""Which way a text tells one to go: left, right, around, straight, up, down and stop, in order.
+
+"down the hall" goes along, "down the stairs" goes down; "right before" and "you left the room" turn
+nowhere; "wait there" after "stop" stops once.
+"""
+
+from __future__ import annotations
+
+import re
+
+from mitigate.corruptions.tagger import Token
+from mitigate.corruptions.words import bag
+
+STOPS = bag("stop stops stopping stopped wait waits waiting halt halts pause pauses")
+MOTION = bag(
+    """
+    go walk head proceed continue move enter exit leave turn climb descend ascend cross pass take
+    make advance follow step veer bear approach traverse navigate going walking heading proceeding
+    continuing moving entering exiting leaving turning climbing passing swing stroll wander pop come
+    """
+)
+TURN_VERBS = bag(
+    "turn turns turning turned veer veers veering bear bears bearing pivot rotate rotates swing "
+    "hang swerve reorient"
+)
+_LEVELS = bag(
+    "stairs stair steps step staircase stairway stairwell flight flights level floor story storey "
+    "ramp basement ladder escalator"
+)
+_FILLERS = bag(
+    "the a an this that those these your same first second next set of two three long short small "
+    "large entire main little few"
+)
+_NO_CLIMB = bag("end ends pick set line lined sit lie slow upside wrap hurry")
+_LEFT = bag("left leftmost lefthand left-hand leftward leftwards")
+_RIGHT = bag("right rightmost righthand right-hand rightward rightwards")
+_STRAIGHT = bag("straight forward forwards onward onwards ahead")
+_UP = bag("upstairs ascend ascends ascending upward upwards")
+_DOWN = bag("downstairs descend descends descending downward downwards")
+_ADVERB_BEFORE = bag(
+    """
+    before after next in behind away past by beside under outside inside near above where when as
+    there here beyond now into through
+    """
+)
+_SIDE_AFTER = TURN_VERBS | bag(
+    """
+    take the your a slight slightly hard sharp sharply immediate immediately far first second third
+    make and left to on another keep
+    """
+)
+_AROUND = re.compile(
+    r"\b(?:turn|turning|spin|spinning|swing|rotate|pivot)(?: all the way| right| completely| fully|"
+    r" yourself| straight| back)* (?:around|round|back|180(?: degrees?)?|"
+    r"(?:one )?hundred (?:and )?eighty degrees?)"
+    r"(?: 180(?: degrees?)?| completely| and go back)?(?: the other way)?"
+    r"(?! (?:the|a|this|that|your|into|toward|towards|through|in)\b)"
+    r"|\b(?:turn|turning) (?:around|round|back)(?= (?:in|into|toward|towards|so|through)\b)"
+    r"|\b(?:full|u|complete|180(?: degree)?) turn(?: and go back)?\b|\bu - turn\b|\babout face\b"
+    r"|\b(?:do|make) a 180(?: degree turn)?\b|\bturn and go back\b"
+    r"|\bgo back the (?:other way|way you came)\b|\breverse (?:your )?course\b"
+)
+
+
+def about_turns(found: list[Token]) -> dict[int, int]:
+    """Return first place -> last place of every phrase that means turning around."""
+    text, starts = "", {}
+    for index, token in enumerate(found):
+        starts[len(text)] = index
+        text += token.lower + " "
+    spans = {}
+    for match in _AROUND.finditer(text):
+        last = text[: match.end()].count(" ")
+        spans[starts.get(match.start(), last)] = last
+    return spans
+
+
+def directions(found: list[Token], turned: dict[int, int]) -> list[str]:
+    """Return the directions in order; what is told twice in a row, with no move between, once.
+
+    ``turned``: the places of :func:`about_turns`.
+    """
+    names: list[str] = []
+    last = skip = -1
+    for place, token in enumerate(found):
+        name = "around" if place in turned else None
+        if name is None and place > skip and token.is_word:
+            name = _direction(found, place)
+        if name is None:
+            continue
+        skip = turned.get(place, skip)
+        if not (names and names[-1] == name and _repeats(name, found[last + 1 : place])):
+            names.append(name)
+        last = place
+    return names
+
+
+def turns(found: list[Token], turned: dict[int, int]) -> int:
+    """Return how often a turn is told, by a turning verb or as "take a left" and the like."""
+    count = len(turned)
+    inside = {place for first, last in turned.items() for place in range(first, last + 1)}
+    for place, token in enumerate(found):
+        if place in inside:
+            continue
+        before = [t.lower for t in found[max(0, place - 4) : place]]
+        if token.lower in TURN_VERBS and token.tag == "VERB":
+            count += 1
+        elif token.lower in ("left", "right") and token.tag != "ADJ":
+            told = any(verb in before for verb in ("take", "make", "go", "head"))
+            count += told and TURN_VERBS.isdisjoint(before)
+    return count
+
+
+def _repeats(name: str, between: list[Token]) -> bool:
+    if name in ("up", "down"):
+        return len(between) <= 2
+    moved = any(t.lower in MOTION and t.tag == "VERB" for t in between)
+    return name in ("stop", "straight") and not moved
+
+
+def _direction(found: list[Token], place: int) -> str | None:
+    word, before, after = found[place].lower, at(found, place - 1), at(found, place + 1)
+    if word in _LEFT:
+        gone = before in ("have", "has", "you've") or (before == "you" and after in ("the", "your"))
+        return None if gone else "left"
+    if word in _RIGHT:
+        stressed = before not in _SIDE_AFTER and after in _ADVERB_BEFORE
+        return None if word == "right" and (stressed or before == "all") else "right"
+    if word in _STRAIGHT:
+        return None if before == "go" and after in ("and", ",") and word == "ahead" else "straight"
+    if word in _UP or word in _DOWN:
+        return "up" if word in _UP else "down"
+    if word in ("climb", "climbs", "climbing"):
+        return None if "down" in (after, at(found, place + 2)) else "up"
+    if word in ("up", "down"):
+        return _vertical(found, place, before)
+    return "stop" if _stops(found, place) else None
+
+
+def _vertical(found: list[Token], place: int, before: str) -> str | None:
+    """Return "up" or "down" where it changes the level, None where it means along or near."""
+    if before in _NO_CLIMB:
+        return None
+    for token in found[place + 1 : place + 7]:
+        if token.lower in _LEVELS:
+            return found[place].lower
+        if token.lower not in _FILLERS and token.tag != "ADJ":
+            along = token.is_word and token.tag != "VERB" and token.lower not in ("and", "then")
+            return None if along else found[place].lower
+    return found[place].lower
+
+
+def _stops(found: list[Token], place: int) -> bool:
+    word, before = found[place].lower, [t.lower for t in found[max(0, place - 3) : place]]
+    if word in ("done", "arrived", "finished"):
+        return not bag("you you're you've are").isdisjoint(before)
+    return word in STOPS or (word == "rest" and before[-2:] == ["come", "to"])
+
+
+def at(found: list[Token], place: int) -> str:
+    """Return the word at a place in lower case, "" outside the text."""
+    return found[place].lower if 0 <= place < len(found) else ""

@@ -1,0 +1,235 @@
+"""What an instruction says, and whether a rewritten one still says it.
+
+:func:`facts` reads the directions, landmarks, numbers, compass words, attributes, relations and
+denials of a text; :func:`check` lists what changed from one text to another.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import accumulate
+
+from mitigate.corruptions import directions, landmarks, quantities
+from mitigate.corruptions.directions import at
+from mitigate.corruptions.tagger import SENTENCE_ENDS, Token, tag
+from mitigate.corruptions.words import bag
+
+COMPASS = re.compile(r"(?:north|south|east|west)(?:east|west)?(?:ern|erly|wards?|bound)?$|o'clock$")
+COLOURS = bag(
+    """
+    red blue green yellow orange white black brown grey purple pink beige tan gold golden silver
+    maroon violet turquoise teal navy cream burgundy
+    """
+)
+ATTRIBUTES = COLOURS | bag(
+    """
+    wooden metal leather marble wicker glass stone brick round square rectangular circular oval
+    arched large small long short tall narrow wide open closed double single striped tiled carpeted
+    spiral curved
+    """
+)
+DENIALS = bag("not never avoid ignore skip don't dont can't cannot won't n't")
+_SAME = {
+    "gray": "grey",
+    "big": "large",
+    "huge": "large",
+    "little": "small",
+    "tiny": "small",
+    "opened": "open",
+    "shut": "closed",
+    "rounded": "round",
+    "wood": "wooden",
+}
+_RELATIONS = {
+    word: name
+    for name, forms in {
+        "into": "enter enters entering into inside",
+        "out": "exit exits exiting leave leaving out outside depart vacate egress withdraw",
+        "past": "past passed pass passes passing",
+        "between": "between",
+        "behind": "behind",
+        "opposite": "opposite",
+        "under": "under beneath underneath",
+        "above": "above",
+    }.items()
+    for word in forms.split()
+}
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What a text says.
+
+    ``directions``: left, right, around, straight, up, down and stop in the order of the text.
+    ``landmarks``: canonical nouns in order, repeated as in the text. ``numbers``: numbers, ordinals
+    and distances ("two", "first", "two step"). ``compass``: compass words. ``attributes``: colours,
+    shapes and sizes. ``relations``: into, out, past, between, behind ... in order. ``turns``: how
+    often one is told to turn. ``denials``: how often something is denied (not, never, avoid ...).
+    """
+
+    directions: tuple[str, ...]
+    landmarks: tuple[str, ...]
+    numbers: tuple[str, ...]
+    compass: tuple[str, ...]
+    attributes: tuple[str, ...]
+    relations: tuple[str, ...]
+    turns: int
+    denials: int
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """The facts of a text, its words in canonical form, and each landmark's first clause."""
+
+    facts: Facts
+    words: frozenset[str]
+    clause: dict[str, int]
+
+
+def facts(text: str) -> Facts:
+    """Return what ``text`` says."""
+    return _read(text).facts
+
+
+def check(original: str, rewritten: str) -> list[str]:
+    """Return what ``rewritten`` changes of ``original``'s meaning, in words; empty if nothing.
+
+    Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
+    invented", "landmark order", "number lost", "number invented", "compass lost", "compass
+    invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
+    "denial".
+    Words are compared through the synonyms of ``landmarks.py``. Turns are not compared: their
+    directions are. Landmarks of one clause may change places.
+    """
+    before, after = _read(original), _read(rewritten)
+    (old, known), (new, kept) = (before.facts, before.words), (after.facts, after.words)
+    found = []
+    if old.directions != new.directions:
+        found.append(f"directions: {_listed(old.directions)} -> {_listed(new.directions)}")
+    found += _changes("landmark", old.landmarks, new.landmarks, known, kept)
+    clauses = [before.clause[name] for name in after.clause if name in before.clause]
+    if clauses != sorted(clauses):
+        found.append(f"landmark order: {_listed(old.landmarks)} -> {_listed(new.landmarks)}")
+    found += _counted("number", old.numbers, new.numbers)
+    found += _changes("compass", old.compass, new.compass, known, kept)
+    found += _counted("attribute", old.attributes, new.attributes)
+    found += _changes("relation", old.relations, new.relations, old.relations, new.relations)
+    if old.denials != new.denials:
+        found.append(f"denial: {old.denials} -> {new.denials}")
+    return found
+
+
+def _changes(
+    kind: str,
+    old: Iterable[str],
+    new: Iterable[str],
+    known: Iterable[str],
+    kept: Iterable[str],
+) -> list[str]:
+    """Return what of ``old`` is not in ``kept``, and what of ``new`` is not in ``known``."""
+    lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in kept]
+    return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in known]
+
+
+def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
+    """Return what comes less often in ``new``, and what comes there alone."""
+    lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
+    return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old]
+
+
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(names) or "none"
+
+
+@lru_cache(maxsize=512)
+def _read(text: str) -> _Reading:
+    found = tag(text)
+    names = _names(found)
+    turned = directions.about_turns(found)
+    said = Facts(
+        directions=tuple(directions.directions(found, turned)),
+        landmarks=tuple(name for _, name, is_landmark in names if is_landmark),
+        numbers=tuple(quantities.quantities(found, turned)),
+        compass=tuple(t.lower for t in found if COMPASS.match(t.lower)),
+        attributes=tuple(a for t in found if (a := _same(t)) in ATTRIBUTES),
+        relations=tuple(_relations(found)),
+        turns=directions.turns(found, turned),
+        denials=sum(token.lower in DENIALS for token in found),
+    )
+    numbers = _clauses(found)
+    clause: dict[str, int] = {}
+    for place, name, is_landmark in names:
+        if is_landmark:
+            clause.setdefault(name, numbers[place])
+    return _Reading(said, frozenset(n for _, n, _ in names) | {_same(t) for t in found}, clause)
+
+
+def _clauses(found: list[Token]) -> list[int]:
+    """Return for every token the number of its clause, one command."""
+    ends = [
+        token.lower in SENTENCE_ENDS
+        or token.lower == "then"
+        or (
+            token.lower in ("and", ",")
+            and index + 1 < len(found)
+            and found[index + 1].tag == "VERB"
+        )
+        for index, token in enumerate(found)
+    ]
+    return [0, *accumulate(ends)][: len(found)]
+
+
+def _relations(found: list[Token]) -> list[str]:
+    """Return into, out, past, between ...; "pass through" goes through and past nothing."""
+    return [
+        _RELATIONS[token.lower]
+        for place, token in enumerate(found)
+        if token.lower in _RELATIONS and at(found, place + 1) != "through"
+    ]
+
+
+def _same(token: Token) -> str:
+    return _SAME.get(token.lower, token.lower)
+
+
+def _names(found: list[Token]) -> list[tuple[int, str, bool]]:
+    """Return (place, canonical name, is a landmark) of every word, known phrases as one."""
+    names: list[tuple[int, str, bool]] = []
+    place = 0
+    while place < len(found):
+        phrase, length = _phrase(found, place)
+        if phrase:
+            names.append((place, phrase, True))
+        else:
+            name = landmarks.normal(found[place].lower)
+            names.append((place, name, _is_landmark(found, place)))
+        place += length
+    return names
+
+
+def _phrase(found: list[Token], place: int) -> tuple[str, int]:
+    """Return the canonical name and the length of the longest known phrase at ``place``."""
+    for length in range(min(landmarks.LONGEST, len(found) - place), 1, -1):
+        spoken = [token.lower for token in found[place : place + length]]
+        for last in (spoken[-1], spoken[-1].removesuffix("s")):
+            name = landmarks.PHRASES.get((*spoken[:-1], last))
+            if name:
+                return name, length
+    return "", 1
+
+
+def _is_landmark(found: list[Token], place: int) -> bool:
+    token = found[place]
+    word = token.lower
+    if token.tag not in ("NOUN", "PROPN") or word in landmarks.PLAIN or len(word) < 2:
+        return False
+    if word in ("step", "steps"):  # a distance, unless they are stairs
+        return not any(
+            t.tag == "NUM" or t.lower in ("a", "few", "couple", "more", "small")
+            for t in found[max(0, place - 3) : place]
+        )
+    return _same(token) not in ATTRIBUTES and not COMPASS.match(word)

@@ -1,0 +1,184 @@
+"""Parts of speech (Universal POS tags) of instructions: by our own tagger or by spaCy's.
+
+Our own knows the closed word classes and the verbs, adjectives and adverbs of navigation
+(``words.py``), decides words of two classes by their neighbours, and calls every other word a noun.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from mitigate.corruptions import words
+
+TOKEN = re.compile(r"\[\w+\]|<\w+>|[^\W_]+(?:['’][^\W_]+)*|[^\w\s]|_", re.UNICODE)
+WORD = re.compile(r"[^\W_]")
+TAGGERS = ("own", "spacy")
+SENTENCE_ENDS = frozenset(".!?;:")
+_NUMBER = re.compile(r"\d+(?:st|nd|rd|th)?$")
+_BEFORE_NOUN = frozenset({"DET", "ADJ", "NUM"})
+
+
+@dataclass(frozen=True)
+class Token:
+    """A word or mark of a text: ``text[start:end]``, its lower case and its tag."""
+
+    text: str
+    start: int
+    lower: str
+    tag: str = "X"
+
+    @property
+    def end(self) -> int:
+        """Return the place after the last character."""
+        return self.start + len(self.text)
+
+    @property
+    def is_word(self) -> bool:
+        """Return whether this is a word, and neither a mark nor a ``[MASK]``."""
+        return bool(WORD.match(self.text))
+
+
+def tokens(text: str) -> list[Token]:
+    """Split ``text`` into words, marks and bracketed tokens such as ``[MASK]``, untagged."""
+    return [
+        Token(m.group(), m.start(), m.group().lower().replace("’", "'"))
+        for m in TOKEN.finditer(text)
+    ]
+
+
+def tag(text: str) -> list[Token]:
+    """Return the tokens of ``text`` with the tags of our own tagger."""
+    found = tokens(text)
+    tagged: list[Token] = []
+    for index, token in enumerate(found):
+        before = tagged[-1] if tagged else None
+        after = found[index + 1] if index + 1 < len(found) else None
+        tagged.append(Token(token.text, token.start, token.lower, _tag(token, before, after)))
+    return tagged
+
+
+def named(name: str = "own") -> Callable[[str], list[Token]]:
+    """Return the tagger ``name``: "own" (:func:`tag`), or "spacy", an installed English pipeline.
+
+    "own" is the default, so that equal keys give equal words on every machine.
+    Raises ValueError for another name, or if there is no such pipeline.
+    """
+    if name not in TAGGERS:
+        raise ValueError(f"There is no tagger {name!r}. Choose one of: {', '.join(TAGGERS)}.")
+    if name == "own":
+        return tag
+    pipeline = _spacy()
+    return lambda text: _spacy_tags(pipeline, text)
+
+
+@lru_cache(maxsize=1)
+def _spacy() -> Any:
+    """Load the installed English spaCy pipeline that comes first by name."""
+    try:
+        import spacy
+
+        names = sorted(n for n in spacy.util.get_installed_models() if n.startswith("en_"))
+    except ImportError:
+        names = []
+    if not names:
+        raise ValueError(
+            "tagger=spacy needs spaCy and an English pipeline, and none is installed: install the "
+            "extra nlp (pip install -e '.[nlp]') and a pipeline such as en_core_web_sm, or use "
+            "tagger=own."
+        )
+    return spacy.load(names[0], exclude=["ner", "lemmatizer"])
+
+
+def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
+    """Tags of ``pipeline`` on our tokens; words it misreads in instructions keep our tags."""
+    places = {token.idx: token.pos_ for token in pipeline(text)}
+    return [
+        token
+        if token.lower in words.OVERRIDES or token.start not in places
+        else Token(token.text, token.start, token.lower, places[token.start])
+        for token in tag(text)
+    ]
+
+
+def _tag(token: Token, before: Token | None, after: Token | None) -> str:
+    word = token.lower
+    if not token.is_word:
+        return "X" if len(word) > 1 else "PUNCT"
+    if _NUMBER.match(word):
+        return "NUM" if word.isdigit() else "ADJ"
+    if word.endswith(("'m", "'re", "'ve", "'ll", "'d")):
+        return "PRON"
+    if word == "there":
+        return "PRON" if after is not None and after.lower in ("is", "are", "will") else "ADV"
+    if word == "back":
+        return "NOUN" if _determined(before) and not _can_be_noun(after) else "ADV"
+    if word == "passed" and before is not None and before.tag == "AUX":
+        return "VERB"
+    if word in words.AMBIGUOUS:
+        return _by_context(word, before, after)
+    if word in words.TAGS:
+        return words.TAGS[word]
+    if word.endswith("ly"):
+        return "ADV"
+    if word.endswith("ing") and not _determined(before):
+        return "VERB"
+    if word.endswith(("ed", "ish", "ous", "ful", "less")) and after is not None and after.is_word:
+        return "ADJ"
+    return "NOUN"
+
+
+def _by_context(word: str, before: Token | None, after: Token | None) -> str:
+    """Tag a word of two classes: verb where a clause begins, noun after a determiner."""
+    first, second = words.AMBIGUOUS[word]
+    if word in ("left", "right"):
+        return _side(before, after)
+    if word == "to":
+        return "PART" if after is not None and after.lower in words.VERBS else "ADP"
+    if (first, second) == ("DET", "PRON"):
+        return first if _begins_noun(after) else second
+    if (first, second) == ("ADP", "ADV"):
+        of = after is not None and after.lower == "of"
+        return first if of or _begins_noun(after) else second
+    if (first, second) == ("VERB", "NOUN"):
+        told = before is not None and before.tag in ("PART", "AUX")
+        return first if told or not (_determined(before) or _governed(before)) else second
+    if (first, second) == ("ADJ", "NOUN"):
+        return first if _can_be_noun(after) else second
+    known = _determined(before) or (before is not None and before.tag == "AUX")
+    return first if known else second
+
+
+def _side(before: Token | None, after: Token | None) -> str:
+    """Tag "left" or "right": after "the" or "your" a noun, or an adjective if a noun follows."""
+    if before is not None and before.lower in words.POSSESSORS:
+        return "ADJ" if _can_be_noun(after) else "NOUN"
+    if before is not None and before.lower in ("have", "has", "you've", "having"):
+        return "VERB"
+    return "ADV"
+
+
+def _determined(before: Token | None) -> bool:
+    return before is not None and (before.tag in _BEFORE_NOUN or before.lower in words.POSSESSORS)
+
+
+def _governed(before: Token | None) -> bool:
+    return before is not None and before.lower in ("of", "with", "to", "by", "from", "in", "at")
+
+
+def _begins_noun(after: Token | None) -> bool:
+    if after is None or not after.is_word:
+        return False
+    known = words.TAGS.get(after.lower)
+    return known in (None, "DET", "ADJ", "NUM", "PRON") or after.lower in words.AMBIGUOUS_NOUNS
+
+
+def _can_be_noun(after: Token | None) -> bool:
+    if after is None or not after.is_word:
+        return False
+    if after.lower in words.AMBIGUOUS:
+        return after.lower in words.AMBIGUOUS_NOUNS
+    return words.TAGS.get(after.lower) in (None, "ADJ", "NUM")

@@ -1,0 +1,88 @@
+"""Tokens of corrupted instructions: by an R2R-CE file's vocabulary, or by a named tokenizer."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any, Protocol
+
+VOCABULARY = "vocabulary"
+_WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
+
+
+class Tokenizer(Protocol):
+    """What turns text into the numbers an agent reads."""
+
+    mask_token: str | None
+
+    def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
+        """Return tokens, padded or cut to ``length`` if given, and whether they were cut."""
+        ...
+
+
+class FileVocabulary:
+    """The ``instruction_vocab`` of an R2R-CE file: lower-case words and marks, one number each.
+
+    It has no mask: "[MASK]" is read as an unknown word.
+    """
+
+    mask_token: str | None = None
+
+    def __init__(self, vocabulary: Mapping[str, Any]) -> None:
+        self._numbers = vocabulary["word2idx_dict"]
+        self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
+
+    def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
+        """Words that the file does not know become its unknown word, marks are left out."""
+        ids = [
+            self._numbers.get(word, self._unknown)
+            for word in _WORD.findall(text.lower())
+            if word in self._numbers or len(word) > 1 or word.isalnum()
+        ]
+        return _fitted(ids, length, self._pad)
+
+
+class NamedTokenizer:
+    """A tokenizer of the transformers package, by folder or hub name."""
+
+    def __init__(self, name: str) -> None:
+        from transformers import AutoTokenizer
+
+        try:
+            self._tokenizer = AutoTokenizer.from_pretrained(name)
+        except (OSError, ValueError) as error:
+            raise ValueError(
+                f"There is no tokenizer {name!r} ({' '.join(str(error).split())[:200]}): give "
+                f"'{VOCABULARY}' for the file's own, the folder of a tokenizer, or its hub name, "
+                "such as bert-base-uncased for ETPNav on R2R-CE."
+            ) from error
+        self.mask_token: str | None = self._tokenizer.mask_token
+
+    def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
+        """Tokens with the tokenizer's own begin and end marks."""
+        ids = list(self._tokenizer(text)["input_ids"])
+        return _fitted(ids, length, self._tokenizer.pad_token_id or 0)
+
+
+def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:
+    """Return the tokenizer ``name`` for a file with the top-level keys ``extras``.
+
+    Raises ValueError if there is no such tokenizer, or no vocabulary in the file.
+    """
+    if name != VOCABULARY:
+        return NamedTokenizer(name)
+    vocabulary = extras.get("instruction_vocab")
+    needed = ("word2idx_dict", "UNK_INDEX", "PAD_INDEX")
+    if not isinstance(vocabulary, Mapping) or any(key not in vocabulary for key in needed):
+        raise ValueError(
+            "tokenizer=vocabulary needs the key instruction_vocab with word2idx_dict, UNK_INDEX "
+            "and PAD_INDEX in the file, as R2R-CE has it; this file lacks it. Leave the option "
+            "out to have tokens removed, or name the agent's tokenizer."
+        )
+    return FileVocabulary(vocabulary)
+
+
+def _fitted(ids: list[int], length: int | None, pad: int) -> tuple[tuple[int, ...], bool]:
+    if length is None:
+        return tuple(ids), False
+    return tuple(ids[:length] + [pad] * (length - len(ids))), len(ids) > length

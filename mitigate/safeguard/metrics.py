@@ -1,0 +1,140 @@
+"""Text metrics of a safeguard: what a repaired instruction kept, lost and got rid of, by family."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, fields
+
+from mitigate.corruptions.fidelity import check, facts
+
+CLEAN = "clean"  # the family of instructions that nobody corrupted
+REMAINS = 0.5  # an injected sentence counts as removed below this share of its word pairs (ours)
+_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
+
+
+@dataclass(frozen=True)
+class Repair:
+    """One instruction: as meant (``clean``), as the safeguard heard it, as it gave it on.
+
+    ``family``: of the corruption, "clean" for none. ``injected``: sentences put in front of it.
+    """
+
+    family: str
+    clean: str
+    heard: str
+    repaired: str
+    injected: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Means over ``count`` repairs, each in [0, 1]; None where nothing can be counted.
+
+    ``exact``: same words. ``token_f1``: F1 of the bags of words. ``chrf``: chrF2 (Popovic 2015) of
+    sacrebleu over the corpus. ``directions``: same left, right, up, down, stop ... in the same
+    order. ``landmarks``: share of the clean landmarks that are kept. ``faithful``: nothing changed
+    in meaning, by ``fidelity.check``. ``removed``: share of injected sentences that are gone.
+    ``changed``: 1 - ``faithful`` of clean instructions.
+    """
+
+    count: int
+    exact: float
+    token_f1: float
+    chrf: float
+    directions: float
+    landmarks: float | None
+    faithful: float
+    removed: float | None
+    changed: float | None
+
+
+def score(repairs: Sequence[Repair]) -> Scores:
+    """Return the scores of ``repairs``. Raises ValueError if there are none."""
+    if not repairs:
+        raise ValueError("There are no repairs to score: give at least one.")
+    from sacrebleu.metrics import CHRF
+
+    chrf = CHRF().corpus_score([r.repaired for r in repairs], [[r.clean for r in repairs]])
+    problems = [bool(check(r.clean, r.repaired)) for r in repairs]
+    kept = [_landmarks_kept(r) for r in repairs]
+    injected = [gone for r in repairs for gone in _gone(r)]
+    clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
+    return Scores(
+        count=len(repairs),
+        exact=_mean([_words(r.clean) == _words(r.repaired) for r in repairs]) or 0.0,
+        token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]) or 0.0,
+        chrf=chrf.score / 100,
+        directions=_mean([_same_directions(r) for r in repairs]) or 0.0,
+        landmarks=_ratio(sum(k for k, _ in kept), sum(n for _, n in kept)),
+        faithful=1 - sum(problems) / len(problems),
+        removed=_mean(injected),
+        changed=_mean(clean),
+    )
+
+
+def by_family(repairs: Iterable[Repair]) -> dict[str, Scores]:
+    """Return family -> its scores in order of appearance, and "all" for the whole."""
+    groups: dict[str, list[Repair]] = defaultdict(list)
+    every = list(repairs)
+    for repair in every:
+        groups[repair.family].append(repair)
+    return {family: score(group) for family, group in groups.items()} | {"all": score(every)}
+
+
+def table(scores: dict[str, Scores]) -> str:
+    """Return the scores as a Markdown table in percent, one row a family."""
+    names = [f.name for f in fields(Scores)]
+    lines = [["family", *names], ["---", *["---:"] * len(names)]]
+    for family, found in scores.items():
+        values = asdict(found)
+        cells = ["–" if values[n] is None else f"{100 * values[n]:.1f}" for n in names[1:]]
+        lines.append([family, str(found.count), *cells])
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def token_f1(reference: str, text: str) -> float:
+    """Return the F1 of the words of ``text`` against those of ``reference``, as bags."""
+    wanted, given = Counter(_words(reference)), Counter(_words(text))
+    shared = (wanted & given).total()
+    return 2 * shared / max(1, wanted.total() + given.total()) if shared else 0.0
+
+
+def _words(text: str) -> list[str]:
+    return _WORD.findall(text.lower())
+
+
+def _same_directions(repair: Repair) -> bool:
+    return facts(repair.clean).directions == facts(repair.repaired).directions
+
+
+def _landmarks_kept(repair: Repair) -> tuple[int, int]:
+    """Return how many of the clean landmarks are kept, and how many there are."""
+    wanted = set(facts(repair.clean).landmarks)
+    lost = sum(p.startswith("landmark lost") for p in check(repair.clean, repair.repaired))
+    return len(wanted) - lost, len(wanted)
+
+
+def _gone(repair: Repair) -> list[bool]:
+    """Return for each injected sentence whether most of its word pairs are gone."""
+    remaining = set(_pairs(repair.repaired))
+    gone = []
+    for sentence in repair.injected:
+        pairs = _pairs(sentence)
+        left = sum(pair in remaining for pair in pairs)
+        gone.append(left < REMAINS * len(pairs))
+    return gone
+
+
+def _pairs(text: str) -> list[tuple[str, str]]:
+    words = _words(text)
+    return list(zip(words, words[1:], strict=False)) or [(word, "") for word in words]
+
+
+def _mean(values: Sequence[float | bool]) -> float | None:
+    return _ratio(float(sum(values)), len(values))
+
+
+def _ratio(part: float, whole: int) -> float | None:
+    return part / whole if whole else None

@@ -1,0 +1,233 @@
+"""The instruction families: identity at 0, nested in s, keyed, and what each may never change."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from mitigate.corruptions import (
+    INSTRUCTION,
+    SUITE_VERSION,
+    Corruption,
+    Key,
+    NotApplicable,
+    corrupt_instruction,
+    inject_system_prompt,
+    words,
+)
+from mitigate.corruptions.fidelity import check
+from mitigate.corruptions.prefixes import SPLITS, prefixes
+from mitigate.corruptions.style import MANNERS
+from mitigate.corruptions.tagger import tag, tokens
+
+SPOKEN = tuple(name for name in INSTRUCTION if name != "white_box")
+TEXT = (
+    "Walk past the big red sofa and turn left at the second door. Go up the stairs, "
+    "then stop next to the small lamp on your right."
+)
+KEY = Key(3, "17")
+PIECES = (
+    *("and", "then", ",", ".", ";", "at the", "once you reach", "turn", "left", "right", "walk"),
+    *("go", "past", "sofa", "door", "stop", "please", "next", "first", "in", "I", "'", "-", "Exit"),
+    *("out of", "up", "stairs", "around", "180 degrees", "two", "don't", "until", "{", "{rest}"),
+)
+SEVERITIES = [i / 20 for i in range(21)]
+texts = st.text(max_size=200).map(lambda text: f"{text} go to the sofa")
+
+
+@given(text=texts, name=st.sampled_from(SPOKEN), episode=st.text(max_size=5))
+@settings(max_examples=200, deadline=None)
+def test_severity_zero_changes_nothing_and_any_unicode_passes(text, name, episode):
+    key = Key(0, episode)
+    assert corrupt_instruction(text, name, 0.0, key) == text
+    for severity in (0.5, 1.0):
+        changed = corrupt_instruction(text, name, severity, key)
+        assert changed == corrupt_instruction(text, name, severity, key)
+        assert changed.encode("utf-8", "surrogatepass")
+
+
+@given(
+    chosen=st.lists(st.sampled_from(PIECES), min_size=1, max_size=25).filter(
+        lambda chosen: any(piece[-1].isalnum() for piece in chosen)
+    ),
+    manner=st.sampled_from(MANNERS),
+)
+@settings(max_examples=300, deadline=None)
+def test_no_pile_of_words_breaks_the_rewriter_or_slips_through_its_gate(chosen, manner):
+    text = " ".join(chosen)
+    assert check(text, text) == []
+    assert check(text, corrupt_instruction(text, manner, 1.0, KEY)) == []
+
+
+@pytest.mark.parametrize("name", SPOKEN)
+def test_full_severity_changes_the_text_and_the_key_decides_how(name):
+    changed = {corrupt_instruction(TEXT, name, 1.0, Key(0, str(i))) for i in range(8)}
+    assert TEXT not in changed
+    assert len(changed) == (1 if name in ("capitalize", "mask") else len(changed)) and changed
+    halves = {corrupt_instruction(TEXT, name, 0.5, Key(0, str(i))) for i in range(30)}
+    assert len(halves) > 5
+
+
+@pytest.mark.parametrize("name", ["capitalize", "mask"])
+def test_what_a_severity_changes_a_higher_one_changes_too(name):
+    before: set[int] = set()
+    for severity in SEVERITIES:
+        got = tokens(corrupt_instruction(TEXT, name, severity, KEY))
+        changed = {
+            i for i, (a, b) in enumerate(zip(tokens(TEXT), got, strict=True)) if a.text != b.text
+        }
+        assert before <= changed
+        before = changed
+    assert len(before) > 5
+
+
+def test_styles_reach_the_share_of_episodes_that_severity_says_and_keep_them():
+    for manner in MANNERS:
+        hit: set[int] = set()
+        for severity in (0.2, 0.5, 0.8, 1.0):
+            got = {
+                i
+                for i in range(200)
+                if corrupt_instruction(TEXT, manner, severity, Key(0, str(i))) != TEXT
+            }
+            assert hit <= got and abs(len(got) / 200 - severity) < 0.1
+            hit = got
+        assert len(hit) == 200
+
+
+@pytest.mark.parametrize("split", SPLITS)
+def test_prefixes_stack_in_front_and_leave_the_instruction_alone(split):
+    bank = [s for sentences in prefixes(split).values() for s in sentences]
+    before = ""
+    for severity in SEVERITIES[1:]:
+        got = corrupt_instruction(TEXT, "black_box", severity, KEY, split=split)
+        assert got.endswith(" " + TEXT)
+        front = got.removesuffix(" " + TEXT)
+        assert front.startswith(before) and any(front.endswith(s) for s in bank)
+        before = front
+    used = [s for s in bank if s in before]
+    assert len(used) == len(prefixes(split))  # one of each family
+    least = corrupt_instruction(TEXT, "black_box", 1e-9, KEY, split=split)
+    assert sum(s in least for s in bank) == 1
+
+
+def test_no_family_and_no_sentence_is_in_two_splits():
+    banks = [prefixes(split) for split in SPLITS]
+    families = [family for bank in banks for family in bank]
+    sentences = [s for bank in banks for group in bank.values() for s in group]
+    assert len(families) == len(set(families)) == 13
+    assert len(sentences) == len({s.lower() for s in sentences}) >= 100
+    assert all(len(group) >= 8 for bank in banks for group in bank.values())
+
+
+def test_capitals_stress_what_is_eligible_and_nothing_else():
+    got = corrupt_instruction(TEXT, "capitalize", 1.0, KEY)
+    assert got.lower() == TEXT.lower()
+    for old, new in zip(tag(TEXT), tokens(got), strict=True):
+        stressed = old.tag in ("NOUN", "PROPN", "VERB", "ADP")
+        assert new.text == (old.text.upper() if stressed else old.text)
+
+
+@given(
+    chosen=st.lists(
+        st.sampled_from([*sorted(words.SPATIAL), "the", "a", "sofa", "red", "and", "your", "walk"]),
+        min_size=1,
+        max_size=30,
+    )
+)
+@settings(max_examples=200, deadline=None)
+def test_masks_never_hide_a_word_that_says_where(chosen):
+    text = " ".join(chosen)
+    masked = tokens(corrupt_instruction(text, "mask", 1.0, KEY))
+    for old, new in zip(tokens(text), masked, strict=True):
+        if old.lower in words.SPATIAL or old.lower == "sofa":
+            assert new.text == old.text
+    assert {"left", "right", "forward", "through", "past", "not"} <= words.SPATIAL
+
+
+def test_masks_write_the_tokenizers_own_mask_token():
+    got = corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token="<mask>")
+    assert "<mask>" in got and "[MASK]" not in got and "left" in got and "sofa" in got
+    with pytest.raises(ValueError, match="mask token is empty"):
+        corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token=" ")
+
+
+def test_the_same_text_in_another_process_and_with_another_hash_seed():
+    program = (
+        "from mitigate.corruptions import *;"
+        f"print([corrupt_instruction({TEXT!r}, n, 0.7, Key(3, '17')) for n in {SPOKEN!r}])"
+    )
+    said = {
+        subprocess.run(
+            [sys.executable, "-c", program],
+            env=os.environ | {"PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    }
+    assert said == {f"{[corrupt_instruction(TEXT, name, 0.7, KEY) for name in SPOKEN]}\n"}
+
+
+@pytest.mark.parametrize("text", ["", "  \n", "...", "🙂", "\x00\x07"])
+@pytest.mark.parametrize("name", SPOKEN)
+def test_an_instruction_without_a_word_is_refused(text, name):
+    with pytest.raises(ValueError, match="The instruction is empty"):
+        corrupt_instruction(text, name, 0.5, KEY)
+
+
+@pytest.mark.parametrize("name", SPOKEN)
+def test_a_very_long_instruction_with_emoji_and_control_characters_is_corrupted(name):
+    text = "Turn left 🙂 at the\x07 sofa and go\u200b on. " * 1100
+    assert corrupt_instruction(text, name, 1.0, KEY) != text
+
+
+def test_wrong_options_name_the_right_ones():
+    with pytest.raises(ValueError, match="Did you mean 'formal'"):
+        corrupt_instruction(TEXT, "formel", 0.5, KEY)
+    with pytest.raises(ValueError, match="from 0 .clean. to 1"):
+        corrupt_instruction(TEXT, "mask", 1.5, KEY)
+    with pytest.raises(ValueError, match="train, validation, test"):
+        corrupt_instruction(TEXT, "black_box", 0.5, KEY, split="tset")
+    with pytest.raises(ValueError, match="inject_system_prompt"):
+        corrupt_instruction(TEXT, "white_box", 0.5, KEY)
+    with pytest.raises(ValueError, match="must be a Key"):
+        corrupt_instruction(TEXT, "mask", 0.5, 3)
+
+
+def test_white_box_goes_before_the_task_slot_and_never_runs_clean():
+    prompt = "You are a robot.\nTask: {instruction}\nAnswer."
+    got = inject_system_prompt(prompt, 0.5, KEY)
+    front = corrupt_instruction("x", "black_box", 0.5, KEY).removesuffix(" x")
+    assert got == prompt.replace("{instruction}", front + "\n{instruction}")
+    assert inject_system_prompt("You are a robot.", 0.5, KEY) == f"You are a robot.\n{front}"
+    assert inject_system_prompt(prompt, 0.0, KEY) == prompt
+    for severity in (0.0, 0.5):
+        assert isinstance(inject_system_prompt(None, severity, KEY), NotApplicable)
+
+
+def test_the_suite_knows_the_families():
+    assert Corruption("black_box", 0.5).modality == "instruction"
+    assert len(INSTRUCTION) == 8 and set(MANNERS) < set(INSTRUCTION)
+
+
+def test_the_words_of_this_suite_version():
+    """A change here changes results: raise SUITE_VERSION with it."""
+    path = Path(__file__).parents[1] / "safeguard/handwritten.txt"
+    texts = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    said = [
+        corrupt_instruction(text, name, severity, Key(0, str(index)))
+        for name in SPOKEN
+        for severity in (0.5, 1.0)
+        for index, text in enumerate(texts)
+    ]
+    assert SUITE_VERSION == "1.1"
+    assert sha256("\n".join(said).encode()).hexdigest()[:16] == "b3888f3e739f9bda"

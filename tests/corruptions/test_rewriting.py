@@ -1,0 +1,67 @@
+"""Rewriting by a model: what is asked, what is kept, what survives a cut cache."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.corruptions import Key, corrupt_instruction
+from mitigate.corruptions.rewriting import PROMPT, TONES, Rewriter
+from mitigate.corruptions.style import MANNERS
+
+TEXT = "Turn left at the sofa\u2028 and stop."
+
+
+class Model:
+    """Answers with a fixed rewrite and counts how often it is asked."""
+
+    def __init__(self, answer: str = "Hang a left at the couch, friend, and stop.") -> None:
+        self.asked: list[tuple[str, str]] = []
+        self.answer = answer
+
+    def __call__(self, prompt: str, text: str) -> str:
+        self.asked.append((prompt, text))
+        return self.answer
+
+
+def test_an_answer_is_asked_once_and_read_from_the_file_afterwards(tmp_path):
+    model, cache = Model(), tmp_path / "sub/cache.jsonl"
+    rewriter = Rewriter(model, "m", cache)
+    said = [rewriter(TEXT, "friendly") for _ in range(2)]
+    assert said == [model.answer] * 2
+    assert model.asked == [(PROMPT.format(tone=TONES["friendly"]), TEXT)]
+    silent = Model("never asked")
+    assert Rewriter(silent, "m", cache)(TEXT, "friendly") == model.answer and not silent.asked
+
+
+@pytest.mark.parametrize("change", [{"model": "other"}, {"seed": 1}])
+def test_another_model_seed_manner_or_text_is_asked_again(tmp_path, change):
+    cache = tmp_path / "cache.jsonl"
+    Rewriter(Model(), "m", cache)(TEXT, "friendly")
+    model = Model()
+    rewriter = Rewriter(model, **{"model": "m", "cache": cache, "seed": 0} | change)
+    rewriter(TEXT, "friendly")
+    rewriter(TEXT, "formal")
+    rewriter(TEXT + "!", "formal")
+    assert len(model.asked) == 3
+
+
+def test_a_cut_last_line_is_passed_over_and_mended(tmp_path):
+    cache = tmp_path / "cache.jsonl"
+    rewriter = Rewriter(Model(), "m", cache)
+    rewriter(TEXT, "friendly")
+    rewriter(TEXT, "formal")
+    cache.write_bytes(cache.read_bytes()[:-20])
+    model = Model()
+    for _ in range(2):
+        rewriter = Rewriter(model, "m", cache)
+        assert rewriter(TEXT, "friendly") == rewriter(TEXT, "formal") == model.answer
+    assert len(model.asked) == 1
+
+
+def test_the_gate_stands_behind_the_model(tmp_path):
+    liar = Rewriter(Model("Turn right and walk 5 metres."), "liar", tmp_path / "cache.jsonl")
+    said = corrupt_instruction(TEXT, "formal", 1.0, Key(0, "1"), rewrite=liar)
+    assert "left" in said and "right" not in said
+    with pytest.raises(ValueError, match="friendly, novice"):
+        liar(TEXT, "rude")
+    assert set(TONES) == set(MANNERS)

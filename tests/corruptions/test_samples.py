@@ -1,0 +1,24 @@
+"""The report on instruction families: its tables and examples are computed, and repeat."""
+
+from __future__ import annotations
+
+from mitigate.corruptions import samples
+
+FILE = "tests/safeguard/handwritten.txt"
+
+
+def test_the_report_counts_lies_and_repeats_its_examples(capsys):
+    assert samples.main([FILE, "--count", "12", "--show", "2"]) == 0
+    out = capsys.readouterr().out
+    assert out.startswith("12 instructions") and out.count("\n> ") == 2
+    assert "| a distance added | 12 | 100.0 % |" in out
+    assert all(f"- `{family}` " in out for family in samples.FAMILIES)
+    samples.main([FILE, "--count", "12", "--show", "2"])
+    assert capsys.readouterr().out.split("\n> ")[1:] == out.split("\n> ")[1:]
+
+
+def test_a_file_without_instructions_is_an_error(tmp_path, capsys):
+    (tmp_path / "empty.txt").write_text("# nothing\n\n")
+    assert samples.main([str(tmp_path / "empty.txt")]) == 2
+    assert samples.main([str(tmp_path / "none.json")]) == 2
+    assert "holds no instruction" in capsys.readouterr().err

@@ -1,0 +1,90 @@
+"""The table of all methods is made cell by cell, goes on where it stopped, and counts its cost."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from omegaconf import OmegaConf
+
+from mitigate import cli, table2
+from mitigate.corruptions import DEPTH, RGB
+from mitigate.evaluation import rows
+from tests.evaluation.made_rows import column
+
+ALL = dict.fromkeys((*RGB, *DEPTH), 4)
+
+
+def config(out: Path, **changes):
+    cfg = cli.load_config("table2", [f"out={out}", "seeds=[0,1]"])
+    return OmegaConf.merge(
+        cfg, {"columns": {"base": None, "da_per_frame": ["recipe=x"]}, **changes}
+    )
+
+
+def finished(cfg) -> None:
+    """Rows of every cell, as an evaluation leaves them."""
+    for cell in table2.cells(cfg):
+        agent = "base" if cell.options is None else f"{cell.column}{cell.seed}"
+        made = column(8, ALL, name=cell.column, seed=cell.seed, agent=agent)
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Cells whose processes do nothing, but are processes."""
+    monkeypatch.setattr(
+        table2.Cell, "commands", lambda self, cfg: [("train", ["timeit", "-n", "1", "pass"])]
+    )
+
+
+def test_a_partial_run_holds_every_column_of_the_first_seed(tmp_path):
+    order = [(cell.column, cell.seed) for cell in table2.cells(config(tmp_path))]
+    assert order == [("base", 0), ("da_per_frame", 0), ("base", 1), ("da_per_frame", 1)]
+
+
+def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
+    cfg = config(tmp_path, episodes=5)
+    base, trained = table2.cells(cfg)[0], table2.cells(cfg)[-1]
+    assert [kind for kind, _ in base.commands(cfg)] == ["evaluate"]
+    (_, train), (_, evaluate) = trained.commands(cfg)
+    assert train[0] == "mitigate.train" and f"folder={trained.folder / 'run'}" in train
+    assert f"checkpoint={trained.folder / 'run' / 'agent'}" in evaluate
+    assert "seed=1" in train and "seed=1" in evaluate and "episodes=5" in evaluate
+
+
+def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quick):
+    cfg = config(tmp_path)
+    finished(cfg)
+    report = table2.run(cfg).read_text(encoding="utf-8")
+    lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
+    assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
+    assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
+    assert "Training, CPU minutes" in lines
+    costs = sorted(tmp_path.glob("cells/*/cost.json"))
+    assert len(costs) == len(table2.cells(cfg))
+    first = json.loads(costs[0].read_text())["train"]
+    table2.run(cfg)
+    assert json.loads(costs[0].read_text())["train"] >= first > 0
+
+
+def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
+    cfg = config(tmp_path)
+    finished(cfg)
+    broken = table2.cells(cfg)[0]
+    monkeypatch.setattr(
+        table2.Cell,
+        "commands",
+        lambda self, cfg: [
+            ("train", ["no_such_module"] if self == broken else ["timeit", "-n", "1", "pass"])
+        ],
+    )
+    with pytest.raises(ValueError, match=f"{broken.column}, seed {broken.seed}: train ended with"):
+        table2.run(cfg)
+    assert (tmp_path / table2.REPORT).is_file()
+
+
+def test_an_empty_table_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="must not be empty"):
+        table2.cells(config(tmp_path, seeds=[]))
