@@ -17,10 +17,10 @@ ALL = dict.fromkeys((*RGB, *DEPTH), 4)
 
 
 def config(out: Path, **changes):
-    cfg = cli.load_config("table2", [f"out={out}", "seeds=[0,1]"])
-    return OmegaConf.merge(
-        cfg, {"columns": {"base": None, "da_per_frame": ["recipe=x"]}, **changes}
-    )
+    kept = {"base", "da_per_frame"}
+    dropped = [f"~columns.{name}" for name in cli.load_config("table2").columns if name not in kept]
+    cfg = cli.load_config("table2", [f"out={out}", "seeds=[0,1]", *dropped])
+    return OmegaConf.merge(cfg, changes)
 
 
 def finished(cfg) -> None:
