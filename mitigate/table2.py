@@ -163,7 +163,7 @@ def _add_cost(path: Path, kind: str, seconds: float) -> None:
     """Add CPU seconds to a cell's account, which counts all its runs."""
     with _LOCK:
         cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
-        cost[kind] = round(cost.get(kind, 0.0) + seconds, 1)
+        cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
         with atomic_text(path) as file:
             json.dump(cost, file)
 
