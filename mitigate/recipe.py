@@ -41,6 +41,13 @@ class Recipe(nn.Module):
             {"params": [p for p in trained if p.ndim < 2], "weight_decay": 0.0},
         ]
 
+    def identity(self) -> dict[str, str]:
+        """Return what the result depends on beside the settings, such as a teacher's sha256.
+
+        It is kept in the checkpoints: a run is not resumed under another.
+        """
+        return {}
+
     def evaluate(self, step: int) -> dict[str, float]:
         """Return scalars measured after ``step`` updates; called every ``eval_every`` steps."""
         return {}

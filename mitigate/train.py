@@ -7,6 +7,7 @@ the last one stopped. Afterwards the agent is evaluated before and after.
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from collections.abc import Iterator
@@ -24,9 +25,11 @@ from torch import nn
 from mitigate import checkpoint, cli, seeding
 from mitigate.build import build, build_agent, settings_of
 from mitigate.evaluate import EvaluationConfig, conditions, episodes, report_before_after
+from mitigate.files import atomic_text
 from mitigate.trainer import Trainer
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
+IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
 NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
 
 
@@ -118,7 +121,10 @@ def train_stage(
         "agent": _plain(cfg.agent),
         "start": start,
         "recipe": dict(_identity(_plain(stage.recipe))),
+        **recipe.identity(),
     }
+    with atomic_text(folder / IDENTITY) as file:
+        json.dump(identity, file, indent=2)
     settings = {**_set(stage.trainer), **_set(cfg.trainer)}
     Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings).fit()
 

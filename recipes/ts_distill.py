@@ -61,6 +61,9 @@ class ViewDistillation(PerceptionRecipe):
         loss = self.w_labels * values["loss"] + self.w_feat * feat
         return {**values, "feat": feat, "loss": loss}
 
+    def identity(self) -> dict[str, str]:
+        return {"teacher_sha256": self.teacher_sha}
+
     def train(self, mode: bool = True) -> ViewDistillation:
         super().train(mode)
         self.teacher.eval()
@@ -94,6 +97,9 @@ class TeacherStudent(ImitationRecipe):
         self.teacher_sha = checkpoint.weights_sha(self.teacher)
         self.w_il, self.w_kl, self.w_feat = w_il, w_kl, w_feat
         self.temperature, self.match = temperature, tuple(match)
+
+    def identity(self) -> dict[str, str]:
+        return {"teacher_sha256": self.teacher_sha}
 
     def train(self, mode: bool = True) -> TeacherStudent:
         super().train(mode)

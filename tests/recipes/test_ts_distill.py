@@ -160,6 +160,20 @@ def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
         TeacherStudent(small(), str(tmp_path), schedule=missing_data(), **EPISODES)
 
 
+def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
+    sources = []
+    for seed in (1, 2):
+        checkpoint.save_weights(small(seed), tmp_path / "teacher")
+        made = ViewDistillation(small(), "rgb", str(tmp_path / "teacher"), **VIEWS)
+        sources.append(made.identity()["teacher_sha256"])
+        trainer = Trainer(made, steps=1, folder=tmp_path / "run", config=made.identity())
+        if seed == 1:
+            trainer.fit()
+    assert sources[0] != sources[1]
+    with pytest.raises(ValueError, match="teacher_sha256"):
+        trainer.fit()
+
+
 def test_an_unknown_feature_is_refused(teacher):
     with pytest.raises(ValueError, match="match=.*views, nodes"):
         TeacherStudent(small(), teacher, match=("logits",), schedule=missing_data(), **EPISODES)
