@@ -37,6 +37,7 @@ ECHO_STRENGTH = 0.9
 ECHO_HERTZ = 20e6
 LIGHT_SPEED = 299_792_458.0  # metres a second
 STEP = 0.5  # metres at s = 1
+STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32
 
 _U = np.uint64
 
@@ -249,6 +250,6 @@ def _round_off(views, step, z_max, out):
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Round to steps of 0.5 s metres."""
     out = np.empty_like(views)
-    step, z_max = np.float32(STEP * severity), np.float32(sensor.z_max)
+    step, z_max = np.float32(max(STEP * severity, STEP_LEAST)), np.float32(sensor.z_max)
     _round_off(views.reshape(-1), step, z_max, out.reshape(-1))
     return out

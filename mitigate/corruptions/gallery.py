@@ -14,7 +14,6 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from PIL import Image
 
 from mitigate.corruptions import curves, page
 from mitigate.corruptions.keying import Key
@@ -115,12 +114,10 @@ def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
-    """Write ``corruptions.md``, the contact sheet (256 colours) and the curves into ``folder``."""
+    """Write ``corruptions.md``, the contact sheet and the curves into ``folder``."""
     rgb, depth = rendered_frame(PAGE_SEED, PAGE_SIZE)
     view = varied_view(depth)
-    sheet = contact_sheet(rgb[view], depth[view], folder / "pictures" / "corruptions.png")
-    few = Image.fromarray(sheet).quantize(256, dither=Image.Dither.NONE)
-    few.save(folder / "pictures" / "corruptions.png", optimize=True)
+    contact_sheet(rgb[view], depth[view], folder / "pictures" / "corruptions.jpg")
     found = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
     curves.draw(found, folder / "pictures" / "severity-curves.png", grid)
     write_bytes(folder / "corruptions.md", page.page(found, PAGE_SEED).encode())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mitigate.corruptions import depth, eld, keying, masks, rgb
 from mitigate.corruptions.catalogue import CATALOGUE
-from mitigate.corruptions.curves import EPISODES, GRID, Curve
+from mitigate.corruptions.curves import EPISODES, GRID, SLIPS, Curve
 from mitigate.corruptions.suite import DEPTH, NAMES, RGB, SUITE_VERSION
 
 FAILS = {
@@ -23,26 +23,28 @@ FAILS = {
 }
 FORMULAS = {
     "motion_blur": "(1 - a) x + a blur(x), a = 0.5 + 0.5 s; line of length L = "
-    f"{rgb.BLUR_LENGTH:g} s W at U(-{rgb.BLUR_ANGLE:g}, {rgb.BLUR_ANGLE:g}) degrees; L < 1 px changes nothing; from "
-    f"{rgb.LONG_BLUR:g} px every second column, after smoothing by (1 2 1)/4",
+    f"{rgb.BLUR_LENGTH:g} s W at U(-{rgb.BLUR_ANGLE:g}, {rgb.BLUR_ANGLE:g}) degrees; L < 1 "
+    f"px changes nothing; from {rgb.LONG_BLUR:g} px every second column, after "
+    "smoothing by (1 2 1)/4",
     "low_light": f"x (1 - s ({masks.DARK_BASE:g} + {masks.DARK_RAMP:g} t)); t in [0, 1] a linear "
     "ramp, or the distance to one light",
     "low_light_noise": "`low_light`, then the ELD model below",
     "spatter": f"the top {masks.SPATTER_COVER:g} s of a random field, correlation "
-    f"{masks.SPATTER_CORRELATION:g} m; soft edge of {masks.SPATTER_EDGE:g} sd; opacity 0.5 + "
+    f"{masks.SPATTER_CORRELATION:g} side; soft edge of {masks.SPATTER_EDGE:g} sd; opacity 0.5 + "
     f"0.5 s; mud {masks.SPATTER_COLOURS[0]} or water {masks.SPATTER_COLOURS[1]}",
     "flare": f"x + (255 - x) g; g = s ({masks.FLARE_CORE:g} "
-    f"exp(-(r/{masks.FLARE_CORE_WIDTH:g})^2/2) + {masks.FLARE_HALO:g} exp(-r/{masks.FLARE_HALO_WIDTH:g})) times {masks.FLARE_TINT}, at most "
-    "1; r over the diagonal; centre U(0.1, 0.9) W, U(0, 0.5) H",
-    "defocus": f"Gaussian, sigma = 5 s u m/224, u ~ U({1 - rgb.DEFOCUS_SPREAD:g}, "
+    f"exp(-(r/{masks.FLARE_CORE_WIDTH:g})^2/2) + {masks.FLARE_HALO:g} "
+    f"exp(-r/{masks.FLARE_HALO_WIDTH:g})) times {masks.FLARE_TINT}, at most 1; "
+    "r over the diagonal; centre U(0.1, 0.9) W, U(0, 0.5) H",
+    "defocus": f"Gaussian, sigma = 5 s u side/224, u ~ U({1 - rgb.DEFOCUS_SPREAD:g}, "
     f"{1 + rgb.DEFOCUS_SPREAD:g}); sigma < {rgb.DEFOCUS_LEAST:g} px changes nothing",
-    "foreign_object": f"black disk at the centre, radius {masks.DISK_RADIUS:g} s m",
+    "foreign_object": f"black disk at the centre, radius {masks.DISK_RADIUS:g} s side",
     "black_out": "black where U(0, 1) < s",
     "gaussian_noise": f"z + s ({depth.NOISE_BASE:g} + {depth.NOISE_SQUARE:g} z^2) N(0, 1)",
     "missing_data": f"the top {depth.HOLE_SHARE:g} s of a random field, correlation "
-    f"{depth.HOLE_CORRELATION:g} m; its top {depth.FAR_SHARE:.0%} reads z_max, the rest 0",
-    "multipath": f"far = largest depth within {depth.ECHO_REACH:g} m (a square); gap = far - z, at "
-    f"most {depth.ECHO_GAP:g} metres; z + c/(4 pi f) atan2(b sin p, 1 + b cos p), "
+    f"{depth.HOLE_CORRELATION:g} side; its top {100 * depth.FAR_SHARE:g} % reads z_max, the rest 0",
+    "multipath": f"far = largest depth within {depth.ECHO_REACH:g} side (a square); gap = far - z, "
+    f"at most {depth.ECHO_GAP:g} metres; z + c/(4 pi f) atan2(b sin p, 1 + b cos p), "
     f"p = 4 pi f gap/c, b = {depth.ECHO_STRENGTH:g} s, f = {depth.ECHO_HERTZ / 1e6:g} MHz",
     "quantization": f"rint(z/step) step, step = {depth.STEP:g} s metres",
 }
@@ -66,7 +68,7 @@ HEAD = """# The corruption suite
 Twelve ways in which an RGB-D camera fails, each with a severity s from 0 to 1. Version {version}
 (`SUITE_VERSION`; it changes when any pixel changes, and every result row carries it).
 
-![The 12 corruptions at severities 0, 0.25, 0.5, 0.75 and 1](pictures/corruptions.png)
+![The 12 corruptions at severities 0, 0.25, 0.5, 0.75 and 1](pictures/corruptions.jpg)
 
 One view of apartment {seed}, one random draw for the whole sheet: every row is the same dirt, light
 or noise at growing strength. Depth: near is bright, no reading is white. This page and its pictures
@@ -74,8 +76,8 @@ are written by `python -m mitigate.corruptions.gallery --page`.
 
 ## Formulas
 
-W and H are a view's width and height, m = min(H, W), x a pixel, z its depth in metres, U uniform,
-N normal. The numbers are read from the code.
+W and H are a view's width and height, side = min(H, W), x a pixel, z its depth in metres, U
+uniform, N normal. The numbers are read from the code.
 
 | name | what fails | formula | constants from | kept through an episode | drawn for each frame |
 |---|---|---|---|---|---|
@@ -118,11 +120,13 @@ the rule "more s never hurts less" between neighbours on the fine grid of {steps
 
 - **ELD** treats sRGB as a power of {gamma:g}, draws noise for each channel and knows no Bayer
   pattern. Clipping at 0 brightens deep shadows, as real cameras do.
-- **Motion blur** grows by whole taps: on a fine grid SSIM may rise by up to {blur_slip} between
-  neighbours. Below 1 px of length it changes nothing.
-- **Quantization**: a wall whose depth is a multiple of a coarse step is not hurt by it, though it
-  was by a finer one. The mean error falls by up to {step_slip} m between neighbours on the fine
-  grid.
+- **Motion blur**: the response of a line to a fine regular pattern has side lobes, so that a longer
+  line can hurt it less. On a fine grid SSIM rises by less than {blur_most:g} between neighbours on
+  the chequered scene of the tests, and by at most {blur_slip} on the view above. A line under 1 px
+  changes nothing.
+- **Quantization**: depth at a multiple of a coarse step is not hurt by it, though it was by a finer
+  one. On a fine grid the mean error falls by less than {step_most:g} m between neighbours on the
+  scene of the tests, and by at most {step_slip} m on the view above.
 - **Missing data** writes `DepthSensor.missing`, 0 m by default, into three quarters of the holes
   and z_max into the rest. Agents disagree on 0: R2R-CE agents take it for a hole, VLFM for far,
   L3MVN for the column's maximum. Set the sentinel that the agent knows.
@@ -165,8 +169,10 @@ def page(found: dict[str, Curve], seed: int) -> str:
         episodes=EPISODES,
         steps=len(GRID),
         table=_strengths(found),
-        blur_slip=f"{found['motion_blur'].slip:.4f}",
-        step_slip=f"{found['quantization'].slip:.4f}",
+        blur_most=SLIPS["motion_blur"],
+        step_most=SLIPS["quantization"],
+        blur_slip=f"{found['motion_blur'].slip:.0e}",
+        step_slip=f"{found['quantization'].slip:.0e}",
     )
     return HEAD.format(version=SUITE_VERSION, seed=seed) + rows + text
 
@@ -184,11 +190,11 @@ def _strengths(found: dict[str, Curve]) -> str:
         curve = found[name]
         ssim, psnr = curve.ssim.mean(0), curve.psnr.mean(0)
         values = (f"{ssim[i]:.3f} / {psnr[i]:.1f}" for i in (half, most))
-        lines.append(f"| `{name}` | SSIM / PSNR (dB) | {' | '.join(values)} | {curve.slip:.4f} |")
+        lines.append(f"| `{name}` | SSIM / PSNR (dB) | {' | '.join(values)} | {curve.slip:.0e} |")
     for name in DEPTH:
         error = found[name].error.mean(0)
         values = (f"{error[i]:.3f}" for i in (half, most))
         lines.append(
-            f"| `{name}` | mean error (m) | {' | '.join(values)} | {found[name].slip:.4f} |"
+            f"| `{name}` | mean error (m) | {' | '.join(values)} | {found[name].slip:.0e} |"
         )
     return "\n".join(lines)

@@ -71,6 +71,22 @@ def test_the_tables_sample_what_the_slow_sampler_samples(severity, level):
     assert rows[0].std() == pytest.approx(rows[1].std(), rel=0.15, abs=0.1)
 
 
+@pytest.mark.parametrize("severity", [0.3, 0.6, 1.0])
+@pytest.mark.parametrize("level", [12, 90, 220])
+def test_the_distribution_is_that_of_the_slow_sampler(severity, level):
+    from scipy import stats
+
+    views = np.full((48, 64, 64, 3), level, np.uint8)
+    key = Key(0, "a")
+    gain = 1 - light_loss(digest(key, "low_light"), severity, 64, 64)
+    slow = slow_sample(views, gain, severity, np.random.default_rng(1)).ravel()
+    other = slow_sample(views, gain, severity, np.random.default_rng(2)).ravel()
+    fast = corrupt(views, "low_light_noise", severity, key=key).ravel()
+    distance = stats.ks_2samp(fast, slow).statistic
+    by_chance = stats.ks_2samp(other, slow).statistic
+    assert distance < 0.02 + by_chance  # grey levels are coarse: one is up to 0.1 of the mass
+
+
 @pytest.mark.parametrize("camera", [NIKON_D850, CANON_5D4])
 def test_other_cameras_follow_their_calibration(camera):
     views = np.full((6, 64, 64, 3), 150, np.uint8)
