@@ -61,7 +61,7 @@ def albumentations(views: np.ndarray, severity: float) -> Calls:
         "flare": a.RandomSunFlare(src_radius=max(2, views.shape[1] // 4), p=1),
         "defocus": a.GaussianBlur((0, 0), (sigma, sigma), p=1),
         "foreign_object": a.CoarseDropout(one, hole, hole, p=1),
-        "black_out": a.CoarseDropout(one, (1.0, 1.0), (1.0, 1.0), p=severity),
+        "black_out": a.CoarseDropout(one, (1.0, 1.0), (1.0, 1.0), p=1),
     }
 
     def call(transform):
@@ -85,7 +85,7 @@ def kornia(views: np.ndarray, severity: float) -> Calls:
         "flare": k.RandomGaussianIllumination((0.6, 0.6), p=1.0),
         "defocus": k.RandomGaussianBlur((side, side), (sigma, sigma), p=1.0),
         "foreign_object": k.RandomErasing(area, (1.0, 1.0), p=1.0),
-        "black_out": k.RandomErasing((1.0, 1.0), (1.0, 1.0), p=severity),
+        "black_out": k.RandomErasing((1.0, 1.0), (1.0, 1.0), p=1.0),
     }
     return {name: partial(transform, batch) for name, transform in transforms.items()}
 

@@ -24,6 +24,7 @@ from mitigate.keys import RGB as RGB_ENTRY
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
 GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
+JPEG_QUALITY = 88  # of a sheet that is written as .jpg
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
 CURVE_VIEWS = slice(0, 12, 3)  # of its panorama, for the curves
@@ -96,7 +97,7 @@ def contact_sheet(
             sheet[top : top + cell.shape[0], left : left + cell.shape[1]] = cell
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    if not cv2.imwrite(str(path), sheet[..., ::-1]):
+    if not cv2.imwrite(str(path), sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
         raise ValueError(f"Could not write {path}: use a file name that ends in .png or .jpg.")
     return sheet
 

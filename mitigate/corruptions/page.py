@@ -158,7 +158,6 @@ and trains at 0.6 or at 0.9 (RGB) with 0.8 (depth).
 
 def page(found: dict[str, Curve], seed: int) -> str:
     """The page as Markdown; ``found`` are the curves, ``seed`` names the apartment shown."""
-    rows = "".join(f"| {' | '.join(_cells(name))} |\n" for name in NAMES)
     text = TEXT.format(
         gamma=eld.GAMMA,
         darkest=eld.DARKEST,
@@ -174,7 +173,12 @@ def page(found: dict[str, Curve], seed: int) -> str:
         blur_slip=f"{found['motion_blur'].slip:.0e}",
         step_slip=f"{found['quantization'].slip:.0e}",
     )
-    return HEAD.format(version=SUITE_VERSION, seed=seed) + rows + text
+    return HEAD.format(version=SUITE_VERSION, seed=seed) + formulas() + text
+
+
+def formulas() -> str:
+    """The rows of the table of formulas."""
+    return "".join(f"| {' | '.join(_cells(name))} |\n" for name in NAMES)
 
 
 def _cells(name: str) -> tuple[str, ...]:
@@ -184,16 +188,15 @@ def _cells(name: str) -> tuple[str, ...]:
 
 
 def _strengths(found: dict[str, Curve]) -> str:
-    half, most = len(GRID) // 2, len(GRID) - 1
     lines = ["| corruption | measure | s = 0.5 | s = 1 | slip |", "|---|---|---:|---:|---:|"]
     for name in RGB:
         curve = found[name]
         ssim, psnr = curve.ssim.mean(0), curve.psnr.mean(0)
-        values = (f"{ssim[i]:.3f} / {psnr[i]:.1f}" for i in (half, most))
+        values = (f"{ssim[i]:.3f} / {psnr[i]:.1f}" for i in (len(psnr) // 2, -1))
         lines.append(f"| `{name}` | SSIM / PSNR (dB) | {' | '.join(values)} | {curve.slip:.0e} |")
     for name in DEPTH:
         error = found[name].error.mean(0)
-        values = (f"{error[i]:.3f}" for i in (half, most))
+        values = (f"{error[i]:.3f}" for i in (len(error) // 2, -1))
         lines.append(
             f"| `{name}` | mean error (m) | {' | '.join(values)} | {found[name].slip:.0e} |"
         )
