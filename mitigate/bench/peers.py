@@ -120,8 +120,8 @@ def plain(views: np.ndarray, severity: float) -> Calls:
 
     def holes():
         field = rng.standard_normal((height, width), np.float32)
-        field = cv2.GaussianBlur(field, (0, 0), ours.HOLE_CORRELATION * min(height, width))
-        return np.where(field > np.quantile(field, 1 - share), np.float32(0), views)
+        smooth = cv2.GaussianBlur(field, (0, 0), ours.HOLE_CORRELATION * min(height, width))
+        return np.where(smooth > np.quantile(smooth, 1 - share), np.float32(0), views)
 
     def echo():
         far = np.stack([cv2.dilate(view, square) for view in views])

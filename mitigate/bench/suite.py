@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from statistics import fmean
@@ -84,7 +85,7 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
         others: dict[str, dict[str, float]] = {name: {} for name in NAMES}
         for library, calls in peers(rgb, depth, SEVERITY).items():
             for name, call in calls.items():
-                others[name][library] = steady(lambda _, call=call: call(), seconds)
+                others[name][library] = steady(partial(_unnumbered, call), seconds)
         costs[label] = {
             name: cost(
                 name,
@@ -96,6 +97,10 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
             for name in NAMES
         }
     return costs
+
+
+def _unnumbered(call: Callable[[], object], _: int) -> object:
+    return call()
 
 
 def cost(

@@ -35,7 +35,7 @@ def steady(call: Callable[[int], object], seconds: float) -> float:
 def fresh(call: Callable[[int], object], seconds: float) -> float:
     """Milliseconds of ``call(i)``, median over growing i: no i comes twice."""
     call(0)
-    end, times = time.perf_counter() + seconds, []
+    end, times = time.perf_counter() + seconds, list[float]()
     while len(times) < LEAST or time.perf_counter() < end:
         times.append(_clock(call, len(times) + 1))
     return statistics.median(times)

@@ -170,8 +170,8 @@ def page(found: dict[str, Curve], seed: int) -> str:
         table=_strengths(found),
         blur_most=SLIPS["motion_blur"],
         step_most=SLIPS["quantization"],
-        blur_slip=f"{found['motion_blur'].slip:.0e}",
-        step_slip=f"{found['quantization'].slip:.0e}",
+        blur_slip=f"{found['motion_blur'].slip:.1g}",
+        step_slip=f"{found['quantization'].slip:.1g}",
     )
     return HEAD.format(version=SUITE_VERSION, seed=seed) + formulas() + text
 
@@ -193,11 +193,11 @@ def _strengths(found: dict[str, Curve]) -> str:
         curve = found[name]
         ssim, psnr = curve.ssim.mean(0), curve.psnr.mean(0)
         values = (f"{ssim[i]:.3f} / {psnr[i]:.1f}" for i in (len(psnr) // 2, -1))
-        lines.append(f"| `{name}` | SSIM / PSNR (dB) | {' | '.join(values)} | {curve.slip:.0e} |")
+        lines.append(f"| `{name}` | SSIM / PSNR (dB) | {' | '.join(values)} | {curve.slip:.1g} |")
     for name in DEPTH:
         error = found[name].error.mean(0)
         values = (f"{error[i]:.3f}" for i in (len(error) // 2, -1))
         lines.append(
-            f"| `{name}` | mean error (m) | {' | '.join(values)} | {found[name].slip:.0e} |"
+            f"| `{name}` | mean error (m) | {' | '.join(values)} | {found[name].slip:.1g} |"
         )
     return "\n".join(lines)
