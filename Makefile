@@ -52,7 +52,7 @@ lint: $(VENV)/.stamp ## check style and formatting
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 
-bench: $(VENV)/.stamp-bench ## measure the renderer against MiniWorld, and the corruptions
+bench: $(VENV)/.stamp-bench ## time the corruptions beside their peers, and the renderer
 	$(BIN)/python -m mitigate.bench $(ARGS)
 
 doctor: ## say what this machine has and what is missing

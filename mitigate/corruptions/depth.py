@@ -37,6 +37,7 @@ ECHO_STRENGTH = 0.9
 ECHO_HERTZ = 20e6
 LIGHT_SPEED = 299_792_458.0  # metres a second
 STEP = 0.5  # metres at s = 1
+STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32
 
 _U = np.uint64
 
@@ -102,15 +103,21 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
 
 @lru_cache(maxsize=16)
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """uint8 [H, W]: 0 kept, 1 no reading, 2 reads z_max."""
+    """uint8 [H, 2 W]: 0 kept, 1 no reading, 2 reads z_max; the map twice, side by side, so that a
+    row of it from any column on is one piece."""
     smooth, cells = field(value, height, width, HOLE_CORRELATION)
     holes = smooth >= top_share(cells, HOLE_SHARE * severity)
     far = smooth >= top_share(cells, HOLE_SHARE * FAR_SHARE * severity)
-    return holes.astype(np.uint8) + far
+    return np.tile(holes.astype(np.uint8) + far, 2)
+
+
+@lru_cache(maxsize=64)
+def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.ndarray:
+    return view_streams(Key(seed, episode, placement), "missing_offset", views)
 
 
 @njit(cache=True)
-def _drop_span(source, holes, missing, z_max, target):
+def _drop_row(source, holes, missing, z_max, target):
     for x in range(source.size):
         z, hole = source[x], holes[x]
         read = missing if hole == 1 else z_max
@@ -124,19 +131,17 @@ def _drop(views, holes, streams, missing, z_max, out):
     for v in range(count):
         down = np.int64(mix(streams[v], _U(0)) % _U(height))
         shift = np.int64(mix(streams[v], _U(1)) % _U(width))
-        split = width - shift
         for y in range(height):
-            source, target, row = views[v, y], out[v, y], holes[(y + down) % height]
-            _drop_span(source[:split], row[shift:], missing, z_max, target[:split])
-            _drop_span(source[split:], row[:shift], missing, z_max, target[split:])
+            row = holes[(y + down) % height, shift : shift + width]
+            _drop_row(views[v, y], row, missing, z_max, out[v, y])
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Lose the top 0.5 s of a random field; a quarter of it reads z_max. Moves every 5 frames."""
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
-    still = Key(key.seed, key.episode, key.frame // HOLE_FRAMES)
-    streams = view_streams(still, "missing_offset", count)
+    placement = int(key.frame) // HOLE_FRAMES
+    streams = _hole_streams(int(key.seed), str(key.episode), placement, count)
     out = np.empty_like(views)
     missing, z_max = np.float32(sensor.missing), np.float32(sensor.z_max)
     _drop(views, holes, streams, missing, z_max, out)
@@ -245,6 +250,6 @@ def _round_off(views, step, z_max, out):
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Round to steps of 0.5 s metres."""
     out = np.empty_like(views)
-    step, z_max = np.float32(STEP * severity), np.float32(sensor.z_max)
+    step, z_max = np.float32(max(STEP * severity, STEP_LEAST)), np.float32(sensor.z_max)
     _round_off(views.reshape(-1), step, z_max, out.reshape(-1))
     return out

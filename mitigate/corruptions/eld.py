@@ -18,8 +18,15 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from mitigate.corruptions.keying import Key, mix, normal_table, unit_normals, view_streams
-from mitigate.corruptions.rgb import flat_rows, low_light_mask
+from mitigate.corruptions.keying import (
+    Key,
+    digest,
+    mix,
+    normal_table,
+    unit_normals,
+    view_streams,
+)
+from mitigate.corruptions.masks import low_light_mask
 
 WHITE = 15583.0  # sensor units at full scale: 14 bits less the black level (Sony A7S2)
 DARKEST = 300.0  # exposure ratio at s = 1 (ELD trains on 100-300)
@@ -139,14 +146,16 @@ def _levels(source, opacity, part, out):
 
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
-    """uint8 [V, H, 3 W]. The indices are unsigned, or numba would test each for a negative one."""
-    count, height, size = views.shape
+    """uint8 [V, H, W, 3]. The indices are unsigned, or numba would test each for a negative one."""
+    count, height, width, _ = views.shape
+    size = 3 * width
+    flat, into = views.reshape(count, height, size), out.reshape(count, height, size)
     part, levels = np.empty(size, np.int16), np.empty(size, np.uint32)
-    words = np.empty(size // 3, np.uint64)
+    words = np.empty(width, np.uint64)
     for v in range(count):
         for y in range(height):
-            target, first = out[v, y], _U(y * words.size)
-            _levels(views[v, y], opacity[y], part, levels)
+            target, first = into[v, y], _U(y * words.size)
+            _levels(flat[v, y], opacity[y], part, levels)
             for x in range(words.size):
                 words[x] = mix(streams[v], first + _U(x))
             shift = row[mix(row_streams[v], _U(y)) >> _U(52)] + np.int32(256 * offset + 128)
@@ -165,10 +174,10 @@ def low_light_noise(
     """``low_light`` seen by a noisy sensor: same mask, same mean, uint8 [V, H, W, 3]."""
     count, height, width, _ = views.shape
     t = tables(severity, camera)
-    mask = low_light_mask(key.still(), severity, height, width)
+    mask = low_light_mask(digest(key, "low_light"), severity, height, width)
     streams = view_streams(key, "low_light_noise", count)
     row_streams = view_streams(key, "row_noise", count)
     out = np.empty_like(views)
     parts = t.photons, t.read, t.row, t.decode, t.offset
-    _sample(flat_rows(views), mask, streams, row_streams, *parts, flat_rows(out))
+    _sample(views, mask, streams, row_streams, *parts, out)
     return out

@@ -1,8 +1,10 @@
-"""A contact sheet: every corruption at several severities on one instant.
+"""Pictures of the suite: a contact sheet of every corruption, and the page of the documentation.
 
     python -m mitigate.corruptions.gallery --out sheet.png [--rgb FRAME.png --depth FRAME.npy]
+    python -m mitigate.corruptions.gallery --page
 
-Without files the frame is rendered from an apartment.
+The sheet shows every corruption at several severities on one instant; without files the frame is
+rendered from an apartment. ``--page`` writes ``docs/corruptions.md`` with its two pictures.
 """
 
 from __future__ import annotations
@@ -13,13 +15,19 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from mitigate.corruptions import curves, page
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.suite import NAMES, RGB, corrupt
+from mitigate.files import write_bytes
 from mitigate.keys import DEPTH, Z_MAX
 from mitigate.keys import RGB as RGB_ENTRY
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
 GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
+JPEG_QUALITY = 88  # of a sheet that is written as .jpg
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
+CURVE_VIEWS = slice(0, 12, 3)  # of its panorama, for the curves
 NO_READING = (255, 255, 255)  # the colour of invalid depth
 
 
@@ -89,7 +97,7 @@ def contact_sheet(
             sheet[top : top + cell.shape[0], left : left + cell.shape[1]] = cell
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    if not cv2.imwrite(str(path), sheet[..., ::-1]):
+    if not cv2.imwrite(str(path), sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
         raise ValueError(f"Could not write {path}: use a file name that ends in .png or .jpg.")
     return sheet
 
@@ -104,6 +112,21 @@ def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
     simulator.reset(make_episode(Apartment(seed), "vln", 0))
     observation = simulator.observe()
     return observation[RGB_ENTRY], observation[DEPTH]
+
+
+def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
+    """Write ``corruptions.md``, the contact sheet and the curves into ``folder``."""
+    rgb, depth = rendered_frame(PAGE_SEED, PAGE_SIZE)
+    view = varied_view(depth)
+    contact_sheet(rgb[view], depth[view], folder / "pictures" / "corruptions.jpg")
+    found = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
+    curves.draw(found, folder / "pictures" / "severity-curves.png", grid)
+    write_bytes(folder / "corruptions.md", page.page(found, PAGE_SEED).encode())
+
+
+def varied_view(depth: np.ndarray) -> int:
+    """The view of [V, H, W, 1] whose depth varies most."""
+    return int(depth.std(axis=(1, 2, 3)).argmax())
 
 
 def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
@@ -124,19 +147,25 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
 def main(arguments: list[str] | None = None) -> None:
     """Command line: see the module's first lines."""
     parser = argparse.ArgumentParser(prog="mitigate.corruptions.gallery", description=__doc__)
-    parser.add_argument("--out", type=Path, required=True, help="picture file to write")
+    parser.add_argument("--out", type=Path, help="picture file to write")
     parser.add_argument("--rgb", type=Path, help="picture of one view")
     parser.add_argument("--depth", type=Path, help=".npy with float32 metres, same size")
     parser.add_argument("--seed", type=int, default=7, help="apartment to render (default 7)")
     parser.add_argument("--size", type=int, default=160, help="rendered view size (default 160)")
     parser.add_argument("--view", type=int, help="rendered view (default: the most varied depth)")
+    parser.add_argument("--page", action="store_true", help="write docs/corruptions.md instead")
     options = parser.parse_args(arguments)
+    if options.page:
+        write_page()
+        print("Wrote docs/corruptions.md and its pictures")
+        return
+    if options.out is None:
+        parser.error("name the picture to write: --out sheet.png (or pass --page).")
     if (options.rgb is None) != (options.depth is None):
         parser.error("--rgb and --depth go together: pass both, or neither to render a frame.")
     if options.rgb is None:
         rgb, depth = rendered_frame(options.seed, options.size)
-        varied = int(depth.std(axis=(1, 2, 3)).argmax())
-        view = varied if options.view is None else options.view % len(rgb)
+        view = varied_view(depth) if options.view is None else options.view % len(rgb)
         rgb, depth = rgb[view], depth[view]
     else:
         rgb, depth = read_frame(options.rgb, options.depth)

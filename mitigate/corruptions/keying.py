@@ -42,19 +42,26 @@ class Key:
     episode: str
     frame: int = 0
 
-    def still(self) -> Key:
-        """The key without its frame: what episode state is cached under."""
-        return Key(self.seed, self.episode)
+
+@lru_cache(maxsize=256)
+def _episode_hash(seed: int, episode: str, name: str) -> tuple:
+    """The hash state of these parts, to copy and go on from, and its digest as an integer."""
+    text = "".join(f"{len(part)}:{part}" for part in (str(seed), episode, name))
+    state = blake2b(text.encode("utf-8", "surrogatepass"), digest_size=8, person=b"mitigate")
+    return state, int.from_bytes(state.digest(), "little")
 
 
-def digest(key: Key, name: str, *, frame: bool = False, view: int | None = None) -> int:
-    """64-bit digest of the episode scope, or of the frame scope, for the draw called ``name``."""
-    parts = [str(int(key.seed)), str(key.episode), name]
-    if frame:
-        parts.append(str(int(key.frame)))
-    text = "".join(f"{len(part)}:{part}" for part in parts).encode("utf-8", "surrogatepass")
-    value = int.from_bytes(blake2b(text, digest_size=8, person=b"mitigate").digest(), "little")
-    return value if view is None else scramble(value, view)
+def digest(key: Key, name: str, *, frame: bool = False) -> int:
+    """64-bit digest of the episode scope, or of the frame scope, for the draw called ``name``.
+
+    In the frame scope, view k takes ``scramble(digest, k)``.
+    """
+    state, value = _episode_hash(int(key.seed), str(key.episode), name)
+    if not frame:
+        return value
+    state, part = state.copy(), str(int(key.frame))
+    state.update(f"{len(part)}:{part}".encode())
+    return int.from_bytes(state.digest(), "little")
 
 
 def scramble(value: int, counter: int) -> int:

@@ -1,8 +1,9 @@
 """A small analytic RGB-D scene that can be drawn at any size."""
 
-import cv2
 import numpy as np
 import pytest
+
+from mitigate.corruptions.curves import psnr, ssim
 
 
 def draw(height: int, width: int, view: int = 0) -> tuple[np.ndarray, np.ndarray]:
@@ -20,26 +21,6 @@ def draw(height: int, width: int, view: int = 0) -> tuple[np.ndarray, np.ndarray
         rgb[box] = grey + 0.4 * (rgb[box] - 128)
         depth[box] = near + 0.05 * bands[box]
     return np.rint(np.clip(rgb, 0, 255)).astype(np.uint8), depth.astype(np.float32)
-
-
-def ssim(a: np.ndarray, b: np.ndarray) -> float:
-    """Mean structural similarity of two uint8 views (Wang et al. 2004), Gaussian window 1.5."""
-
-    def smooth(x):
-        return cv2.GaussianBlur(x, (11, 11), 1.5)
-
-    x, y = a.astype(np.float64).mean(-1), b.astype(np.float64).mean(-1)
-    mx, my = smooth(x), smooth(y)
-    vx, vy, vxy = smooth(x * x) - mx * mx, smooth(y * y) - my * my, smooth(x * y) - mx * my
-    c1, c2 = 6.5025, 58.5225
-    map_ = (2 * mx * my + c1) * (2 * vxy + c2) / ((mx * mx + my * my + c1) * (vx + vy + c2))
-    return float(map_.mean())
-
-
-def psnr(a: np.ndarray, b: np.ndarray) -> float:
-    """Peak signal-to-noise ratio in decibels; 200 for equal arrays."""
-    error = np.mean((a.astype(np.float64) - b) ** 2)
-    return 200.0 if error == 0 else float(10 * np.log10(255**2 / error))
 
 
 def panorama_of(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:

@@ -34,3 +34,17 @@ def test_bad_files_are_named(tmp_path, scene):
         gallery.contact_sheet(rgb, depth[:-1], tmp_path / "sheet.png")
     with pytest.raises(SystemExit):
         gallery.main(["--out", "x.png", "--rgb", "only.png"])
+
+
+def test_the_page_holds_every_corruption_and_its_pictures(tmp_path):
+    gallery.write_page(tmp_path, np.array([0.0, 0.5, 1.0]))
+    text = (tmp_path / "corruptions.md").read_text()
+    assert all(text.count(f"| `{name}` |") == 2 for name in gallery.NAMES)
+    for picture in ("corruptions.jpg", "severity-curves.png"):
+        assert f"pictures/{picture}" in text
+        assert cv2.imread(str(tmp_path / "pictures" / picture)) is not None
+
+
+def test_the_formulas_in_the_documentation_are_those_of_the_code():
+    """After a change of a constant: ``python -m mitigate.corruptions.gallery --page``."""
+    assert gallery.page.formulas() in (gallery.DOCS / "corruptions.md").read_text()

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from mitigate.corruptions import RGB, Key, corrupt
+from mitigate.corruptions import RGB, Key, corrupt, masks
 from mitigate.corruptions import rgb as kernels
+from mitigate.corruptions.keying import digest, uniform
 
 WHITE = np.full((60, 80, 3), 255, np.uint8)
 GREY = np.full((12, 48, 64, 3), 120, np.uint8)
@@ -55,7 +56,7 @@ def test_motion_blur_is_a_line_filter_to_less_than_half_a_grey_level(size, sever
 
     frame = scene.draw(*size)[0]
     length, key = 0.10 * severity * size[1], Key(0, "a")
-    angle = np.radians(10 * (2 * kernels.uniform(kernels.digest(key, "motion_blur")) - 1))
+    angle = np.radians(10 * (2 * uniform(digest(key, "motion_blur")) - 1))
     half = 0.5 * length * np.cos(angle)
     reach = int(np.ceil(half)) + 1
     line = np.zeros((2 * reach + 1, 2 * reach + 1))
@@ -91,7 +92,7 @@ def test_low_light_leaves_the_stated_share_of_light(episode):
 
 
 def test_low_light_uses_ramps_and_lights():
-    kinds = [kernels.uniform(kernels.digest(Key(0, str(i)), "low_light")) < 0.5 for i in range(40)]
+    kinds = [uniform(digest(Key(0, str(i)), "low_light")) < 0.5 for i in range(40)]
     assert 8 < sum(kinds) < 32
 
 
@@ -145,7 +146,7 @@ def test_the_light_stays_in_the_world_when_the_agent_turns():
 
 
 def test_a_view_to_the_right_sees_the_light_further_left():
-    centres = kernels.flare_centres(Key(0, "a"), 12, 64, 64, 0.2)
+    centres = masks.flare_centres(digest(Key(0, "a"), "flare"), 12, 64, 64, 0.2)
     seen = [k for k in range(12) if centres[k] is not None]
     ordered = seen if seen[-1] - seen[0] == 2 else sorted(seen, key=lambda k: (k + 6) % 12)
     columns = [centres[k][0] for k in ordered]
@@ -154,14 +155,14 @@ def test_a_view_to_the_right_sees_the_light_further_left():
 
 def test_without_a_heading_the_light_is_in_the_first_view_where_it_was_drawn():
     for i in range(50):
-        x, y = kernels.flare_centres(Key(0, str(i)), 1, 50, 100, None)[0]
+        x, y = masks.flare_centres(digest(Key(0, str(i)), "flare"), 1, 50, 100, None)[0]
         assert 10 <= x <= 90 and 0 <= y <= 25
 
 
 def test_flare_is_a_screen_blend_that_never_darkens(scene):
     frame = scene.draw(60, 80)[0]
     out = corrupt(frame, "flare", 1.0, key=Key(0, "a"))
-    x, y = kernels.flare_centres(Key(0, "a"), 1, 60, 80, None)[0]
+    x, y = masks.flare_centres(digest(Key(0, "a"), "flare"), 1, 60, 80, None)[0]
     assert (out >= frame).all() and out[int(y), int(x), 0] == 255
 
 

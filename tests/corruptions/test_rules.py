@@ -13,6 +13,7 @@ from mitigate.corruptions import (
     corrupt,
     corrupt_observation,
 )
+from mitigate.corruptions.curves import SLIPS, curves
 
 KEY = Key(3, "episode-7", 4)
 STRENGTHS = np.linspace(0.0, 1.0, 11)
@@ -65,7 +66,7 @@ def test_ssim_and_psnr_to_the_clean_frame_never_rise(name, episode, scene):
     frame = scene.draw(96, 128)[0]
     hurt = [corrupt(frame, name, s, key=Key(0, episode)) for s in STRENGTHS]
     likeness = [scene.ssim(frame, x) for x in hurt]
-    signal = [scene.psnr(frame, x) for x in hurt]
+    signal = [min(200.0, scene.psnr(frame, x)) for x in hurt]
     assert np.diff(likeness).max() <= 1e-6, likeness
     assert np.diff(signal).max() <= 1e-9, signal
     assert likeness[-1] < 0.9 and signal[-1] < 30.0
@@ -78,6 +79,14 @@ def test_mean_absolute_depth_error_never_falls(name, episode, scene):
     hurt = [corrupt(frame, name, s, key=Key(0, episode)) for s in STRENGTHS]
     errors = [np.abs(x - frame).mean() for x in hurt]
     assert np.diff(errors).min() >= 0.0 and errors[-1] > 0.05, errors
+
+
+@pytest.mark.parametrize("size", [(48, 64), (96, 96)])
+def test_on_a_fine_grid_strength_slips_by_no_more_than_stated(size, scene):
+    found = curves(scene.draw(*size)[0][None], scene.draw(*size)[1][None, ..., None])
+    assert set(SLIPS) < set(NAMES) and list(found) == list(NAMES)
+    for name, curve in found.items():
+        assert curve.slip <= SLIPS.get(name, 1e-6), (name, curve.slip)
 
 
 @pytest.mark.parametrize("name", DEPTH)

@@ -1,0 +1,1 @@
+"""What things cost: the corruptions beside their peers, their share of training, the renderer."""

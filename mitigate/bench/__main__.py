@@ -1,0 +1,58 @@
+"""Measure the corruptions beside their peers, their share of training, and the renderer.
+
+    make bench ARGS="--seconds 0.2 --steps 1"
+
+Everything runs in this process, on one thread. ``--write`` puts the tables into
+``docs/benchmarks.md``: do that on a quiet machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+
+for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "NO_ALBUMENTATIONS_UPDATE"):
+    os.environ.setdefault(_name, "1")  # before the libraries read it
+
+import cv2  # noqa: E402
+import torch  # noqa: E402
+
+from mitigate.bench import renderers, report, suite, training  # noqa: E402
+from mitigate.files import write_bytes  # noqa: E402
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Command line: see the module's first lines."""
+    parser = argparse.ArgumentParser(
+        prog="mitigate.bench",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--seconds", type=float, default=1.0, help="of each clock (default 1)")
+    parser.add_argument("--steps", type=int, default=4, help="training steps a stage (default 4)")
+    parser.add_argument("--size", type=int, default=64, help="of a rendered view (default 64)")
+    parser.add_argument("--write", action="store_true", help="write docs/benchmarks.md")
+    options = parser.parse_args(arguments)
+    if options.steps < 1 or options.seconds <= 0:
+        parser.error("--steps must be at least 1 and --seconds above 0.")
+    torch.set_num_threads(1)
+    cv2.setNumThreads(1)
+    text = report.page(
+        suite.measure(options.seconds),
+        suite.worst_pair(options.seconds),
+        training.shares(options.steps),
+        renderers.compare(options.size, options.seconds),
+        options.size,
+        options.seconds,
+    )
+    print(text)
+    if options.write:
+        write_bytes(PAGE, text.encode())
+        print(f"wrote docs/{PAGE.name}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,111 @@
+"""How much a corruption hurts as severity grows: SSIM and PSNR of RGB, error of depth."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.suite import DEPTH, NAMES, RGB, corrupt
+
+GRID = np.linspace(0.0, 1.0, 101)
+# How far a corruption may hurt less at the next severity of GRID, where it may: a rise of SSIM, a
+# fall of the mean depth error in metres (tests/corruptions/test_rules.py).
+SLIPS = {"motion_blur": 0.03, "quantization": 0.005}
+EPISODES = 3  # random draws that a curve averages over
+SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # pixels (Wang et al. 2004)
+SSIM_C1, SSIM_C2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2  # the same
+
+
+def ssim(a: np.ndarray, b: np.ndarray) -> float:
+    """Mean structural similarity of the grey (mean) of two uint8 views [H, W, 3], Wang 2004."""
+
+    def smooth(x: np.ndarray) -> np.ndarray:
+        return cv2.GaussianBlur(x, (SSIM_WINDOW, SSIM_WINDOW), SSIM_SIGMA)
+
+    x, y = a.astype(np.float64).mean(-1), b.astype(np.float64).mean(-1)
+    mx, my = smooth(x), smooth(y)
+    vx, vy, vxy = smooth(x * x) - mx * mx, smooth(y * y) - my * my, smooth(x * y) - mx * my
+    structure = (2 * vxy + SSIM_C2) / (vx + vy + SSIM_C2)
+    return float(np.mean((2 * mx * my + SSIM_C1) / (mx * mx + my * my + SSIM_C1) * structure))
+
+
+def psnr(a: np.ndarray, b: np.ndarray) -> float:
+    """Peak signal-to-noise ratio of two uint8 arrays in decibels; infinite for equal ones."""
+    error = np.mean((a.astype(np.float64) - b) ** 2)
+    return float("inf") if error == 0 else float(10 * np.log10(255**2 / error))
+
+
+def depth_error(clean: np.ndarray, hurt: np.ndarray) -> float:
+    """Mean absolute error in metres over the pixels that are valid in ``clean``; a lost reading
+    counts as 0 m, as it is written."""
+    valid = np.isfinite(clean) & (clean > 0)
+    return float(np.abs(hurt[valid].astype(np.float64) - clean[valid]).mean())
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Likeness or error [episodes, severities] of one corruption over ``GRID``."""
+
+    ssim: np.ndarray
+    psnr: np.ndarray
+    error: np.ndarray
+
+    @property
+    def slip(self) -> float:
+        """The largest step against the rule: a rise of SSIM, or a fall of the depth error (m)."""
+        rise = np.diff(self.ssim) if self.ssim.size else -np.diff(self.error)
+        return float(max(rise.max(), 0.0))
+
+
+def curves(rgb: np.ndarray, depth: np.ndarray, grid: np.ndarray = GRID) -> dict[str, Curve]:
+    """The curve of every corruption on views [V, H, W, 3] and depth metres [V, H, W, 1]."""
+    found = {}
+    for name in NAMES:
+        frame = rgb if name in RGB else depth
+        hurt = [
+            [corrupt(frame, name, s, key=Key(0, f"curve {i}")) for s in grid]
+            for i in range(EPISODES)
+        ]
+        none: list[list[float]] = [[]] * EPISODES
+        if name in RGB:
+            likeness = [
+                [np.mean([ssim(a, b) for a, b in zip(rgb, x, strict=True)]) for x in row]
+                for row in hurt
+            ]
+            signal = [[psnr(rgb, x) for x in row] for row in hurt]
+            found[name] = Curve(np.array(likeness), np.array(signal), np.array(none))
+        else:
+            error = [[depth_error(depth, x) for x in row] for row in hurt]
+            found[name] = Curve(np.array(none), np.array(none), np.array(error))
+    return found
+
+
+def draw(found: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
+    """Three panels as a PNG: SSIM and PSNR of the RGB corruptions, mean error of the depth ones."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(12, 3.6), layout="constrained")
+    FigureCanvasAgg(figure)
+    panels = figure.subplots(1, 3)
+    titles = ("RGB: SSIM to the clean frame", "RGB: PSNR in dB", "Depth: mean error in metres")
+    lines = ("-", "--")
+    for axis, title, kind in zip(panels, titles, ("ssim", "psnr", "error"), strict=True):
+        for number, name in enumerate(DEPTH if kind == "error" else RGB):
+            values = getattr(found[name], kind)
+            values = np.where(np.isfinite(values), values, np.nan)  # equal frames: no PSNR
+            seen = np.isfinite(values).all(0)
+            colour = f"C{number % 8}"
+            axis.plot(grid[seen], values[:, seen].mean(0), lines[number % 2], c=colour, label=name)
+        axis.set(title=title, xlabel="severity")
+        axis.grid(alpha=0.3)
+    panels[0].set_ylim(0, 1.02)
+    panels[1].set_ylim(0, 55)
+    panels[2].set(yscale="log")
+    panels[1].legend(fontsize=7, ncols=2, loc="upper right")
+    panels[2].legend(fontsize=7, loc="lower right")
+    figure.savefig(path, dpi=90)

@@ -1,0 +1,191 @@
+"""Masks of the RGB corruptions: where a frame is darkened, dirty, flared or hidden, and how much.
+
+Darkening, dirt and glare are one operation, ``out = x + (colour - x) alpha``, with an opacity mask
+of 16 bits. Masks are cached by the 64-bit digest of the episode scope that they are drawn from, so
+a frame in the course of an episode pays for the look-up alone. Formulas and sources: SUITE
+section 2; constants without a source were chosen by this project.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from mitigate import keys
+from mitigate.corruptions.keying import field, top_share, uniform
+
+DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
+SPATTER_CORRELATION = 0.018  # of min(H, W)
+SPATTER_COVER = 0.45  # ImageNet-C covers 0.04-0.57 of the frame
+SPATTER_EDGE = 0.25  # of the field's standard deviation
+SPATTER_COLOURS = ((63, 42, 20), (175, 238, 238))  # mud, water (ImageNet-C)
+FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # width over the image diagonal
+FLARE_HALO, FLARE_HALO_WIDTH = 0.30, 0.35
+FLARE_TINT = (1.0, 0.96, 0.88)
+GLOW_REACH, GLOW_CELLS = 1.5, 16384  # of the radial table: less than 0.04 grey levels a cell
+DISK_RADIUS = 0.5  # of min(H, W)
+NEUTRAL = (1.0, 1.0, 1.0)
+
+
+@njit(cache=True)
+def _expand(share, weight, out):
+    """out int16 [H, 3 W] = min(share [H, W] times weight of the channel, 1) in 1/32768."""
+    for y in range(share.shape[0]):
+        row, target = share[y], out[y]
+        for c in range(3):
+            scale = np.float32(weight[c] * 32768.0)
+            for x in range(row.size):
+                value = min(row[x] * scale + np.float32(0.5), np.float32(32767.0))
+                target[3 * x + c] = np.int16(np.int32(value))
+
+
+def _opacity(share: np.ndarray, strength: float, tint: tuple[float, float, float]) -> np.ndarray:
+    """Opacity mask int16 [H, 3 W] of the float32 [H, W] shares >= 0, times strength and tint."""
+    out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
+    _expand(share, strength * np.array(tint), out)
+    return out
+
+
+@lru_cache(maxsize=64)
+def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
+    """int16 [3 W]: one colour all along a row, the form that ``cover`` takes."""
+    return np.tile(np.array(colour, np.int16), width)
+
+
+@njit(cache=True)
+def cover(views, alpha, colour, out):
+    """out = x + (colour - x) alpha for uint8 [V, H, W, 3]; int16 alpha [H, 3 W], colour [3 W].
+
+    Two loops over a row of 16-bit numbers, which is what compiles to full-width vector code.
+    """
+    count, height, _, _ = views.shape
+    flat, into = views.reshape(count, height, -1), out.reshape(count, height, -1)
+    part = np.empty(colour.size, np.int16)
+    for v in range(count):
+        for y in range(height):
+            source, opacity, target = flat[v, y], alpha[y], into[v, y]
+            for i in range(part.size):
+                gap = np.int16((colour[i] - np.int16(source[i])) << 7)
+                part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
+            for i in range(part.size):
+                target[i] = source[i] + ((part[i] + 32) >> 6)
+
+
+@lru_cache(maxsize=32)
+def light_ramp(value: int, height: int, width: int) -> np.ndarray:
+    """float32 [H, W] in [0, 1]: a linear ramp along an angle, or the distance to one light."""
+    y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
+    if uniform(value, 0) < 0.5:
+        angle = 2.0 * math.pi * uniform(value, 1)
+        reach = abs(math.cos(angle)) + abs(math.sin(angle))
+        down, right = (y - 0.5) * (math.sin(angle) / reach), (x - 0.5) * (math.cos(angle) / reach)
+        return np.add.outer((0.5 + down).astype(np.float32), right.astype(np.float32))
+    u, v = uniform(value, 2), uniform(value, 3)
+    far = math.hypot(max(u, 1.0 - u) * width, max(v, 1.0 - v) * height)
+    down, right = ((y - v) * (height / far)) ** 2, ((x - u) * (width / far)) ** 2
+    return np.sqrt(np.add.outer(down.astype(np.float32), right.astype(np.float32)))
+
+
+def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarray:
+    """float32 [H, W]: the share of light taken away, s (0.60 + 0.37 t)."""
+    ramp = light_ramp(value, height, width)
+    return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
+
+
+@lru_cache(maxsize=16)
+def low_light_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
+    """int16 [H, 3 W]: the opacity of the dark, in 1/32768."""
+    return _opacity(light_loss(value, severity, height, width), 1.0, NEUTRAL)
+
+
+@lru_cache(maxsize=16)
+def spatter_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
+    """int16 [H, 3 W]: the opacity of the dirt, in 1/32768."""
+    smooth, cells = field(value, height, width, SPATTER_CORRELATION)
+    level = top_share(cells, SPATTER_COVER * severity)
+    share = np.clip((smooth - np.float32(level)) * np.float32(1.0 / SPATTER_EDGE), 0.0, 1.0)
+    return _opacity(share, 0.5 + 0.5 * severity, NEUTRAL)
+
+
+@lru_cache(maxsize=64)
+def spatter_row(value: int, width: int) -> np.ndarray:
+    """int16 [3 W]: mud or water, as ``colour_row``."""
+    return colour_row(SPATTER_COLOURS[uniform(value) < 0.5], width)
+
+
+@lru_cache(maxsize=64)
+def flare_centres(
+    value: int, views: int, height: int, width: int, heading: float | None
+) -> tuple[tuple[float, float] | None, ...]:
+    """Where the light falls in each view: (x, y) in pixels, or None where it is not in the view.
+
+    The light has a fixed direction in the world: column U(0.1, 0.9) W, row U(0, 0.5) H of a camera
+    at a random world yaw. ``heading`` (rad, counter-clockwise) turns with the agent and view k
+    looks at heading - 30 k degrees. Without a heading that camera is view 0.
+    """
+    column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
+    focal = 0.5 / math.tan(math.radians(keys.HFOV_DEGREES) / 2.0)  # over the width
+    yaw = math.atan2(0.5 - column, focal)  # from the camera, counter-clockwise
+    tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # of the elevation
+    if heading is not None:
+        yaw += 2.0 * math.pi * uniform(value, 2) - heading
+    centres = []
+    for view in range(views):
+        turn = yaw + math.radians(keys.VIEW_STEP_DEGREES) * view
+        ahead, left = math.cos(turn), math.sin(turn)
+        x = 0.5 - focal * left / ahead if ahead > 1e-6 else -1.0
+        seen = 0.0 <= x <= 1.0
+        y = 0.5 * height - width * focal * tangent / ahead if seen else 0.0
+        centres.append((x * width, y) if seen else None)
+    return tuple(centres)
+
+
+@lru_cache(maxsize=1)
+def _glow_table() -> np.ndarray:
+    """float32 [GLOW_CELLS + 1]: the light at r = 0 .. 1.5 image diagonals, before severity."""
+    r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
+    glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
+    return (glow + FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)).astype(np.float32)
+
+
+@njit(cache=True)
+def _look_up(down, right, table, out):
+    """out[y, x] = table at the nearest cell to sqrt(down[y] + right[x]), all float32."""
+    for y in range(down.size):
+        for x in range(right.size):
+            out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
+
+
+@lru_cache(maxsize=64)
+def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
+    """int16 [H, 3 W]: the opacity of the glow around (x, y) pixels, in 1/32768."""
+    cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
+    down = ((np.arange(height) + 0.5 - y) * cells) ** 2
+    right = ((np.arange(width) + 0.5 - x) * cells) ** 2
+    glow = np.empty((height, width), np.float32)
+    _look_up(down.astype(np.float32), right.astype(np.float32), _glow_table(), glow)
+    return _opacity(glow, severity, FLARE_TINT)
+
+
+@lru_cache(maxsize=32)
+def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
+    """int64 [H, 2]: the first and end column of the disk in each row."""
+    radius = DISK_RADIUS * severity * min(height, width)
+    reach = radius**2 - (np.arange(height) + 0.5 - 0.5 * height) ** 2
+    half = np.sqrt(np.maximum(reach, 0.0))
+    first = np.maximum(0, np.ceil(0.5 * width - half - 0.5))
+    end = np.minimum(width, np.floor(0.5 * width + half - 0.5) + 1)
+    return np.stack([first, np.where(reach < 0.0, first, end)], axis=1).astype(np.int64)
+
+
+@njit(cache=True)
+def blacken(frames, spans):
+    """In place: uint8 [V, H, W, 3] is black inside the spans (int64 [H, 2])."""
+    count, height, _, _ = frames.shape
+    flat = frames.reshape(count, height, -1)
+    for v in range(count):
+        for y in range(height):
+            flat[v, y, 3 * spans[y, 0] : 3 * spans[y, 1]] = 0

@@ -1,0 +1,64 @@
+"""The bench: its clocks, its peers and its page."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from mitigate.bench import report, suite, timing, training
+from mitigate.bench.peers import plain
+from mitigate.bench.renderers import OURS
+from mitigate.corruptions import DEPTH, NAMES
+
+
+def test_the_clocks_count_what_a_call_takes():
+    assert 1.9 < timing.steady(lambda i: time.sleep(0.002), 0.01) < 20
+    seen = []
+    assert timing.fresh(seen.append, 0.001) < 1
+    assert seen == list(range(len(seen))) and len(seen) > timing.LEAST
+
+
+def test_every_corruption_has_a_bar_and_the_depth_ones_a_plain_peer():
+    assert set(suite.BARS) == set(NAMES)
+    depth = np.full((2, 40, 48), 3.0, np.float32)
+    depth[:, :, 24:] = 5.0
+    calls = plain(depth, 0.6)
+    assert set(calls) == set(DEPTH)
+    for call in calls.values():
+        out = np.asarray(call())
+        assert out.shape == depth.shape and (out != depth).any()
+
+
+@pytest.mark.parametrize("name", ["low_light", "quantization"])
+def test_a_cost_is_measured_on_the_frame(name):
+    frame = np.full((1, 32, 32, 3), 90, np.uint8)
+    frame = frame if name not in DEPTH else frame[..., 0].astype(np.float32)
+    found = suite.cost(name, frame, 1e-3, {"slow": 9.0, "fast": 7.0}, bar=1e-9)
+    assert found.over and found.best_peer == ("fast", 7.0)
+    assert 0 < found.steady < 5 and 0 < found.copy < found.per_frame
+
+
+def test_the_clock_around_a_function_counts_its_calls_only():
+    clock = training.Clock()
+    assert clock.around(lambda x: time.sleep(0.01) or x)(3) == 3
+    time.sleep(0.01)
+    assert 0.009 < clock.seconds < 0.1
+
+
+def test_the_page_lists_what_is_over_the_bar():
+    good = suite.Cost(0.1, 0.2, 0.3, 0.01, 0.05, {"peer 1": 0.4}, 0.2)
+    missed = suite.Cost(0.5, 0.6, 0.7, 0.01, 0.05, {}, 0.2)
+    rates = {OURS: (100.0, 100.0), "other": (50.0, 25.0)}
+    shares = {("per_frame", "imitation"): training.Share(2, 4.0, 0.2)}
+    costs = {"224x224": {"low_light": good, "quantization": missed}}
+    text = report.page(costs, 3.9, shares, rates, 64, 0.2)
+    assert (
+        "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
+        in text
+    )
+    over = text.split("### Over the bar")[1].split("## Share")[0]
+    assert "`quantization` | 224x224 | 0.3000" in over and "low_light" not in over
+    assert "| per_frame | imitation | 2000 | 100.0 | 5.0% |" in text
+    assert "| other | 50 | 25 | 4 | 2.0 times |" in text
