@@ -121,7 +121,8 @@ def _write(
     """Fill ``draft`` and check it."""
     size = (cfg.get("env") or {}).get("size", SIZE)
     given = programs.probe(agent, size)
-    config = (run / hardened.CONFIG).read_text(encoding="utf-8").replace(f"{Path.cwd()}/", "")
+    config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)  # where it ran is no matter
+    config = config.replace(f"{Path.cwd()}/", "")
     (draft / hardened.CONFIG).write_text(config, encoding="utf-8")
     adapters_only = _only_adapters_trained(cfg, agent)
     shipped = agent
@@ -166,6 +167,8 @@ def _write(
         "latency_ms": programs.latency({"eager": eager, "exported": modules}, shipped, size),
     }
     (draft / hardened.README).write_text(readme(card), encoding="utf-8")
+    for file in draft.iterdir():
+        file.chmod(0o644)  # safetensors are written for their owner alone
     card["files"] = {file.name: hardened.sha256(file) for file in sorted(draft.iterdir())}
     card["sha256"] = hardened.card_sha(card)
     _write_json(draft / hardened.CARD, card)

@@ -125,11 +125,17 @@ def export_programs(agent: TopologicalAgent, size: int) -> dict[str, ExportedPro
     given = probe(agent, size)
     for name, network in networks(agent).items():
         inputs = tuple(given[key] for key in INPUTS[name])
-        shapes = (tuple(_free(INPUTS[name][key][1]) for key in INPUTS[name]),)
+        shapes = (free_dimensions(name),)  # one entry: Stored takes all inputs as *inputs
         stored = Stored(network, inputs).eval()
         made[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
         made[name].example_inputs = None  # frames; nothing needs them
+        _drop_type_checks(made[name])
     return made
+
+
+def free_dimensions(name: str) -> tuple[dict[int, Any], ...]:
+    """Return the dynamic dimensions of each input of a network, for ``torch.export``."""
+    return tuple(_free(shape) for _, shape, _ in INPUTS[name].values())
 
 
 def save_programs(programs: dict[str, ExportedProgram], file: Path) -> None:
@@ -256,6 +262,15 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
         p.requires_grad_(before[name])
     used = [name for name, grad in zip(parameters, grads, strict=True) if grad is not None]
     return used + [name for name, _ in network.named_buffers()]
+
+
+def _drop_type_checks(program: ExportedProgram) -> None:
+    """Take out the checks of the stored tensors' types: over a hundred calls that cannot fail."""
+    graph = program.graph_module.graph
+    for node in list(graph.nodes):
+        if node.target is torch.ops.aten._assert_tensor_metadata.default:
+            graph.erase_node(node)
+    program.graph_module.recompile()
 
 
 def _smallest(tensor: Tensor) -> Tensor:
