@@ -144,11 +144,12 @@ def _cell(found: list[float | None]) -> str:
 def _use(card: dict[str, Any]) -> str:
     times, checked = card["latency_ms"], card["checked"]
     networks = list(times["eager"])
-    shown = "; ".join(
-        f"`{name}` {times['eager'][name]['fastest']:g} eager, "
-        f"{times['exported'][name]['fastest']:g} exported"
+    lines = [
+        f"| `{name}`, {kind} | {times[kind][name]['wall']:g} | {times[kind][name]['cpu']:g} |"
         for name in networks
-    )
+        for kind in ("eager", "exported")
+    ]
+    table = "\n".join(["| network | fastest | processor |", "| --- | ---: | ---: |", *lines])
     return (
         "## Use\n\n```python\nimport mitigate\n\n"
         f'agent = mitigate.load_hardened("checkpoints/hardened/{card["name"]}")\n```\n\n'
@@ -156,8 +157,8 @@ def _use(card: dict[str, Any]) -> str:
         "without this code; `program.json` describes its inputs. Reloaded in a fresh process, "
         f"the outputs on a fixed probe were equal within {checked['reload_tolerance']:g} (agent) "
         f"and {checked['program_tolerance']:g} (program); float16 moved them by "
-        f"{checked['float16']:.2g}.\nFastest of {times['calls']} calls in ms, "
-        f"{times['threads']} threads: {shown}."
+        f"{checked['float16']:.2g}.\n\nMilliseconds, fastest of {times['calls']} "
+        f"calls and median processor time, threads: {times['threads']}.\n\n{table}"
     )
 
 
