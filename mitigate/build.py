@@ -6,6 +6,7 @@ as data, because a ``_target_`` in it could run anything.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from hydra.errors import InstantiationException
@@ -41,7 +42,12 @@ def settings_of(node: DictConfig, weights: str) -> DictConfig:
     returned as it is. Raises ValueError if the weights are those of another kind of agent, or if
     the file names anything else to build.
     """
-    file = checkpoint.weights_file(weights).with_name("config.yaml")
+    from mitigate import hardened  # brings the reference agent with it
+
+    if hardened.adapters_only(weights):
+        file = Path(weights) / hardened.CONFIG
+    else:
+        file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
     if not file.is_file():
         return node
     found = OmegaConf.load(file).get("agent", {})
@@ -62,8 +68,13 @@ def settings_of(node: DictConfig, weights: str) -> DictConfig:
 
 def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Module:
     """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file."""
+    from mitigate import hardened
+
     seeding.seed_everything(seed, "agent")
     agent = build(node)
-    if weights is not None:
+    if weights is not None and hardened.adapters_only(weights):
+        hardened.check(Path(weights))
+        hardened.fill(agent, weights)
+    elif weights is not None:
         checkpoint.load_weights(agent, weights)
     return agent

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 
 import pytest
@@ -10,9 +9,9 @@ import torch
 from omegaconf import DictConfig, OmegaConf, open_dict
 from safetensors.torch import load_file
 
-from mitigate import checkpoint, cli, export, train
+from mitigate import checkpoint, cli, train
 from mitigate.build import build
-from tests.tiny import TinyAgent, TinyRecipe
+from tests.tiny import TinyAgent
 
 TINY = {"_target_": "tests.tiny.TinyRecipe"}
 
@@ -116,25 +115,3 @@ def test_build_hands_the_very_object_on_and_shows_a_users_error():
     for wrong in (node, outer):
         with pytest.raises(ValueError, match="per_episode"):
             build(wrong)
-
-
-def test_export_writes_weights_config_and_card_and_finds_a_changed_file(tmp_path):
-    train.run(config(tmp_path / "run"))
-    folder = export.export(tmp_path / "run", "mine", out=tmp_path / "hardened")
-    card = json.loads((folder / "card.json").read_text())
-    assert card["recipe"] == "tiny" and card["license"] == "Apache-2.0"
-    agent = TinyRecipe().agent
-    checkpoint.load_weights(agent, folder)
-    assert same(dict(agent.state_dict()), weights(tmp_path / "run"))
-    with pytest.raises(ValueError, match="exists already"):
-        export.export(tmp_path / "run", "mine", out=tmp_path / "hardened")
-    data = bytearray((folder / "model.safetensors").read_bytes())
-    data[-1] ^= 1
-    (folder / "model.safetensors").write_bytes(data)
-    with pytest.raises(ValueError, match="sha256"):
-        export.verify(folder)
-
-
-def test_export_of_an_unfinished_run_says_what_is_missing(tmp_path):
-    with pytest.raises(FileNotFoundError, match="no finished run"):
-        export.export(tmp_path, "mine", out=tmp_path / "hardened")

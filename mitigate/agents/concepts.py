@@ -8,13 +8,16 @@ instructions live in one space from the start.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numba import njit
 
-from mitigate.envs.apartments.apartment import Apartment
 from mitigate.envs.apartments.furniture import CATEGORIES, ROOM_KINDS
 from mitigate.envs.apartments.palette import COLOUR_NAMES
+
+if TYPE_CHECKING:  # the simulator is not needed to run an agent
+    from mitigate.envs.apartments.apartment import Apartment
 
 # visible things, things within NEAR_METRES, colours of coloured things, kinds of the rooms seen
 CONCEPTS = (

@@ -8,13 +8,17 @@ predictor; the target here is the free space itself.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.envs.apartments.navigation import FreeSpace
 from mitigate.keys import VIEWS
+
+if TYPE_CHECKING:  # the simulator is not needed to run an agent
+    from mitigate.envs.apartments.navigation import FreeSpace
 
 ANGLES, DISTANCES = 120, 12
 STEP = 0.25  # metres a distance bin
@@ -37,7 +41,7 @@ class WaypointHead(nn.Module):
     def forward(self, features: Tensor) -> Tensor:
         x = F.gelu(self.first(features.transpose(1, 2)))
         x = x + F.gelu(self.second(x))
-        return self.out(x).transpose(1, 2).reshape(len(features), ANGLES, DISTANCES)
+        return self.out(x).transpose(1, 2).reshape(-1, ANGLES, DISTANCES)
 
 
 def free_target(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:

@@ -7,11 +7,14 @@ training phrasings, so an agent meets new sentences, not new words.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mitigate.envs.apartments.apartment import Apartment
 from mitigate.envs.apartments.furniture import CATALOGUE
+
+if TYPE_CHECKING:  # the words are used where there is no simulator
+    from mitigate.envs.apartments.apartment import Apartment
 
 TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
     "train": {
