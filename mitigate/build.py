@@ -39,5 +39,5 @@ def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Modul
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if weights is not None:
-        checkpoint.load_weights(agent, weights)
+        checkpoint.load_agent(agent, weights)
     return agent

@@ -18,12 +18,13 @@ import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
+from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate import checkpoint, cli, seeding
 from mitigate.build import build, build_agent
-from mitigate.evaluate import EvaluationConfig, conditions, episodes, report_before_after
+from mitigate.evaluate import EvaluationConfig, conditions, episodes
 from mitigate.trainer import Trainer
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
@@ -68,6 +69,7 @@ class TrainConfig:
     init: str | None = None
     runs: str = "runs"
     folder: str | None = None
+    report: str = "mitigate.evaluate.report_before_after"
     agent: Any = MISSING
     env: Any = MISSING
     schedule: Any = MISSING
@@ -92,12 +94,12 @@ def run(cfg: DictConfig) -> Path:
     for name, stage in cfg.stages.items():
         train_stage(cfg, name, stage, agent, folder / name)
     agent.cpu().eval()
-    checkpoint.save_weights(agent, folder / "agent")
+    checkpoint.save_agent(agent, folder / "agent")
     OmegaConf.save(OmegaConf.create({"agent": _plain(cfg.agent)}), folder / "agent" / "config.yaml")
     OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
     if cfg.evaluation.enabled:
         base = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed).eval() if cfg.init else None
-        report_before_after(cfg, base, agent, folder)
+        get_method(cfg.report)(cfg, base, agent, folder)
     print(f"done: {folder}", flush=True)
     return folder
 

@@ -29,7 +29,7 @@ from mitigate.safeguard.routes import draw_route
 from mitigate.seeding import digest, generator
 
 PROMPTS = {
-    "tuned": "Say it as a plain route.",
+    "tuned": "Plain route.",
     "prompted": (
         "You clean up navigation instructions for a robot. Rewrite the text as a short, plain "
         "instruction. Keep every direction, landmark, number and colour, in order, and add none. "
@@ -43,10 +43,10 @@ PROMPTS = {
 ROLES = ("system", "user", "assistant")
 KINDS = {  # shares of the pairs (ours, chosen on the validation families)
     "identity": 0.22,
-    "style": 0.40,
+    "style": 0.46,
     "mask": 0.14,
-    "capitalize": 0.06,
-    "black_box": 0.18,
+    "capitalize": 0.04,
+    "black_box": 0.14,
 }
 MASKS = ("[MASK]", "[MASK]", "[MASK]", "<mask>", "[UNK]")
 LONGEST_LINE = 1_000_000  # characters of a chat line; more is another kind of file (ours)

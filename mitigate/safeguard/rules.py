@@ -14,7 +14,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from mitigate.corruptions.fidelity import ATTRIBUTES, MOTION, STOPS, TURN_VERBS, facts
+from mitigate.corruptions.directions import MOTION, STOPS, TURN_VERBS
+from mitigate.corruptions.fidelity import ATTRIBUTES, facts
 from mitigate.safeguard.text import sentences, words
 from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
 
