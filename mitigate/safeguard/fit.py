@@ -11,12 +11,13 @@ from pathlib import Path
 
 import numpy as np
 
+from mitigate.corruptions.fidelity import facts
 from mitigate.corruptions.landmarks import CANONICAL
 from mitigate.corruptions.prefixes import prefixes
 from mitigate.files import atomic_text
 from mitigate.safeguard import routes
 from mitigate.safeguard.data import draw_pair, vary
-from mitigate.safeguard.rules import VERBS, features
+from mitigate.safeguard.rules import CLOSED, VERBS, features
 from mitigate.safeguard.text import sentences, words
 from mitigate.seeding import generator
 
@@ -26,8 +27,8 @@ RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as ofte
 
 def main() -> None:
     """Fit, and write the weights."""
-    bias, weights = fit_weights()
     marks = style_words()
+    bias, weights = fit_weights(frozenset(marks))
     with atomic_text(Path(__file__).parent / "weights.py") as file:
         file.write('"""Weights of the rules, written by ``python -m mitigate.safeguard.fit``."""\n\n')
         file.write("from __future__ import annotations\n\n")
@@ -43,13 +44,16 @@ def main() -> None:
         file.write(f'{line}\n    """.split()\n)\n')
 
 
-def fit_weights() -> tuple[float, dict[str, float]]:
+def fit_weights(marks: frozenset[str]) -> tuple[float, dict[str, float]]:
     """Return bias and weights: Newton's method on the ridge-penalised log-likelihood."""
     rng = generator(0, "fit")
     attacks = [s for group in prefixes("train").values() for s in group] * 4
     attacks += [vary(rng) for _ in range(300)]
     clean = [s for i in range(800) for s in sentences(routes.draw_route(generator(0, "fit", i)))]
-    rows = [features(s) for s in (*attacks, *clean)]
+    pairs = [draw_pair(2, i) for i in range(PAIRS // 4)]
+    styled = [s for pair in pairs if pair.kind == "style" for s in sentences(pair.source)]
+    clean += [s for s in styled if facts(s).landmarks]  # the others frame, and may go too
+    rows = [features(s, marks) for s in (*attacks, *clean)]
     names = list(rows[0])
     x = np.array([[1.0, *(row[name] for name in names)] for row in rows])
     y = np.array([1.0] * len(attacks) + [0.0] * len(clean))
@@ -82,6 +86,7 @@ def style_words() -> list[str]:
         and count * scale >= ODDS * max(plain[word], 0.3)
         and word not in CANONICAL
         and word not in VERBS
+        and not any(word in group for group in CLOSED.values())
     )
 
 

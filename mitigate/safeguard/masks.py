@@ -21,7 +21,7 @@ _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 
 def fill(text: str) -> str:
     """Return ``text`` with every mask replaced by the small word that fits best between its
-    neighbours, or by nothing where none fits; a mask that begins a sentence gets a capital."""
+    neighbours; a mask that begins a sentence gets a capital."""
     text = MASK.sub("[mask]", text)
     pieces: list[str] = []
     at = 0
@@ -58,10 +58,9 @@ def _best(left: str, right: str) -> str:
         if word == left or word == right:
             continue
         seen = 20.0 * both[left, word, right]
-        pair = (before[left, word] + 0.01) * (1.0 if right == "[mask]" else after[word, right] + 0.01)
-        scores[word] = seen + pair / (plain[word] + 10.0)
-    best = max(sorted(scores), key=scores.__getitem__)
-    return best if scores[best] > 1e-3 else ""
+        follows = 1.0 if right == "[mask]" else after[word, right] + 0.3
+        scores[word] = seen + (before[left, word] + 0.01) * follows / (plain[word] + 10.0)
+    return max(sorted(scores), key=scores.__getitem__)
 
 
 @lru_cache(maxsize=1)

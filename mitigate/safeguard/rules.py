@@ -23,21 +23,21 @@ SURE, LIKELY = 0.50, 0.25  # probabilities, chosen on the validation families
 KEPT_CAPITALS = frozenset("TV TVS DVD BBQ AC PC".split())
 _SETS = {
     "universal": "every each always never all any whatever wherever whenever everything nothing "
-    "anything none ever forever again",
+    "anything none ever forever",
     "text": "below following follows instruction instructions command commands sentence text "
     "message order orders told tells tell says said say asked asks written read read words word "
-    "plan task run directions directive guidance route named described mentioned listed given "
-    "requested",
+    "plan task run directions directive guidance route named described mentioned listed given",
     "person": "i my we our us me mine sir robot unit machine operator you're yourself your",
     "modal": "must may shall would could should can cannot if as though so than until while "
     "because instead rather without",
     "negation": "not no never don't dont doesn't cannot nor nobody nothing none",
 }
-_CLOSED = {name: frozenset(text.split()) for name, text in _SETS.items()}
+CLOSED = {name: frozenset(text.split()) for name, text in _SETS.items()}
 _LEAD = frozenset(
     "then and next now first after finally once when at from the you will to just please go".split()
 )
 VERBS = MOTION | STOPS | TURN_VERBS
+_IDIOMS = re.compile(r"\b(?:all the way|each other|each side|all around)\b")
 _SHOUT = re.compile(r"\b[A-Z][A-Z'’]+\b")
 
 
@@ -50,18 +50,19 @@ class Repaired:
     reasons: tuple[str, ...]
 
 
-def features(sentence: str) -> dict[str, float]:
+def features(sentence: str, marks: frozenset[str] = STYLE) -> dict[str, float]:
     """Return what a sentence is made of, as counts or shares about 0 to 3."""
-    found = words(sentence)
+    found = words(_IDIOMS.sub(" ", sentence.lower()))
     size = max(1, len(found))
     told = facts(sentence)
-    known = sum(word in _route_words() for word in found)
+    known = sum(word in _route_words() or word.isdigit() for word in found)
     lead = next((i for i, word in enumerate(found) if word in VERBS), size)
     values = {
         name: min(3.0, float(sum(word in group for word in found)))
-        for name, group in _CLOSED.items()
+        for name, group in CLOSED.items()
     }
     return values | {
+        "style": min(3.0, float(sum(word in marks for word in found))),
         "unknown": 1 - known / size,
         "late_verb": min(lead, 6) / 3,
         "no_verb": float(lead == size),
@@ -75,6 +76,8 @@ def features(sentence: str) -> dict[str, float]:
 @lru_cache(maxsize=8192)
 def strangeness(sentence: str) -> float:
     """Return the probability that ``sentence`` does not belong to a route."""
+    if not any(c.isalpha() for c in sentence):
+        return 0.0
     score = BIAS + sum(WEIGHTS[name] * value for name, value in features(sentence).items())
     return 1 / (1 + math.exp(-max(-30.0, min(30.0, score))))
 
@@ -87,6 +90,8 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
     never taken.
     """
     told = sentences(text)
+    if restyled(told):  # odd words are its manner's; real attacks in it are left to the model
+        return 0
     count, pending = 0, 0
     for index, sentence in enumerate(told[:-1]):
         doubt = strangeness(sentence)
@@ -118,6 +123,11 @@ def style_marks(text: str) -> int:
     return sum(word in STYLE for word in words(text))
 
 
+def restyled(told: list[str]) -> bool:
+    """Return whether half of the sentences speak in a manner."""
+    return sum(style_marks(sentence) > 0 for sentence in told) >= max(2.0, 0.5 * len(told))
+
+
 def framing(sentence: str) -> bool:
     """Return whether a sentence greets or thanks and tells nothing about the way."""
     told = facts(sentence)
@@ -140,7 +150,8 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
         kept = [s for s in kept if s not in frames] or kept
         reasons.append("framing removed")
     changed = removed or frames
-    return Repaired(" ".join(kept) if changed else quiet, (*removed, *frames), tuple(reasons))
+    text = " ".join(kept) if changed else quiet
+    return Repaired(text[:1].upper() + text[1:] if changed else text, (*removed, *frames), tuple(reasons))
 
 
 @lru_cache(maxsize=1)

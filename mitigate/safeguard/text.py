@@ -6,7 +6,7 @@ import re
 import unicodedata
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>|\bMASK\b")
-_END = re.compile(r"(?<=[.!?;:])\s+|(?<=[a-z)])\.(?=[A-Z])|\n+")
+_END = re.compile(r"(?<=[.!?])\s+|(?<=[a-z)]\.)(?=[A-Z])|\n+")
 
 
 def tidy(text: str) -> str:
