@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
 
+from mitigate import cli
 from mitigate.corruptions.fidelity import check
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
@@ -22,6 +23,9 @@ from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 30  # words rewritten at once; chosen on the validation families
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
+CHOICES = ("none", "rules", "prompted", "lora", "http://host/v1#model")
+ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"
+ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # for the language model, each instruction (ours)
 
 
@@ -101,6 +105,33 @@ class Safeguard:
         said = dict(zip(wanted, found, strict=True))
         for draft in drafts:
             draft.take(said)
+
+
+def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
+    """Return the safeguard that ``choice`` names, None for "none".
+
+    "rules"; "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``)
+    or an adapter folder; ``http://host/v1#model`` for an OpenAI-compatible endpoint. Raises
+    ValueError or FileNotFoundError.
+    """
+    if choice == "none":
+        return None
+    if choice == "rules":
+        return Safeguard(log=log)
+    if choice.startswith(("http://", "https://")):
+        from mitigate.safeguard.endpoint import ChatEndpoint
+
+        url, _, model = choice.partition("#")
+        if not model:
+            raise ValueError(f"Which model does {url} serve? Write safeguard={url}#name-of-the-model.")
+        return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
+    from mitigate.safeguard.model import LanguageModel, open_adapter
+
+    if choice == "prompted":
+        return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
+    if choice != "lora" and not Path(choice).is_dir():
+        raise ValueError(cli.unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder.")
+    return Safeguard(open_adapter(ADAPTER if choice == "lora" else choice), log=log)
 
 
 class _Draft:

@@ -14,7 +14,7 @@ import os
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -121,6 +121,17 @@ class LanguageModel(nn.Module):
             for row, answer in zip(rows, self._generate([prompts[i] for i in rows], left)):
                 answers[row] = answer
         return answers
+
+    @contextmanager
+    def untuned(self) -> Iterator[LanguageModel]:
+        """Yield the model as it was before fine-tuning: no adapter, and the prompt that explains."""
+        tuned, self.prompt = self.prompt, "prompted"
+        adapter = getattr(self.network, "disable_adapter", nullcontext)
+        try:
+            with adapter():
+                yield self
+        finally:
+            self.prompt = tuned
 
     @torch.no_grad()
     def _generate(self, prompts: list[list[int]], seconds: float | None) -> list[str | None]:
