@@ -6,6 +6,7 @@ import re
 import unicodedata
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>|\bMASK\b")
+_VARIATION = frozenset(map(chr, range(0xFE00, 0xFE10)))  # selectors that follow an emoji
 _END = re.compile(r"(?<=[.!?])\s+|(?<=[a-z)]\.)(?=[A-Z])|\n+")
 
 
@@ -14,7 +15,8 @@ def tidy(text: str) -> str:
     text = unicodedata.normalize("NFKC", text)
     kept = (" " if unicodedata.category(c) in ("Cc", "Zl", "Zp") else c for c in text)
     dropped = ("Cf", "Cs", "Co", "Cn", "So", "Sk")
-    return " ".join("".join(c for c in kept if unicodedata.category(c) not in dropped).split())
+    words_only = (c for c in kept if unicodedata.category(c) not in dropped and c not in _VARIATION)
+    return " ".join("".join(words_only).split())
 
 
 def sentences(text: str) -> list[str]:
