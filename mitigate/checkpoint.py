@@ -148,8 +148,8 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
 
 
 def save_agent(agent: nn.Module, folder: str | Path) -> None:
-    """Write what was trained into ``folder``: by the agent's own ``save``, if it has one (an adapter
-    in its own format), else as :func:`save_weights` does."""
+    """Write what was trained into ``folder``: by the agent's own ``save``, if it has one (an
+    adapter in PEFT's format), else as :func:`save_weights` does."""
     getattr(agent, "save", lambda path: save_weights(agent, path))(folder)
 
 

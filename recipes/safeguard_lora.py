@@ -25,7 +25,8 @@ class SafeguardLora(Recipe):
     agent: the language model; its adapter is trained in place.
     pairs: a step. micro_batch: pairs at once in memory.
     files: episode files of R2R or RxR whose instructions are corrupted as well as our own.
-    chats: chat files (``messages``) of further pairs. share: of a step's pairs from either, if given.
+    chats: chat files (``messages``) of further pairs.
+    share: of a step's pairs that come from either, if given.
     """
 
     def __init__(
@@ -64,7 +65,9 @@ class SafeguardLora(Recipe):
         encoded = [(index, *self.agent.encode_pair(self.pair(index))) for index in indices]
         encoded.sort(key=lambda row: len(row[1]) + len(row[2]))
         pad = self.agent.tokenizer.pad_token_id
-        groups = [encoded[i : i + self.micro_batch] for i in range(0, len(encoded), self.micro_batch)]
+        groups = [
+            encoded[i : i + self.micro_batch] for i in range(0, len(encoded), self.micro_batch)
+        ]
         return {
             "groups": [collate([(p, c) for _, p, c in group], pad) for group in groups],
             "episode_ids": [f"pair {index}" for index, _, _ in encoded],
@@ -78,12 +81,16 @@ class SafeguardLora(Recipe):
         for group in batch["groups"]:
             loss, correct = self.agent.loss(group)
             if torch.is_grad_enabled():
-                for kept, new in zip(gradients, torch.autograd.grad(loss / tokens, trained)):
+                for kept, new in zip(
+                    gradients, torch.autograd.grad(loss / tokens, trained), strict=True
+                ):
                     kept += new
             total, right = total + loss.detach().cpu() / tokens, right + correct.cpu() / tokens
         values = {"loss": total, "accuracy": right, "tokens": torch.tensor(float(tokens))}
         if torch.is_grad_enabled():  # adds 0 to the loss, and gives backward() these gradients
-            zero = sum(((p - p.detach()) * g).sum() for p, g in zip(trained, gradients))
+            zero = sum(
+                ((p - p.detach()) * g).sum() for p, g in zip(trained, gradients, strict=True)
+            )
             values["loss"] = total.to(self.agent.device) + zero
         return values
 

@@ -262,7 +262,5 @@ def _start_worker(agent: torch.nn.Module, repaired: dict[str, str], size: int) -
 def _work(job: tuple[Episode, Corruption, dict[str, Any]]) -> dict[str, Any]:
     episode, condition, label = job
     agent, simulator = _WORKER["agent"], _WORKER["simulator"]
-    measures = run_episode(
-        agent, simulator, episode, condition, label["seed"], _WORKER["repaired"]
-    )
+    measures = run_episode(agent, simulator, episode, condition, label["seed"], _WORKER["repaired"])
     return {**label, **measures}

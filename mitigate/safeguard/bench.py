@@ -1,9 +1,9 @@
 """Memory and speed of the safeguard's language model: ``python -m mitigate.safeguard.bench``.
 
-Each precision runs in a process of its own: resident memory once loaded, tokens a second of training
-(the recipe's own steps, prompts and completions counted, padding not), seconds to write 60 tokens
-greedily. The public baseline is transformers with PEFT as their guides have it: the whole batch at
-once, logits of all positions, weights in float32, no autocast.
+Each precision runs in a process of its own: resident memory once loaded, tokens a second of
+training (the recipe's own steps; prompts and completions counted, padding not), seconds to write 60
+tokens greedily. The public baseline is transformers with PEFT as their guides have it: the whole
+batch at once, logits of all positions, weights in float32, no autocast.
 """
 
 from __future__ import annotations

@@ -74,9 +74,13 @@ class ChatEndpoint:
         return [self._answer(text, ends) for text in shown]
 
     def _answer(self, text: str, ends: float | None) -> str | None:
-        name = f"{digest(self.url, self.model, PROMPTS[self.prompt], repr(self.options), text):032x}"
+        name = (
+            f"{digest(self.url, self.model, PROMPTS[self.prompt], repr(self.options), text):032x}"
+        )
         if self._cache is not None:
-            row = self._cache.execute("SELECT answer FROM answers WHERE name = ?", (name,)).fetchone()
+            row = self._cache.execute(
+                "SELECT answer FROM answers WHERE name = ?", (name,)
+            ).fetchone()
             if row is not None:
                 return row[0]
         answer = self._ask(text, ends)

@@ -30,18 +30,21 @@ def main() -> None:
     marks = style_words()
     bias, weights = fit_weights(frozenset(marks))
     with atomic_text(Path(__file__).parent / "weights.py") as file:
-        file.write('"""Weights of the rules, written by ``python -m mitigate.safeguard.fit``."""\n\n')
+        file.write(
+            '"""Weights of the rules, written by ``python -m mitigate.safeguard.fit``."""\n\n'
+        )
         file.write("from __future__ import annotations\n\n")
+        file.write("from mitigate.corruptions.words import bag\n\n")
         file.write(f"BIAS = {bias:.3f}\nWEIGHTS: dict[str, float] = {{\n")
         file.writelines(f'    "{name}": {value:.3f},\n' for name, value in weights.items())
-        file.write('}\nSTYLE = frozenset(\n    """\n')
+        file.write('}\nSTYLE = bag(\n    """\n')
         line = "   "
         for word in marks:
             if len(line) + len(word) > 96:
                 file.write(line + "\n")
                 line = "   "
             line += " " + word
-        file.write(f'{line}\n    """.split()\n)\n')
+        file.write(f'{line}\n    """\n)\n')
 
 
 def fit_weights(marks: frozenset[str]) -> tuple[float, dict[str, float]]:

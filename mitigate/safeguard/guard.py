@@ -39,9 +39,9 @@ class Rewriter(Protocol):
 class Decision:
     """What became of one instruction.
 
-    ``route``: "clean" (untouched), "rules", "model", or "fallback" (the model was asked, and none of
-    its answers was safe). ``reasons``: what was done and refused, in words. ``seconds``: its share of
-    the time.
+    ``route``: "clean" (untouched), "rules", "model", or "fallback" (the model was asked, and none
+    of its answers was safe). ``reasons``: what was done and refused, in words. ``seconds``: its
+    share of the time.
     """
 
     original: str
@@ -123,14 +123,18 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
 
         url, _, model = choice.partition("#")
         if not model:
-            raise ValueError(f"Which model does {url} serve? Write safeguard={url}#name-of-the-model.")
+            raise ValueError(
+                f"Which model does {url} serve? Write safeguard={url}#name-of-the-model."
+            )
         return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
     from mitigate.safeguard.model import LanguageModel, open_adapter
 
     if choice == "prompted":
         return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
     if choice != "lora" and not Path(choice).is_dir():
-        raise ValueError(cli.unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder.")
+        raise ValueError(
+            cli.unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder."
+        )
     return Safeguard(open_adapter(ADAPTER if choice == "lora" else choice), log=log)
 
 
@@ -227,7 +231,7 @@ def _untouched(text: str) -> bool:
 
 
 def _doubtful(text: str) -> list[str]:
-    """Return the first sentences that may be no part of the route, as the rules will ask for them."""
+    """Return the first sentences that the rules are in doubt about."""
     told = sentences(rules.lower_capitals(text))[:-1][:8]
     return [s for s in told if rules.LIKELY <= rules.strangeness(s) < rules.SURE]
 

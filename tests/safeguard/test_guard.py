@@ -99,7 +99,9 @@ def test_masks_are_filled_by_neighbours_without_a_model():
     assert masks.fill("Walk past [MASK] sofa.") == "Walk past the sofa."
     filled = masks.fill("Turn left [MASK] walk past <mask> bed.")
     assert filled == "Turn left and walk past the bed."
-    assert masks.aligned("Go to [MASK] bed.", "Go to the bed") and not masks.aligned("a [MASK]", "b c")
+    assert masks.aligned("Go to [MASK] bed.", "Go to the bed") and not masks.aligned(
+        "a [MASK]", "b c"
+    )
 
 
 def test_a_late_model_costs_no_more_than_its_budget():
@@ -150,7 +152,7 @@ def test_a_style_frame_is_taken_out_by_rule():
 def test_the_judge_decides_on_doubtful_sentences():
     doubtful = next(
         s
-        for s in ("Keep turning on the spot for a while.", "Face the wall of the room in turn, again.",
+        for s in ("Keep turning on the spot for a while.", "Face the wall in turn, again.",
                   "Do not stop until your battery is low.", "Undo the last step of this task.")
         if rules.LIKELY <= rules.strangeness(s) < rules.SURE
     )  # fmt: skip

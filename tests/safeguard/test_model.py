@@ -57,7 +57,9 @@ def test_micro_batches_give_the_gradient_of_the_whole_batch(model):
         model.zero_grad()
         values = recipe(recipe.batch(0))
         values["loss"].backward()
-        gradients.append(torch.cat([p.grad.flatten() for p in model.parameters() if p.requires_grad]))
+        gradients.append(
+            torch.cat([p.grad.flatten() for p in model.parameters() if p.requires_grad])
+        )
     torch.testing.assert_close(gradients[0], gradients[1], rtol=1e-4, atol=1e-6)
     torch.testing.assert_close(gradients[0], gradients[2], rtol=1e-4, atol=1e-6)
 
@@ -168,7 +170,12 @@ def test_a_gated_model_names_the_licence(monkeypatch):
 
 
 def test_chats_of_the_user_are_learned_from(model, tmp_path):
-    line = {"messages": [{"role": "user", "content": "PLEASE go."}, {"role": "assistant", "content": "Go."}]}
+    line = {
+        "messages": [
+            {"role": "user", "content": "PLEASE go."},
+            {"role": "assistant", "content": "Go."},
+        ]
+    }
     (tmp_path / "chats.jsonl").write_text(json.dumps(line) + "\n")
     recipe = SafeguardLora(model, chats=[str(tmp_path / "chats.jsonl")], share=1.0)
     assert recipe.pair(3) == Pair("PLEASE go.", "Go.", "chat")

@@ -48,7 +48,7 @@ def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):
 class Listener(torch.nn.Module):
     """Remembers the instructions and stops at once."""
 
-    heard: list[str] = []  # noqa: RUF012 - shared on purpose
+    heard: list[str] = []  # shared on purpose
 
     def reset(self, instruction):
         self.heard.append(instruction)
