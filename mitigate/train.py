@@ -19,12 +19,13 @@ import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
+from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate import checkpoint, cli, seeding
 from mitigate.build import build, build_agent, settings_of
-from mitigate.evaluate import EvaluationConfig, conditions, episodes, report_before_after
+from mitigate.evaluate import EvaluationConfig, conditions, episodes
 from mitigate.files import atomic_text
 from mitigate.trainer import Trainer
 
@@ -71,6 +72,7 @@ class TrainConfig:
     init: str | None = None
     runs: str = "runs"
     folder: str | None = None
+    report: str = "mitigate.evaluate.report_before_after"
     agent: Any = MISSING
     env: Any = MISSING
     schedule: Any = MISSING
@@ -96,7 +98,7 @@ def run(cfg: DictConfig) -> Path:
         if stage is not None:
             train_stage(cfg, name, stage, agent, folder / name)
     agent.cpu().eval()
-    checkpoint.save_weights(agent, folder / "agent")
+    checkpoint.save_agent(agent, folder / "agent")
     OmegaConf.save(OmegaConf.create({"agent": _plain(cfg.agent)}), folder / "agent" / "config.yaml")
     OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
     if cfg.evaluation.enabled:
@@ -104,7 +106,7 @@ def run(cfg: DictConfig) -> Path:
         if cfg.init:
             node = settings_of(cfg.agent, cfg.init)
             base = build_agent(node, weights=cfg.init, seed=cfg.seed).eval()
-        report_before_after(cfg, base, agent, folder)
+        get_method(cfg.report)(cfg, base, agent, folder)
     print(f"done: {folder}", flush=True)
     return folder
 

@@ -6,6 +6,7 @@ import pytest
 
 from mitigate import checkpoint, cli, train
 from mitigate.build import build
+from tests.safeguard.conftest import write_tiny_model
 
 RECIPES = sorted(path.stem for path in (cli.CONF / "recipe").rglob("*.yaml"))
 
@@ -14,7 +15,9 @@ RECIPES = sorted(path.stem for path in (cli.CONF / "recipe").rglob("*.yaml"))
 def test_every_recipe_trains_two_steps(tmp_path, name):
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
     cfg = cli.load_config("train", options)
+    if "base" in cfg.agent:  # a language model: the real one takes half a minute to load
+        cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
     folder = train.run(cfg)
     for stage in cfg.stages:
         assert checkpoint.checkpoints(folder / stage)[-1].name == "step-00000002.pt"
-    checkpoint.load_weights(build(cfg.agent), folder / "agent")
+    checkpoint.load_agent(build(cfg.agent), folder / "agent")

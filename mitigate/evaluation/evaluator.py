@@ -32,6 +32,7 @@ from mitigate.envs.apartments.tasks import SUCCESS_METRES, from_vlnce
 from mitigate.envs.episodes import Episode
 from mitigate.evaluation import metrics, rows
 from mitigate.keys import DEPTH, POSE, RGB
+from mitigate.safeguard.guard import Safeguard
 
 _FLUSH = 20  # rows between two writes
 
@@ -66,20 +67,37 @@ class LazyObservation(Mapping[str, np.ndarray]):
 
 
 def run_episode(
-    agent: Agent, simulator: Simulator, episode: Episode, corruption: Corruption, seed: int
+    agent: Agent,
+    simulator: Simulator,
+    episode: Episode,
+    corruption: Corruption,
+    seed: int,
+    repaired: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
-    """Run one episode to STOP or the step limit and return its measures."""
+    """Run one episode to STOP or the step limit and return its measures.
+
+    ``repaired``: what a safeguard makes of instructions; one that is not in it stays as it is.
+    """
     simulator.reset(episode)
-    with _instructed(agent, episode, corruption, seed):
+    with _instructed(agent, episode, corruption, seed, repaired or {}):
         return _walk(agent, simulator, episode, corruption, seed)
+
+
+def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
+    """Return the words of ``episode`` as ``corruption`` leaves them."""
+    text = episode.instruction.text
+    if corruption.modality != "instruction" or corruption.name == "white_box":
+        return text
+    key = Key(seed, episode.episode_id)
+    return corrupt_instruction(text, corruption.name, corruption.severity, key)
 
 
 @contextmanager
 def _instructed(
-    agent: Agent, episode: Episode, corruption: Corruption, seed: int
+    agent: Agent, episode: Episode, corruption: Corruption, seed: int, repaired: Mapping[str, str]
 ) -> Iterator[None]:
     """Reset the agent with the instruction, and the prompt, that the corruption leaves it."""
-    text, key = episode.instruction.text, Key(seed, episode.episode_id)
+    text, key = instruction(episode, corruption, seed), Key(seed, episode.episode_id)
     prompt = getattr(agent, "system_prompt", None)
     try:
         if corruption.name == "white_box":
@@ -87,9 +105,7 @@ def _instructed(
             if isinstance(injected, NotApplicable):
                 raise ValueError(f"{corruption.name!r} is not applicable: {injected.reason}.")
             agent.system_prompt = injected  # type: ignore[attr-defined]
-        elif corruption.modality == "instruction":
-            text = corrupt_instruction(text, corruption.name, corruption.severity, key)
-        agent.reset(text)
+        agent.reset(repaired.get(text, text))
         yield
     finally:
         if prompt is not None:
@@ -144,13 +160,15 @@ def evaluate(
     seed: int = 0,
     workers: int = 1,
     size: int = 64,
+    safeguard: Safeguard | None = None,
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
     Args: conditions: corruptions to meet, ``CLEAN`` among them for PRS; "white_box" is left out
     with a warning if the agent has no ``system_prompt``. name: the table's column.
     split: what the rows say. seed: of the corruptions' keys. workers: processes; the rows do not
-    depend on it. size: pixels of a view.
+    depend on it. size: pixels of a view. safeguard: repairs each instruction, once, before the
+    agent hears it; ``name`` should say so.
     """
     conditions = _applicable(agent, conditions, name)
     known = {rows.identity(row) for row in rows.read(out)} if Path(out).exists() else set()
@@ -177,7 +195,10 @@ def evaluate(
         for condition in conditions
     ]
     todo = [job for job in jobs if rows.identity(job[2]) not in known]
-    _run_all(agent, todo, Path(out), workers, size, f"{name} {split}")
+    heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
+    decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
+    repaired = {decision.original: decision.text for decision in decided}
+    _run_all(agent, todo, repaired, Path(out), workers, size, f"{name} {split}")
     wanted = {rows.identity(job[2]) for job in jobs}
     return [row for row in rows.read(out) if rows.identity(row) in wanted]
 
@@ -197,16 +218,22 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
 
 
 def _run_all(
-    agent: torch.nn.Module, jobs: list[tuple], out: Path, workers: int, size: int, title: str
+    agent: torch.nn.Module,
+    jobs: list[tuple],
+    repaired: dict[str, str],
+    out: Path,
+    workers: int,
+    size: int,
+    title: str,
 ) -> None:
     """Run the jobs in order of episode and append their rows to ``out`` as they come."""
     if workers > 1 and len(jobs) > workers:
         context = multiprocessing.get_context("spawn")
-        with context.Pool(workers, _start_worker, (agent, size)) as pool:
+        with context.Pool(workers, _start_worker, (agent, repaired, size)) as pool:
             _collect(pool.imap(_work, jobs, chunksize=13), len(jobs), out, title)
     elif jobs:
         threads = torch.get_num_threads()
-        _start_worker(agent, size)
+        _start_worker(agent, repaired, size)
         _collect(map(_work, jobs), len(jobs), out, title)
         torch.set_num_threads(threads)
 
@@ -227,14 +254,13 @@ def _collect(results: Any, total: int, out: Path, title: str) -> None:
 _WORKER: dict[str, Any] = {}
 
 
-def _start_worker(agent: torch.nn.Module, size: int) -> None:
+def _start_worker(agent: torch.nn.Module, repaired: dict[str, str], size: int) -> None:
     torch.set_num_threads(1)  # sums in the same order in any number of processes
-    _WORKER.update(agent=agent.eval(), simulator=Simulator(size))
+    _WORKER.update(agent=agent.eval(), repaired=repaired, simulator=Simulator(size))
 
 
 def _work(job: tuple[Episode, Corruption, dict[str, Any]]) -> dict[str, Any]:
     episode, condition, label = job
-    measures = run_episode(
-        _WORKER["agent"], _WORKER["simulator"], episode, condition, label["seed"]
-    )
+    agent, simulator = _WORKER["agent"], _WORKER["simulator"]
+    measures = run_episode(agent, simulator, episode, condition, label["seed"], _WORKER["repaired"])
     return {**label, **measures}

@@ -1,0 +1,145 @@
+"""A prompted safeguard behind any OpenAI-compatible chat endpoint, with a cache on disk.
+
+``POST <url>/chat/completions`` with ``model`` and ``messages``; the answer's first choice counts.
+The key comes from an environment variable and is never written anywhere.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sqlite3
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from tqdm import tqdm
+
+from mitigate.safeguard.data import PROMPTS, prompt_messages
+from mitigate.seeding import digest
+
+RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
+LARGEST = 1 << 20  # bytes of an answer that are read (ours)
+
+
+class ChatEndpoint:
+    """Rewrites texts by asking a chat model over HTTP.
+
+    Args:
+        url: up to and without ``/chat/completions``, such as ``http://localhost:8000/v1``.
+        model: as the endpoint names it.
+        prompt: which of ``PROMPTS`` goes before the text.
+        key: environment variable that holds the API key; unset means none is sent.
+        timeout: seconds for one request. retries: further tries after a failure that may pass.
+        pause: seconds before the first retry, doubled before each next one.
+        cache: SQLite file of answers by (text, model, prompt); None keeps none.
+        options: further fields of the request, such as ``{"temperature": 0}``.
+
+    Raises:
+        ValueError: for a URL that is none.
+    """
+
+    def __init__(
+        self,
+        url: str,
+        model: str,
+        *,
+        prompt: str = "prompted",
+        key: str = "OPENAI_API_KEY",
+        timeout: float = 60.0,
+        retries: int = 3,
+        pause: float = 1.0,
+        cache: str | Path | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> None:
+        if not url.startswith(("http://", "https://")):
+            raise ValueError(
+                f"The endpoint {url!r} is no URL: write http:// or https:// and the path up to "
+                "/chat/completions, such as http://localhost:8000/v1."
+            )
+        self.url, self.model, self.prompt, self.key = url.rstrip("/"), model, prompt, key
+        self.timeout, self.retries, self.pause = timeout, retries, pause
+        self.options = options or {}
+        self.failures: list[str] = []
+        self._cache = None if cache is None else _open_cache(Path(cache))
+
+    def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
+        """Return the answer to each text; None where the endpoint gave none that can be used, or
+        where ``seconds`` for all were over. Why is said in ``failures``."""
+        ends = None if seconds is None else time.monotonic() + seconds
+        shown = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
+        return [self._answer(text, ends) for text in shown]
+
+    def _answer(self, text: str, ends: float | None) -> str | None:
+        name = (
+            f"{digest(self.url, self.model, PROMPTS[self.prompt], repr(self.options), text):032x}"
+        )
+        if self._cache is not None:
+            row = self._cache.execute(
+                "SELECT answer FROM answers WHERE name = ?", (name,)
+            ).fetchone()
+            if row is not None:
+                return row[0]
+        answer = self._ask(text, ends)
+        if self._cache is not None and answer is not None:
+            with self._cache:
+                self._cache.execute("INSERT OR REPLACE INTO answers VALUES (?, ?)", (name, answer))
+        return answer
+
+    def _ask(self, text: str, ends: float | None) -> str | None:
+        problem = "out of time"
+        for attempt in range(self.retries + 1):
+            left = self.timeout if ends is None else min(self.timeout, ends - time.monotonic())
+            if left <= 0:
+                break
+            try:
+                return _content(self._post(text, left))
+            except urllib.error.HTTPError as error:
+                problem = f"HTTP {error.code} {error.reason}"
+                if error.code not in RETRIED:
+                    break
+            except (OSError, ValueError) as error:  # no connection, time-out, no JSON
+                problem = f"{type(error).__name__}: {error}"
+            wait = self.pause * 2**attempt
+            if attempt == self.retries or (ends is not None and time.monotonic() + wait > ends):
+                break
+            time.sleep(wait)
+        self.failures.append(f"{self.url}: {problem}")
+        return None
+
+    def _post(self, text: str, timeout: float) -> Any:
+        body = {"model": self.model, "messages": prompt_messages(text, self.prompt), **self.options}
+        headers = {"Content-Type": "application/json"}
+        if os.environ.get(self.key):
+            headers["Authorization"] = f"Bearer {os.environ[self.key]}"
+        request = urllib.request.Request(
+            f"{self.url}/chat/completions", json.dumps(body).encode(), headers
+        )
+        with urllib.request.urlopen(request, timeout=timeout) as reply:
+            return json.loads(reply.read(LARGEST))
+
+
+def _content(reply: Any) -> str:
+    """Return the text of the first choice; raises ValueError if the reply has another shape."""
+    try:
+        content = reply["choices"][0]["message"]["content"]
+    except (KeyError, IndexError, TypeError) as error:
+        raise ValueError(f"no choices[0].message.content in {json.dumps(reply)[:120]}") from error
+    if not isinstance(content, str):
+        raise ValueError(f"the answer is no text: {content!r:.120}")
+    return content.strip()
+
+
+def _open_cache(path: Path) -> sqlite3.Connection:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        cache = sqlite3.connect(path)
+        cache.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer TEXT)")
+    except sqlite3.DatabaseError as error:
+        raise ValueError(
+            f"{path} is no cache of endpoint answers ({error}): name another file, or delete it."
+        ) from error
+    return cache

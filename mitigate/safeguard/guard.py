@@ -1,0 +1,245 @@
+"""The safeguard in front of an agent: repairs an instruction once, and never makes it worse.
+
+What looks plain passes untouched. Rules take out what is surely no part of a route; a language
+model, if there is one, says the rest again, passage by passage, and each answer is taken only if
+directions and landmarks survive and nothing new appears. Otherwise the passage stays as it was.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Protocol
+
+from mitigate import cli
+from mitigate.corruptions.fidelity import check
+from mitigate.safeguard import masks, rules
+from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
+
+MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
+PASSAGE = 30  # words rewritten at once; chosen on the validation families
+TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
+CHOICES = ("none", "rules", "prompted", "lora", "http://host/v1#model")
+ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"
+ENDPOINT_SECONDS = 120.0
+SECONDS = 20.0  # for the language model, each instruction (ours)
+
+
+class Rewriter(Protocol):
+    """A language model, local or behind an endpoint."""
+
+    def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]: ...
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What became of one instruction.
+
+    ``route``: "clean" (untouched), "rules", "model", or "fallback" (the model was asked, and none
+    of its answers was safe). ``reasons``: what was done and refused, in words. ``seconds``: its
+    share of the time.
+    """
+
+    original: str
+    text: str
+    route: str
+    reasons: tuple[str, ...]
+    seconds: float
+
+
+class Safeguard:
+    """Turns corrupted instructions into plain ones; the same text always gets the same answer.
+
+    Args:
+        rewriter: a language model; None works by rules alone.
+        seconds: time budget for the model, each instruction; what is late falls back.
+        log: JSON-lines file that every new decision is added to.
+    """
+
+    def __init__(
+        self,
+        rewriter: Rewriter | None = None,
+        *,
+        seconds: float = SECONDS,
+        log: str | Path | None = None,
+    ) -> None:
+        self.rewriter, self.seconds = rewriter, seconds
+        self.log = None if log is None else Path(log)
+        self._known: dict[str, Decision] = {}
+
+    def canonicalise(self, text: str) -> Decision:
+        """Return the decision on one instruction."""
+        return self.canonicalise_all([text])[0]
+
+    def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:
+        """Return the decision on each text; the model sees the passages of all in batches."""
+        texts = list(texts)
+        fresh = [text for text in dict.fromkeys(texts) if text not in self._known]
+        began = time.monotonic()
+        drafts = [_Draft(text) for text in fresh]
+        if self.rewriter is not None and drafts:
+            self._ask(drafts)
+        each = (time.monotonic() - began) / max(1, len(fresh))
+        decided = [draft.decision(each) for draft in drafts]
+        self._known.update((decision.original, decision) for decision in decided)
+        if self.log is not None and decided:
+            _append(self.log, decided)
+        return [self._known[text] for text in texts]
+
+    def _ask(self, drafts: list[_Draft]) -> None:
+        assert self.rewriter is not None
+        budget = self.seconds * len(drafts)
+        began = time.monotonic()
+        doubtful = list(dict.fromkeys(s for draft in drafts for s in draft.doubtful))
+        answers = self.rewriter.rewrite(doubtful, budget) if doubtful else []
+        empty = {s for s, answer in zip(doubtful, answers, strict=True) if answer == ""}
+        for draft in drafts:
+            draft.repair(empty)
+        wanted = list(dict.fromkeys(p for draft in drafts for p in draft.wanted))
+        left = max(0.0, budget - (time.monotonic() - began))
+        found = self.rewriter.rewrite(wanted, left) if wanted else []
+        said = dict(zip(wanted, found, strict=True))
+        for draft in drafts:
+            draft.take(said)
+
+
+def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
+    """Return the safeguard that ``choice`` names, None for "none".
+
+    "rules"; "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``)
+    or an adapter folder; ``http://host/v1#model`` for an OpenAI-compatible endpoint. Raises
+    ValueError or FileNotFoundError.
+    """
+    if choice == "none":
+        return None
+    if choice == "rules":
+        return Safeguard(log=log)
+    if choice.startswith(("http://", "https://")):
+        from mitigate.safeguard.endpoint import ChatEndpoint
+
+        url, _, model = choice.partition("#")
+        if not model:
+            raise ValueError(
+                f"Which model does {url} serve? Write safeguard={url}#name-of-the-model."
+            )
+        return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
+    from mitigate.safeguard.model import LanguageModel, open_adapter
+
+    if choice == "prompted":
+        return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
+    if choice != "lora" and not Path(choice).is_dir():
+        raise ValueError(
+            cli.unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder."
+        )
+    return Safeguard(open_adapter(ADAPTER if choice == "lora" else choice), log=log)
+
+
+class _Draft:
+    """One instruction on its way: what the rules made of it, its passages, the reasons so far."""
+
+    def __init__(self, original: str) -> None:
+        self.original = original
+        self.tidied = tidy(original)
+        self.reasons: list[str] = []
+        self.asked = self.taken = 0
+        self.plain = not _readable(self.tidied) or _untouched(self.tidied)
+        self.doubtful = [] if self.plain else _doubtful(self.tidied)
+        self.repair(set())
+
+    def repair(self, empty: set[str]) -> None:
+        """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
+        if self.plain:
+            self.repaired, self.passages = self.original, [self.original]
+            self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
+            return
+        done = rules.repair(self.tidied, empty.__contains__)
+        self.repaired, self.reasons = done.text, list(done.reasons)
+        if len(words(self.repaired)) > TOO_LONG:
+            self.passages = [self.repaired]
+            self.reasons.append(f"over {TOO_LONG} words: rules alone")
+        else:
+            self.passages = passages(self.repaired, PASSAGE)
+
+    @property
+    def wanted(self) -> list[str]:
+        """The passages that the model is to say again."""
+        if self.plain or len(words(self.repaired)) > TOO_LONG:
+            return []
+        styled = rules.style_marks(self.tidied) >= MARKS
+        return [p for p in self.passages if MASK.search(p) or styled]
+
+    def take(self, said: dict[str, str | None]) -> None:
+        """Put safe answers in the place of their passages."""
+        wanted = set(self.wanted)
+        for index, passage in enumerate(self.passages):
+            if passage not in wanted:
+                continue
+            self.asked += 1
+            problem = refusal(passage, said.get(passage))
+            if problem:
+                self.reasons.append(f"kept {passage[:40]!r}: {problem}")
+            else:
+                self.passages[index] = said[passage] or ""
+                self.taken += 1
+
+    def decision(self, seconds: float) -> Decision:
+        text = " ".join(passage for passage in self.passages if passage).strip() or self.repaired
+        if not self.plain:
+            if MASK.search(text):
+                text = masks.fill(text)
+                self.reasons.append("masks filled by rule")
+            if sentences(text) == sentences(self.original):
+                text = self.original
+            elif text != self.original and not self.reasons:
+                self.reasons.append("rewritten" if self.taken else "characters tidied")
+        route = "model" if self.taken else "fallback" if self.asked else "rules"
+        route = "clean" if text == self.original and not self.asked else route
+        return Decision(self.original, text, route, tuple(self.reasons), seconds)
+
+
+def refusal(passage: str, answer: str | None) -> str:
+    """Return why ``answer`` may not stand for ``passage``; empty if it may."""
+    if answer is None:
+        return "no answer in time"
+    if MASK.search(passage):
+        return "" if masks.aligned(passage, answer) else "other words than the masks changed"
+    if len(words(answer)) > len(words(passage)) + 3:
+        return "longer than what it replaces"
+    problems = check(passage, answer)
+    return problems[0] if problems else ""
+
+
+def _readable(text: str) -> bool:
+    """Return whether there are words, mostly in Latin letters."""
+    letters = [c for c in text if c.isalpha()]
+    return bool(letters) and sum(c.isascii() for c in letters) > 0.5 * len(letters)
+
+
+def _untouched(text: str) -> bool:
+    """Return whether ``text`` shows no mark of any corruption."""
+    return (
+        not MASK.search(text)
+        and rules.lower_capitals(text) == text
+        and rules.style_marks(text) < MARKS
+        and not _doubtful(text)
+        and not rules.injected(text)
+    )
+
+
+def _doubtful(text: str) -> list[str]:
+    """Return the first sentences that the rules are in doubt about."""
+    told = sentences(rules.lower_capitals(text))[:-1][:8]
+    return [s for s in told if rules.LIKELY <= rules.strangeness(s) < rules.SURE]
+
+
+def _append(path: Path, decisions: list[Decision]) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    lines = "".join(json.dumps(asdict(d), ensure_ascii=False) + "\n" for d in decisions)
+    with open(path, "a", encoding="utf-8") as file:
+        file.write(lines)
+        file.flush()
+        os.fsync(file.fileno())

@@ -1,0 +1,165 @@
+"""Repairs that need no language model: odd capitals, sentences that do not belong to a route.
+
+A sentence is judged by what it is made of, not by which attack it is: a route's sentence moves
+someone past things; an attack speaks of orders, of all cases, of the text itself. The weights come
+from ``python -m mitigate.safeguard.fit``, which sees the train split of the attacks and our own
+routes, nothing else.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+
+from mitigate.corruptions.directions import MOTION, STOPS, TURN_VERBS
+from mitigate.corruptions.fidelity import ATTRIBUTES, facts
+from mitigate.corruptions.words import bag
+from mitigate.safeguard.text import sentences, words
+from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
+
+SURE, LIKELY = 0.50, 0.25  # probabilities, chosen on the validation families
+KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
+_SETS = {
+    "universal": "every each always never all any whatever wherever whenever everything nothing "
+    "anything none ever forever",
+    "text": "below following follows instruction instructions command commands sentence text "
+    "message order orders told tells tell says said say asked asks written read read words word "
+    "plan task run directions directive guidance route named described mentioned listed given",
+    "person": "i my we our us me mine sir robot unit machine operator you're yourself your",
+    "modal": "must may shall would could should can cannot if as though so than until while "
+    "because instead rather without",
+    "negation": "not no never don't dont doesn't cannot nor nobody nothing none",
+}
+CLOSED = {name: bag(text) for name, text in _SETS.items()}
+VERBS = MOTION | STOPS | TURN_VERBS
+_IDIOMS = re.compile(r"\b(?:all the way|each other|each side|all around)\b")
+_SHOUT = re.compile(r"\b[A-Z][A-Z'’]+\b")
+
+
+@dataclass(frozen=True)
+class Repaired:
+    """``text`` after the rules, the sentences they took out, and what they did, in words."""
+
+    text: str
+    removed: tuple[str, ...]
+    reasons: tuple[str, ...]
+
+
+def features(sentence: str, marks: frozenset[str] = STYLE) -> dict[str, float]:
+    """Return what a sentence is made of, as counts or shares about 0 to 3."""
+    found = words(_IDIOMS.sub(" ", sentence.lower()))
+    size = max(1, len(found))
+    told = facts(sentence)
+    known = sum(word in _route_words() or word.isdigit() for word in found)
+    lead = next((i for i, word in enumerate(found) if word in VERBS), size)
+    values = {
+        name: min(3.0, float(sum(word in group for word in found)))
+        for name, group in CLOSED.items()
+    }
+    return values | {
+        "style": min(3.0, float(sum(word in marks for word in found))),
+        "unknown": 1 - known / size,
+        "late_verb": min(lead, 6) / 3,
+        "no_verb": float(lead == size),
+        "landmarks": min(3.0, float(len(told.landmarks))),
+        "no_landmark": float(not told.landmarks),
+        "directions": min(2.0, float(len(told.directions))),
+        "commas": min(3.0, float(sentence.count(",") + sentence.count(";"))) / 3,
+    }
+
+
+@lru_cache(maxsize=8192)
+def strangeness(sentence: str) -> float:
+    """Return the probability that ``sentence`` does not belong to a route."""
+    if not any(c.isalpha() for c in sentence):
+        return 0.0
+    score = BIAS + sum(WEIGHTS[name] * value for name, value in features(sentence).items())
+    return 1 / (1 + math.exp(-max(-30.0, min(30.0, score))))
+
+
+def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
+    """Return how many of the first sentences of ``text`` are no part of the route.
+
+    An attack stands in front, whole: what comes before a sure one goes too, if it is likely.
+    ``judge`` (a language model) decides on sentences that are likely but not sure. Never
+    are all sentences taken.
+    """
+    told = sentences(text)
+    if restyled(told):  # odd words are its manner's; real attacks in it are left to the model
+        return 0
+    count, pending = 0, 0
+    for index, sentence in enumerate(told[:-1]):
+        doubt = strangeness(sentence)
+        if doubt >= SURE or (doubt >= LIKELY and judge is not None and judge(sentence)):
+            count, pending = index + 1, 0
+        elif doubt < LIKELY:
+            pending += 1
+            if pending > 1 or count == 0 and index > 0:
+                break
+    return count
+
+
+def lower_capitals(text: str) -> str:
+    """Return ``text`` with shouted words in lower case, but for a sentence's first letter."""
+
+    def quiet(match: re.Match[str]) -> str:
+        word = match.group()
+        if word in KEPT_CAPITALS:
+            return word
+        before = text[: match.start()].rstrip()
+        first = not before or before[-1] in ".!?"
+        return word.capitalize() if first else word.lower()
+
+    return _SHOUT.sub(quiet, text)
+
+
+def style_marks(text: str) -> int:
+    """Return how many words of ``text`` belong to a manner of speaking, not to plain routes."""
+    return sum(word in STYLE for word in words(text))
+
+
+def restyled(told: list[str]) -> bool:
+    """Return whether half of the sentences speak in a manner."""
+    return sum(style_marks(sentence) > 0 for sentence in told) >= max(2.0, 0.5 * len(told))
+
+
+def framing(sentence: str) -> bool:
+    """Return whether a sentence greets or thanks and tells nothing about the way."""
+    told = facts(sentence)
+    return not told.landmarks and not told.directions and style_marks(sentence) > 0
+
+
+def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
+    """Return ``text`` with capitals lowered and foreign sentences taken out."""
+    reasons = []
+    quiet = lower_capitals(text)
+    if quiet != text:
+        reasons.append("capitals lowered")
+    told = sentences(quiet)
+    count = injected(quiet, judge)
+    removed, kept = told[:count], told[count:]
+    if removed:
+        reasons.append(f"{count} injected sentence{'s' * (count > 1)} removed")
+    frames = [s for s in (kept[0], kept[-1]) if len(kept) > 1 and framing(s)] if kept else []
+    if frames:
+        kept = [s for s in kept if s not in frames] or kept
+        reasons.append("framing removed")
+    changed = removed or frames
+    text = " ".join(kept) if changed else quiet
+    return Repaired(
+        text[:1].upper() + text[1:] if changed else text, (*removed, *frames), tuple(reasons)
+    )
+
+
+@lru_cache(maxsize=1)
+def _route_words() -> frozenset[str]:
+    from mitigate.corruptions.landmarks import CANONICAL
+    from mitigate.safeguard import routes
+
+    text = " ".join((routes.OPEN, routes.MIDDLE, routes.CLOSE, *routes.ASIDES, *routes.ROOMS,
+        *routes.THINGS, *routes.LOOKS, *routes.STAIRS, *routes.DOORS, *routes.PLACES))  # fmt: skip
+    plain = re.sub(r"\{\w+\}", " ", text)
+    return frozenset(words(plain)) | VERBS | ATTRIBUTES | frozenset(CANONICAL)

@@ -1,0 +1,100 @@
+"""LoRA fine-tuning of the safeguard's language model: corrupted text in, plain text out.
+
+Loss = cross-entropy on the completion alone, averaged over its tokens in the whole step. A step's
+pairs are grouped by length into micro-batches, whose gradients are added up, so that memory is that
+of one micro-batch.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from mitigate.recipe import Recipe
+from mitigate.safeguard.data import Pair, draw_pair, read_chats, read_texts
+from mitigate.safeguard.model import LanguageModel, collate
+from mitigate.seeding import generator
+
+_HELD = 10**9  # pairs from here on are for evaluation
+
+
+class SafeguardLora(Recipe):
+    """Args:
+    agent: the language model; its adapter is trained in place.
+    pairs: a step. micro_batch: pairs at once in memory.
+    files: episode files of R2R or RxR whose instructions are corrupted as well as our own.
+    chats: chat files (``messages``) of further pairs.
+    share: of a step's pairs that come from either, if given.
+    """
+
+    def __init__(
+        self,
+        agent: LanguageModel,
+        pairs: int = 16,
+        micro_batch: int = 4,
+        files: list[str] | None = None,
+        chats: list[str] | None = None,
+        share: float = 0.5,
+        seed: int = 0,
+    ) -> None:
+        super().__init__()
+        if not 1 <= micro_batch <= pairs:
+            raise ValueError(
+                f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.pairs ({pairs})."
+            )
+        self.agent, self.pairs, self.micro_batch = agent, pairs, micro_batch
+        self.texts = read_texts(files or [])
+        self.chats = [pair for path in chats or [] for pair in read_chats(path)]
+        self.share, self.seed = share, seed
+        for name, parameter in agent.named_parameters():
+            parameter.requires_grad_("lora_" in name)
+
+    def pair(self, index: int) -> Pair:
+        """Return the pair ``index``, a function of the seed."""
+        rng = generator(self.seed, "chat", index)
+        if self.chats and rng.random() < self.share:
+            return self.chats[int(rng.integers(len(self.chats)))]
+        return draw_pair(self.seed, index, self.texts, self.share)
+
+    def batch(self, step: int) -> dict[str, Any]:
+        return self._batch(range(step * self.pairs, (step + 1) * self.pairs))
+
+    def _batch(self, indices: range) -> dict[str, Any]:
+        encoded = [(index, *self.agent.encode_pair(self.pair(index))) for index in indices]
+        encoded.sort(key=lambda row: len(row[1]) + len(row[2]))
+        pad = self.agent.tokenizer.pad_token_id
+        groups = [
+            encoded[i : i + self.micro_batch] for i in range(0, len(encoded), self.micro_batch)
+        ]
+        return {
+            "groups": [collate([(p, c) for _, p, c in group], pad) for group in groups],
+            "episode_ids": [f"pair {index}" for index, _, _ in encoded],
+        }
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        trained = [p for p in self.agent.parameters() if p.requires_grad]
+        tokens = sum(int(group["completion"].sum()) for group in batch["groups"])
+        gradients = [torch.zeros_like(p) for p in trained]
+        total, right = torch.zeros(()), torch.zeros(())
+        for group in batch["groups"]:
+            loss, correct = self.agent.loss(group)
+            if torch.is_grad_enabled():
+                for kept, new in zip(
+                    gradients, torch.autograd.grad(loss / tokens, trained), strict=True
+                ):
+                    kept += new
+            total, right = total + loss.detach().cpu() / tokens, right + correct.cpu() / tokens
+        values = {"loss": total, "accuracy": right, "tokens": torch.tensor(float(tokens))}
+        if torch.is_grad_enabled():  # adds 0 to the loss, and gives backward() these gradients
+            zero = sum(
+                ((p - p.detach()) * g).sum() for p, g in zip(trained, gradients, strict=True)
+            )
+            values["loss"] = total.to(self.agent.device) + zero
+        return values
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """Loss and accuracy on pairs that training never draws."""
+        values = self(self._batch(range(_HELD, _HELD + 4 * self.pairs)))
+        return {name: float(values[name]) for name in ("loss", "accuracy")}

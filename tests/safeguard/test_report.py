@@ -1,0 +1,78 @@
+"""The text report, and the safeguard in front of an agent in the evaluation."""
+
+from __future__ import annotations
+
+import json
+
+import torch
+
+from mitigate import cli, evaluate, train
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation import evaluator
+from mitigate.safeguard import report
+from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.model import LanguageModel
+from tests.safeguard.conftest import LORA
+
+TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Stop by the piano."]
+
+
+def test_every_text_meets_every_family_and_rules_repair_some():
+    hurt = report.corrupted(TEXTS, report.FAMILIES, 1.0, "validation")
+    assert len(hurt) == len(TEXTS) * len(report.FAMILIES)
+    assert all(r.injected for r in hurt if r.family == "black_box")
+    loud = [r for r in report.repaired(hurt, report.choose("rules")) if r.family == "capitalize"]
+    assert [r.repaired for r in loud] == TEXTS and all(r.heard != r.clean for r in loud)
+
+
+def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
+    (tmp_path / "texts.txt").write_text("# two\n" + "\n".join(TEXTS) + "\n")
+    given = ["none", "rules", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
+    report.main([*given, "--out", str(tmp_path)])
+    shown = capsys.readouterr().out
+    assert "| rules |" in shown and shown.count("- meant:") == 3
+    lines = [json.loads(line) for line in (tmp_path / "repairs.jsonl").open()]
+    assert len(lines) == 2 * len(TEXTS) * len(report.FAMILIES)
+
+
+def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):
+    torch.manual_seed(0)
+    cfg = cli.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"])
+    assert cfg.report == "mitigate.safeguard.report.before_after" and train.TrainConfig.report
+    report.before_after(cfg, None, LanguageModel(tiny_base, "fp32", LORA), tmp_path)
+    shown = capsys.readouterr().out
+    for name in ("none", "rules", "before, alone", "after, alone", "after, guarded"):
+        assert f"## {name}" in shown
+
+
+class Listener(torch.nn.Module):
+    """Remembers the instructions and stops at once."""
+
+    heard: list[str] = []  # shared on purpose
+
+    def reset(self, instruction):
+        self.heard.append(instruction)
+
+    def act(self, observation):
+        return 0
+
+
+def test_the_agent_hears_the_repaired_instruction_and_the_rows_say_so(tmp_path):
+    cfg = cli.load_config("evaluate")
+    episodes = evaluate.episodes(cfg.env, "val_unseen", 2)
+    Listener.heard.clear()
+    rows = evaluator.evaluate(
+        Listener(),
+        episodes,
+        [CLEAN, Corruption("capitalize", 1.0), Corruption("black_box", 0.1)],
+        name="listener+rules",
+        out=tmp_path / "rows.jsonl",
+        split="val_unseen",
+        safeguard=Safeguard(log=tmp_path / "log.jsonl"),
+    )
+    assert {row["name"] for row in rows} == {"listener+rules"} and len(rows) == 6
+    for index, episode in enumerate(episodes):
+        clean, quiet, _ = Listener.heard[3 * index : 3 * index + 3]
+        assert clean == episode.instruction.text and quiet.lower() == clean.lower()
+        assert quiet == clean
+    assert len((tmp_path / "log.jsonl").read_text().splitlines()) == 6
