@@ -61,9 +61,9 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
         "Milliseconds a frame (12x64x64: a panorama of 12 views). **Steady**: the frames of an "
         "episode, fastest of many calls, mean over a few episodes. **Per frame**: each frame "
         "starts an episode, as in the per-frame regime. **First**: a new severity as well, "
-        "whose tables are then built; both are medians. The peers draw anew at each call and keep "
-        "nothing; theirs is the fastest of many calls too. The bar is this project's aim (it has "
-        "none at 12x64x64).",
+        "whose tables are then built; both are medians. The peers draw anew at each "
+        "call and keep nothing; theirs is the fastest of many calls too. The bar is this project's "
+        "aim (it has none at 12x64x64).",
     ]
     for label, rows in costs.items():
         lines += [
