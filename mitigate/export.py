@@ -132,6 +132,8 @@ def _write(
         shipped = copy.deepcopy(agent)
         checkpoint.save_weights(agent, draft, half=True)
         checkpoint.load_weights(shipped, draft)
+    known = facts(cfg)  # before the slow part: what is missing shows at once
+    found = _metrics(run, rows, {checkpoint.weights_sha(a) for a in (agent, shipped)})
     print("exporting the programs", flush=True)
     exported = programs.export_programs(shipped, size)
     programs.save_programs(exported, draft / hardened.PROGRAM)
@@ -149,15 +151,14 @@ def _write(
         from mitigate.onnx_programs import save_onnx
 
         save_onnx(shipped, size, draft, EXPORTED)
-    shas = {checkpoint.weights_sha(a) for a in (agent, shipped)}
     card = {
         "format": hardened.FORMAT,
         "name": name,
-        **facts(cfg),
+        **known,
         "agent": checkpoint.weights_sha(shipped),
         "run_agent": checkpoint.weights_sha(agent),
         "adapters_only": adapters_only,
-        "metrics": _metrics(run, rows, shas),
+        "metrics": found,
         "checked": {
             "float16": rounded,
             "float16_tolerance": ROUNDED,
