@@ -21,7 +21,7 @@ from mitigate.safeguard import masks, rules
 from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
-PASSAGE = 30  # words rewritten at once; chosen on the validation families
+PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
 CHOICES = ("none", "rules", "prompted", "lora", "http://host/v1#model")
 ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"

@@ -61,7 +61,7 @@ class LanguageModel(nn.Module):
         self.base, self.precision, self.prompt, self.batch = base, precision, prompt, batch
         self.tokenizer, network = load_base(base, precision)
         network.requires_grad_(False)
-        self.network = network if lora is None else _with_lora(network, lora)
+        self.network: Any = network if lora is None else _with_lora(network, lora)
         self.register_state_dict_post_hook(_keep_adapter)
         self.register_load_state_dict_post_hook(_forgive_base)
 
@@ -201,7 +201,7 @@ class LanguageModel(nn.Module):
             )
         tensors = load_file(Path(folder) / ADAPTER)
         try:
-            found = set_peft_model_state_dict(self.network, tensors)
+            found: Any = set_peft_model_state_dict(self.network, tensors)
         except RuntimeError as error:
             raise ValueError(_misfit(folder, str(error).splitlines()[-1])) from error
         if found.unexpected_keys or any("lora_" in key for key in found.missing_keys):

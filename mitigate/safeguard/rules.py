@@ -128,8 +128,9 @@ def restyled(told: list[str]) -> bool:
 
 def framing(sentence: str) -> bool:
     """Return whether a sentence greets or thanks and tells nothing about the way."""
-    told = facts(sentence)
-    return not told.landmarks and not told.directions and style_marks(sentence) > 0
+    told, found = facts(sentence), words(sentence)
+    silent = not told.landmarks and not told.directions and not any(w in VERBS for w in found)
+    return silent and any(word in STYLE for word in found)
 
 
 def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:

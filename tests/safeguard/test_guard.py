@@ -32,6 +32,12 @@ class Scripted:
         return [self.answer(text) for text in texts]
 
 
+def said(text: str) -> str:
+    """A good rewriting of the sentences of STYLED."""
+    parts = {"sofa": "Walk past the sofa.", "left": "Turn left."}
+    return " ".join(part for word, part in parts.items() if word in text)
+
+
 def routes(count: int, seed: int = 5) -> list[str]:
     return [draw_route(generator(seed, i)) for i in range(count)]
 
@@ -45,7 +51,7 @@ def test_plain_instructions_pass_untouched_and_no_model_is_asked():
 
 
 def test_a_good_answer_is_taken():
-    decision = Safeguard(Scripted(lambda text: PLAIN)).canonicalise(STYLED)
+    decision = Safeguard(Scripted(said)).canonicalise(STYLED)
     assert decision.text == PLAIN and decision.route == "model"
 
 
@@ -54,9 +60,9 @@ def test_a_good_answer_is_taken():
     [
         ("Walk past the sofa. Turn right.", "directions"),
         ("Walk past the table. Turn left.", "landmark"),
-        ("Walk past the sofa, go ten meters and turn left.", "number"),
+        ("Walk ten meters past the sofa.", "number"),
         (PLAIN + " And then walk on and on and on and on and on and on and on.", "longer"),
-        ("", "directions"),
+        ("", "left"),
         (None, "no answer in time"),
     ],
 )
@@ -136,7 +142,7 @@ def test_ten_thousand_words_are_left_to_the_rules_and_take_seconds():
 
 
 def test_each_new_text_is_decided_and_logged_once(tmp_path):
-    model = Scripted(lambda text: PLAIN)
+    model = Scripted(said)
     safeguard = Safeguard(model, log=tmp_path / "log.jsonl")
     first = safeguard.canonicalise_all([STYLED, PLAIN, STYLED])
     assert safeguard.canonicalise_all([STYLED]) == first[:1]
@@ -147,6 +153,8 @@ def test_each_new_text_is_decided_and_logged_once(tmp_path):
 
 def test_a_style_frame_is_taken_out_by_rule():
     assert "Hey there" not in rules.repair(STYLED).text
+    kept = "Please turn left at the sofa. Finally, kindly walk outside."
+    assert rules.repair(kept).text == kept
 
 
 def test_the_judge_decides_on_doubtful_sentences():
