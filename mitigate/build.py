@@ -50,7 +50,7 @@ def settings_of(node: DictConfig, weights: str) -> DictConfig:
         file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
     if not file.is_file():
         return node
-    found = OmegaConf.load(file).get("agent", {})
+    found = OmegaConf.select(OmegaConf.load(file), "agent", default={})
     target = found.get("_target_", node._target_)
     if target != node._target_:
         raise ValueError(
@@ -63,7 +63,9 @@ def settings_of(node: DictConfig, weights: str) -> DictConfig:
             f"{file} names a class to build inside the agent's settings (_target_). Settings that "
             "come with weights are data; nothing in them is run. Do not use this folder."
         )
-    return OmegaConf.merge(node, settings)
+    merged = OmegaConf.merge(node, settings)
+    assert isinstance(merged, DictConfig)
+    return merged
 
 
 def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Module:

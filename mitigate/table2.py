@@ -178,8 +178,9 @@ def write_report(cfg: DictConfig, out: Path) -> Path:
     section = next(s for s in sections(found) if s.severity == cfg.severity)
     paper = OmegaConf.to_container(cfg.paper)
     assert isinstance(paper, dict)
+    figures = {str(name): list(values) for name, values in paper.items()}
     with atomic_text(out / REPORT) as file:
-        file.write(beside(section, paper, costs(out)))
+        file.write(beside(section, figures, costs(out)))
     print((out / REPORT).read_text(encoding="utf-8"), flush=True)
     return out / REPORT
 

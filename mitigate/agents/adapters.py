@@ -58,8 +58,8 @@ class ConvAdapter(nn.Module):
             self.down = nn.Conv2d(channels, middle, 1)
             self.mix = nn.Conv2d(3 * middle, middle, kernel, padding=kernel // 2)
         self.up = nn.Conv2d(middle, channels, 1)
-        nn.init.zeros_(self.up.weight)
-        nn.init.zeros_(self.up.bias)
+        for parameter in self.up.parameters():
+            nn.init.zeros_(parameter)
 
     def forward(self, x: Tensor) -> Tensor:
         y = F.gelu(self.down(x))

@@ -198,7 +198,7 @@ class Planner(nn.Module):
         x = self.view_norm(x)
         if self.fusion is None:
             return x
-        weights = reliability(torch.cat([rgb, depth], -1).float(), **self.fusion)
+        weights = reliability(torch.cat([rgb, depth], -1).float(), **self.fusion)  # type: ignore[arg-type]
         return x * (weights.unsqueeze(-1) * VIEWS).to(x.dtype)  # means over views are weighted now
 
     def forward(

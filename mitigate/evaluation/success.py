@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from torch import nn
 
 from mitigate.corruptions import Schedule
 from mitigate.envs.apartments.renderer import Renderer
@@ -16,7 +15,7 @@ from mitigate.seeding import generator
 
 
 def measure(
-    agent: nn.Module,
+    agent: Any,
     schedule: Schedule,
     renderer: Renderer,
     *,
@@ -28,7 +27,8 @@ def measure(
     """Success of ``agent`` under every corruption of ``schedule``, in [0, 1] by name.
 
     ``episodes`` instruction-following episodes of the first ``apartments`` training layouts are
-    drawn from (seed, step), the same ones under every corruption. Leaves the agent in eval mode.
+    drawn from (seed, step), the same ones under every corruption. ``agent`` is a module with reset
+    and act; it is left in eval mode.
     """
     rng = generator(seed, "refresh", step)
     drawn = [draw_training_episode(rng, apartments, 0.0) for _ in range(episodes)]
