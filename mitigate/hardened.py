@@ -48,9 +48,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None) -> Topo
             f"its words would be misread. Use the version that made it (commit {card['commit']})."
         )
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
-        agent = build(folder / CONFIG)
-    fill(agent, folder, base=base)
-    return agent.eval()
+        return fill(build(folder / CONFIG), folder, base=base).eval()
 
 
 def build(config: Path) -> TopologicalAgent:

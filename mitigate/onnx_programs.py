@@ -16,21 +16,19 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
     """Write ``perceive.onnx`` and ``decide.onnx`` to ``folder`` and return their paths.
 
     Weights are float32; the free dimensions are those of ``export_programs``. Raises ValueError if
-    the extra is not installed, or if an output on the probe, whole or with its first decision
-    alone, differs from the agent's by more than ``most``.
+    the extra is not installed, and as :func:`check_onnx`.
     """
     try:
         import onnx  # noqa: F401
-        import onnxruntime
+        import onnxruntime  # noqa: F401
         import onnxscript  # noqa: F401
     except ImportError as error:
         raise ValueError(
             f"ONNX files need the extra onnx ({error}): pip install -e '.[onnx]'."
         ) from error
     given = programs.probe(agent, size)
-    networks = programs.networks(agent)
-    files, sessions = [], {}
-    for name, network in networks.items():
+    files = []
+    for name, network in programs.networks(agent).items():
         files.append(folder / f"{name}.onnx")
         keys = tuple(programs.INPUTS[name])
         torch.onnx.export(
@@ -44,7 +42,23 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
             external_data=False,
             verbose=False,
         )
-        sessions[name] = _Session(onnxruntime.InferenceSession(str(files[-1])), keys)
+    check_onnx(folder, agent, size, most)
+    return files
+
+
+def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) -> None:
+    """Raise ValueError if an output of the ONNX files in ``folder`` on the probe, whole or with its
+    first decision alone, differs from the agent's by more than ``most``."""
+    import onnxruntime
+
+    networks, given = programs.networks(agent), programs.probe(agent, size)
+    sessions = {
+        name: _Session(
+            onnxruntime.InferenceSession(str(folder / f"{name}.onnx")),
+            tuple(programs.INPUTS[name]),
+        )
+        for name in networks
+    }
     first = {name: tensor[:1] for name, tensor in given.items()}
     kept = ("rgb", "depth", "views")
     for inputs in (given, {**first, **{name: given[name] for name in kept}}):
@@ -55,7 +69,6 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
             raise ValueError(
                 f"The ONNX files differ from the agent by {gap:g}, more than {most:g}."
             )
-    return files
 
 
 class _Session:

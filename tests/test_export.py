@@ -377,13 +377,13 @@ def test_a_missing_teacher_is_told(place, tmp_path):
 def test_onnx_files_do_what_the_agent_does(place, tmp_path):
     for package in ("onnx", "onnxscript", "onnxruntime"):
         pytest.importorskip(package, reason="the extra onnx is not installed")
-    from mitigate.onnx_programs import save_onnx
+    from mitigate.onnx_programs import check_onnx, save_onnx
 
     agent = hardened.load_hardened(place / "hardened/adapted")
     files = save_onnx(agent, SIZE, tmp_path, export.EXPORTED)
     assert [file.name for file in files] == ["perceive.onnx", "decide.onnx"]
     with pytest.raises(ValueError, match="differ from the agent"):
-        save_onnx(agent, SIZE, tmp_path, -1.0)
+        check_onnx(tmp_path, agent, SIZE, -1.0)
 
 
 def test_the_examples_of_the_deployment_page_run(place, tmp_path, monkeypatch):
