@@ -80,9 +80,9 @@ def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(
     (tmp_path / "rows.jsonl").write_text("".join(lines[:20]) + lines[20][:60])
     ran, real = [], evaluator.run_episode
 
-    def counted(agent, simulator, episode, corruption, seed):
+    def counted(agent, simulator, episode, corruption, *others):
         ran.append((episode.episode_id, corruption.name))
-        return real(agent, simulator, episode, corruption, seed)
+        return real(agent, simulator, episode, corruption, *others)
 
     monkeypatch.setattr(evaluator, "run_episode", counted)
     assert run(tmp_path) == rows
