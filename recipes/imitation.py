@@ -45,7 +45,6 @@ class ImitationRecipe(Recipe):
     apartments: how many training layouts. ogn_share: of object-goal episodes.
     w_concepts, w_waypoints: weights of the perception terms; w_distance, w_grounding: of the
     planner's auxiliary terms (metres to the goal; which views show the goal's landmark).
-    planner_lr: learning rate of the planner; None: the trainer's, as for the other parts.
     prior: rows of an earlier evaluation, from which a success-distributed schedule starts.
     refresh_every: steps between two measurements of the success rates that such a schedule draws
     by, each on ``refresh_episodes`` training episodes under every corruption; 0: never.
@@ -68,7 +67,6 @@ class ImitationRecipe(Recipe):
         w_waypoints: float = 2.0,
         w_distance: float = 0.3,
         w_grounding: float = 0.3,
-        planner_lr: float | None = None,
         prior: str | None = None,
         refresh_every: int = 0,
         refresh_episodes: int = 8,
@@ -87,11 +85,7 @@ class ImitationRecipe(Recipe):
             "grounding": w_grounding,
         }
         self.prior = prior
-        self.planner_lr, self.refresh_every, self.refresh_episodes = (
-            planner_lr,
-            refresh_every,
-            refresh_episodes,
-        )
+        self.refresh_every, self.refresh_episodes = refresh_every, refresh_episodes
         self.trains_perception = set(train_parts) != {"planner"}
         for part in PARTS:
             getattr(agent, part).requires_grad_(part in train_parts)
@@ -227,18 +221,6 @@ class ImitationRecipe(Recipe):
     def evaluate(self, step: int) -> dict[str, float]:
         """The schedule's weights, for the log."""
         return {f"p/{name}": weight for name, weight in self.schedule.weights.items()}
-
-    def parameter_groups(self) -> list[dict[str, Any]]:
-        groups = super().parameter_groups()
-        if self.planner_lr is None:
-            return groups
-        planner = {id(p) for p in self.agent.planner.parameters()}
-        split = [{**g, "params": [p for p in g["params"] if id(p) not in planner]} for g in groups]
-        slow = [
-            {**g, "params": [p for p in g["params"] if id(p) in planner], "lr": self.planner_lr}
-            for g in groups
-        ]
-        return [*split, *slow]
 
     def get_extra_state(self) -> dict[str, Any]:
         return {"schedule": self.schedule.state_dict()}

@@ -14,7 +14,7 @@ features of the views that the map's nodes and ghosts were seen in.
 from __future__ import annotations
 
 import copy
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 import torch
@@ -25,13 +25,31 @@ from mitigate.agents.adapters import remove_adapters
 from mitigate.agents.rendered import RenderedWorld
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.keys import CLEAN_DEPTH, CLEAN_RGB
+from mitigate.recipe import Recipe
 from recipes.imitation import ImitationRecipe
 from recipes.perception import PerceptionRecipe
 
 FEATURES = ("views", "nodes")
 
 
-class ViewDistillation(PerceptionRecipe):
+class Taught(Recipe):
+    """What recipes with a teacher share: it stays in eval mode, and its sha256 is recorded."""
+
+    def take_teacher(self, agent: TopologicalAgent, weights: str) -> None:
+        """Load the teacher; see :func:`load_teacher`."""
+        self.teacher = load_teacher(agent, weights)
+        self.teacher_sha = checkpoint.weights_sha(self.teacher)
+
+    def identity(self) -> dict[str, str]:
+        return {"teacher_sha256": self.teacher_sha}
+
+    def train(self, mode: bool = True) -> Self:
+        super().train(mode)
+        self.teacher.eval()
+        return self
+
+
+class ViewDistillation(Taught, PerceptionRecipe):
     """Args: as ``PerceptionRecipe``; teacher: weights, or "start" for ``agent`` as it is now;
     w_labels, w_feat: weights of the labels' loss and of the features'.
 
@@ -48,8 +66,7 @@ class ViewDistillation(PerceptionRecipe):
         **others: Any,
     ) -> None:
         super().__init__(agent, modality, **others)
-        self.teacher = load_teacher(agent, teacher)
-        self.teacher_sha = checkpoint.weights_sha(self.teacher)
+        self.take_teacher(agent, teacher)
         self.w_labels, self.w_feat = w_labels, w_feat
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
@@ -61,16 +78,8 @@ class ViewDistillation(PerceptionRecipe):
         loss = self.w_labels * values["loss"] + self.w_feat * feat
         return {**values, "feat": feat, "loss": loss}
 
-    def identity(self) -> dict[str, str]:
-        return {"teacher_sha256": self.teacher_sha}
 
-    def train(self, mode: bool = True) -> ViewDistillation:
-        super().train(mode)
-        self.teacher.eval()
-        return self
-
-
-class TeacherStudent(ImitationRecipe):
+class TeacherStudent(Taught, ImitationRecipe):
     """Args: as ``ImitationRecipe``; teacher: as for ``ViewDistillation``; w_il, w_kl, w_feat,
     temperature: of the loss above; match: which features are matched, of ``FEATURES``.
 
@@ -93,18 +102,9 @@ class TeacherStudent(ImitationRecipe):
         unknown = sorted(set(match) - set(FEATURES))
         if unknown:
             raise ValueError(f"match={unknown} is unknown; choose from {', '.join(FEATURES)}.")
-        self.teacher = load_teacher(agent, teacher)
-        self.teacher_sha = checkpoint.weights_sha(self.teacher)
+        self.take_teacher(agent, teacher)
         self.w_il, self.w_kl, self.w_feat = w_il, w_kl, w_feat
         self.temperature, self.match = temperature, tuple(match)
-
-    def identity(self) -> dict[str, str]:
-        return {"teacher_sha256": self.teacher_sha}
-
-    def train(self, mode: bool = True) -> TeacherStudent:
-        super().train(mode)
-        self.teacher.eval()
-        return self
 
     def look(self, worlds: list[RenderedWorld]) -> list[tuple[Tensor, np.ndarray]]:
         found = super().look(worlds)
