@@ -2,8 +2,8 @@
 
 ``insert_adapters(model, target_modules=...)`` puts ``x + up(act(down(x)))`` behind named modules,
 as PEFT does for attention: the backbone's own weights keep their names and values, and nothing
-changes until ``up`` has learned. A *ring* adapter also sees the neighbours of each view of a
-panorama, so that what one view has lost can come from the views that overlap it.
+changes until ``up`` has learned. A *ring* adapter (``ring.py``) also sees the neighbours of each
+view of a panorama, so that what one view has lost can come from the views that overlap it.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from safetensors.torch import load_file
 from torch import Tensor, nn
 
 from mitigate import checkpoint
+from mitigate.agents.ring import RingAdapter
 from mitigate.files import atomic_text
-from mitigate.keys import VIEWS
+from mitigate.keys import HFOV_DEGREES, VIEWS
 
 NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module gets
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
@@ -35,39 +36,30 @@ class ConvAdapter(nn.Module):
     Args:
         channels: C. reduction: the bottleneck has ``max(4, C // reduction)`` channels.
         kernel: of the spatial convolution, odd.
-        views: 1, or the number of views of a panorama whose maps follow one another in the batch
-            (n = P * views): a *ring* adapter, ``x + up(gelu(mix(gelu(down(x)))))``, where ``mix``
-            sees the bottleneck of a view between those of its two neighbours on the ring.
 
     Source: bottleneck and zero start after Houlsby et al. 2019, as the paper's section on adapters
-    asks; reduction and kernel are ours, chosen for 1-4 % of the weights; the ring is ours.
+    asks; reduction and kernel are ours, chosen for 1-4 % of the weights.
     """
 
-    def __init__(self, channels: int, reduction: int = 8, kernel: int = 3, views: int = 1) -> None:
+    def __init__(self, channels: int, reduction: int = 8, kernel: int = 3) -> None:
         super().__init__()
-        if channels < 1 or reduction < 1 or kernel % 2 == 0 or views < 1:
+        if channels < 1 or reduction < 1 or kernel % 2 == 0:
             raise ValueError(
-                f"An adapter needs channels ({channels}), reduction ({reduction}) and views "
-                f"({views}) of at least 1 and an odd kernel ({kernel})."
+                f"An adapter needs channels ({channels}) and reduction ({reduction}) of at least 1 "
+                f"and an odd kernel ({kernel})."
             )
         middle = max(4, channels // reduction)
-        self.views, self.reduction, self.kernel = views, reduction, kernel
-        if views == 1:
-            self.down = nn.Conv2d(channels, middle, kernel, padding=kernel // 2)
-        else:
-            self.down = nn.Conv2d(channels, middle, 1)
-            self.mix = nn.Conv2d(3 * middle, middle, kernel, padding=kernel // 2)
+        self.settings = {"channels": channels, "reduction": reduction, "kernel": kernel}
+        self.down = nn.Conv2d(channels, middle, kernel, padding=kernel // 2)
         self.up = nn.Conv2d(middle, channels, 1)
         for parameter in self.up.parameters():
             nn.init.zeros_(parameter)
 
     def forward(self, x: Tensor) -> Tensor:
-        y = F.gelu(self.down(x))
-        if self.views > 1:
-            ring = y.unflatten(0, (-1, self.views))
-            around = torch.cat([ring.roll(1, 1), ring, ring.roll(-1, 1)], 2)
-            y = F.gelu(self.mix(around.flatten(0, 1)))
-        return x + self.up(y)
+        return x + self.up(F.gelu(self.down(x)))
+
+
+ADAPTERS = (ConvAdapter, RingAdapter)
 
 
 def insert_adapters(
@@ -79,6 +71,7 @@ def insert_adapters(
     ring: Iterable[str] = (),
     ring_reduction: int = 4,
     views: int = VIEWS,
+    hfov: float = HFOV_DEGREES,
 ) -> list[str]:
     """Freeze ``model`` and give an adapter to every module that a target names.
 
@@ -86,9 +79,9 @@ def insert_adapters(
         model: any module tree; the targets must return one tensor ``[n, C, h, w]``.
         target_modules: regular expressions, each matched against the whole dotted name of a module
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
-            each :class:`ConvAdapter`. ring: targets of the same form that get a ring adapter over
-            ``views`` views, ``ring_reduction`` in place of ``reduction``. A module found by both
-            gets the ring adapter.
+            each adapter. ring: targets of the same form that get a :class:`RingAdapter` over ``views``
+            views of ``hfov`` degrees, which follow one another in the batch (n = P * views), with
+            ``ring_reduction`` in place of ``reduction``. A module found by both gets this one.
     Returns the names of the adapted modules, in the model's order.
     Raises ValueError for a target that matches nothing (with the names there are), a module whose
     channels cannot be told, or a model that has adapters already.
@@ -100,8 +93,12 @@ def insert_adapters(
     names = [name for name, _ in model.named_modules() if name in plain or name in ringed]
     for name in names:
         module = model.get_submodule(name)
-        size = (ring_reduction, kernel, views) if name in ringed else (reduction, kernel, 1)
-        adapter = ConvAdapter(_channels(name, module), *size)
+        channels = _channels(name, module)
+        adapter = (
+            RingAdapter(channels, ring_reduction, kernel, views, hfov)
+            if name in ringed
+            else ConvAdapter(channels, reduction, kernel)
+        )
         like = next(module.parameters())
         _attach(module, adapter.to(like.device, like.dtype))
     return names
@@ -109,7 +106,7 @@ def insert_adapters(
 
 def adapted(model: nn.Module) -> list[str]:
     """Names of the modules of ``model`` that have an adapter."""
-    return [n for n, m in model.named_modules() if isinstance(getattr(m, NAME, None), ConvAdapter)]
+    return [n for n, m in model.named_modules() if isinstance(getattr(m, NAME, None), ADAPTERS)]
 
 
 def remove_adapters(model: nn.Module) -> None:
@@ -144,7 +141,7 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     checkpoint.save_weights(modules, folder / WEIGHTS)
     settings = {
         "backbone_sha256": backbone_sha(model),
-        "adapters": {n: _settings(getattr(model.get_submodule(n), NAME)) for n in names},
+        "adapters": {n: getattr(model.get_submodule(n), NAME).settings for n in names},
     }
     with atomic_text(folder / SETTINGS) as file:
         json.dump(settings, file, indent=2)
@@ -179,7 +176,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         raise ValueError(f"This model has no module called {', '.join(missing)}.")
     model.requires_grad_(False)
     for name, shape in shapes.items():
-        adapter = ConvAdapter(**shape)
+        adapter = (RingAdapter if "views" in shape else ConvAdapter)(**shape)
         prefix = f"{_key(name)}."
         adapter.load_state_dict(
             {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
@@ -198,7 +195,7 @@ def _adapt(module: nn.Module, inputs: Any, output: Tensor) -> Tensor:
     return getattr(module, NAME)(output)
 
 
-def _attach(module: nn.Module, adapter: ConvAdapter) -> None:
+def _attach(module: nn.Module, adapter: nn.Module) -> None:
     module.add_module(NAME, adapter)
     setattr(module, _HOOK, module.register_forward_hook(_adapt))
 
@@ -235,16 +232,6 @@ def _channels(name: str, module: nn.Module) -> int:
             "Choose a module that ends in one."
         )
     return channels
-
-
-def _settings(adapter: ConvAdapter) -> dict[str, int]:
-    channels = adapter.up.out_channels
-    return {
-        "channels": channels,
-        "reduction": adapter.reduction,
-        "kernel": adapter.kernel,
-        "views": adapter.views,
-    }
 
 
 def _key(name: str) -> str:

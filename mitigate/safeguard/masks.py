@@ -17,13 +17,14 @@ SMALL = bag(
     "some this its be been have has from into for or as when once where which slight other "
     "another our we i"
 )
+_RUN = re.compile(r"\[mask\](?:\s*\[mask\])+")
 _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 
 
 def fill(text: str) -> str:
-    """Return ``text`` with every mask replaced by the small word that fits best between its
-    neighbours; a mask that begins a sentence gets a capital."""
-    text = MASK.sub("[mask]", text)
+    """Return ``text`` with every run of masks replaced by the one small word that fits best between
+    its neighbours; at the start of a sentence it gets a capital."""
+    text = _RUN.sub("[mask]", MASK.sub("[mask]", text))
     pieces: list[str] = []
     at = 0
     for match in _TOKEN.finditer(text):
@@ -59,8 +60,8 @@ def _best(left: str, right: str) -> str:
         if word in (left, right):
             continue
         seen = 20.0 * both[left, word, right]
-        follows = 1.0 if right == "[mask]" else after[word, right] + 0.3
-        scores[word] = seen + (before[left, word] + 0.01) * follows / (plain[word] + 10.0)
+        follows = (before[left, word] + 0.01) * (after[word, right] + 0.3) / (plain[word] + 10.0)
+        scores[word] = seen + follows
     return max(sorted(scores), key=scores.__getitem__)
 
 

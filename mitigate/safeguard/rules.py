@@ -17,7 +17,7 @@ from functools import lru_cache
 from mitigate.corruptions.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.fidelity import ATTRIBUTES, facts
 from mitigate.corruptions.words import bag
-from mitigate.safeguard.text import sentences, words
+from mitigate.safeguard.text import MASK, sentences, words
 from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
 
 SURE, LIKELY = 0.50, 0.25  # probabilities, chosen on the validation families
@@ -36,7 +36,7 @@ _SETS = {
 CLOSED = {name: bag(text) for name, text in _SETS.items()}
 VERBS = MOTION | STOPS | TURN_VERBS
 _IDIOMS = re.compile(r"\b(?:all the way|each other|each side|all around)\b")
-_SHOUT = re.compile(r"\b[A-Z][A-Z'’]+\b")
+_SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Repaired:
 
 def features(sentence: str, marks: frozenset[str] = STYLE) -> dict[str, float]:
     """Return what a sentence is made of, as counts or shares about 0 to 3."""
-    found = words(_IDIOMS.sub(" ", sentence.lower()))
+    found = words(_IDIOMS.sub(" ", MASK.sub(" ", sentence).lower()))  # hidden words tell nothing
     size = max(1, len(found))
     told = facts(sentence)
     known = sum(word in _route_words() or word.isdigit() for word in found)

@@ -1,0 +1,69 @@
+"""A ring adapter's neighbours lie where the camera's rotation puts them."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from mitigate.agents.ring import RingAdapter, neighbour_grid
+from mitigate.envs.apartments.renderer import Renderer
+from mitigate.envs.apartments.simulator import apartment_of
+from mitigate.keys import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
+
+
+@pytest.fixture(scope="module")
+def panorama():
+    """The RGB of a rendered panorama, float [12, 3, 64, 64]: colours do not depend on the view."""
+    apartment = apartment_of("apartments/train/000003")
+    renderer = Renderer(64)
+    renderer.load(apartment)
+    x, y = apartment.space.centre(len(apartment.space.cells) // 2)
+    rgb, _, _ = renderer.render(float(x), float(y), 0.3)
+    return torch.from_numpy(rgb).permute(0, 3, 1, 2).float()
+
+
+def test_a_neighbour_turned_into_a_views_frame_shows_what_the_view_shows(panorama):
+    grid = neighbour_grid(64, 64, VIEW_STEP_DEGREES, HFOV_DEGREES)
+    seen = (grid.abs() <= 1).all(-1)
+    aligned = RingAdapter(3)._aligned(panorama, grid)
+    for side in (0, 1):
+        error = (aligned[:, side + 1] - panorama).abs().mean(1)[:, seen[side]]
+        plain = (panorama.roll(1 - 2 * side, 0) - panorama).abs().mean(1)[:, seen[side]]
+        assert error.median() < 2 and error.mean() < 0.25 * plain.mean()
+        assert 0.5 < seen[side].float().mean() < 0.7  # 60 of 90 degrees, less the corners
+
+
+def test_a_cell_that_no_neighbour_sees_keeps_its_own_features():
+    torch.manual_seed(0)
+    adapter = RingAdapter(8, views=3)  # 120 degrees apart: views of 90 degrees do not meet
+    torch.nn.init.constant_(adapter.share.bias, 3.0)  # take all that there is to take
+    x = torch.randn(6, 8, 4, 4)
+    assert torch.allclose(adapter(x), x, atol=1e-6)
+
+
+def test_a_lost_view_can_be_taken_from_its_neighbours(panorama):
+    """With a score that shuns black cells, the fused map is nearer to the clean one than zero."""
+    adapter = RingAdapter(3, reduction=1)
+    with torch.no_grad():
+        adapter.down.weight.zero_()
+        adapter.down.weight[0, :, 0, 0] = 1.0
+        adapter.score.weight[0, 0] = 1.0
+        adapter.share.bias.fill_(10.0)
+    lost = panorama.clone()
+    lost[4] = 0
+    found = adapter(lost)[4]
+    known = (neighbour_grid(64, 64, VIEW_STEP_DEGREES, HFOV_DEGREES).abs() <= 1).all(-1).any(0)
+    error = (found - panorama[4]).abs().mean(0)[known]
+    assert error.median() < 3 and error.mean() < 0.2 * panorama[4].mean()
+
+
+@pytest.mark.parametrize("wrong", [{"views": 2}, {"kernel": 2}, {"hfov": 180}, {"reduction": 0}])
+def test_impossible_shapes_are_refused(wrong):
+    with pytest.raises(ValueError, match="ring adapter needs"):
+        RingAdapter(8, **wrong)
+
+
+def test_views_are_those_of_the_panorama():
+    adapter = RingAdapter(8)
+    with pytest.raises(RuntimeError):
+        adapter(torch.zeros(VIEWS + 1, 8, 4, 4))
