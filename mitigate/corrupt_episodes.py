@@ -25,9 +25,9 @@ from tqdm import tqdm
 
 from mitigate.corruptions import INSTRUCTION, SUITE_VERSION, Key, corrupt_instruction
 from mitigate.corruptions.instruction import check_text, is_rewritten
-from mitigate.corruptions.style import MANNERS, Rewrite, restyle
+from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
+from mitigate.corruptions.language.tokens import Tokenizer, tokenizer_for
 from mitigate.corruptions.suite import check_name, check_severity
-from mitigate.corruptions.tokens import Tokenizer, tokenizer_for
 from mitigate.envs.episodes import Episode, read_episodes, read_extras, write_episodes
 from mitigate.files import atomic_text
 

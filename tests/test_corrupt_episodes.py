@@ -13,8 +13,8 @@ import pytest
 from mitigate import corrupt_episodes
 from mitigate.corrupt_episodes import ORIGINAL, run
 from mitigate.corruptions import Key, corrupt_instruction
-from mitigate.corruptions.fidelity import check
-from mitigate.corruptions.style import MANNERS
+from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.style import MANNERS
 from mitigate.envs.episodes import read_episodes, read_extras
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 

@@ -14,7 +14,6 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import torch
 import torch.nn.functional as F
 from safetensors import SafetensorError
 from safetensors.torch import load_file
@@ -79,9 +78,9 @@ def insert_adapters(
         model: any module tree; the targets must return one tensor ``[n, C, h, w]``.
         target_modules: regular expressions, each matched against the whole dotted name of a module
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
-            each adapter. ring: targets of the same form that get a :class:`RingAdapter` over ``views``
-            views of ``hfov`` degrees, which follow one another in the batch (n = P * views), with
-            ``ring_reduction`` in place of ``reduction``. A module found by both gets this one.
+            each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
+            ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
+            views), with ``ring_reduction`` as reduction. A module found by both gets this one.
     Returns the names of the adapted modules, in the model's order.
     Raises ValueError for a target that matches nothing (with the names there are), a module whose
     channels cannot be told, or a model that has adapters already.

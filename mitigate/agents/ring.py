@@ -1,8 +1,8 @@
 """Ring adapters: a view takes from its neighbours on the panorama what it has itself lost.
 
-The views of a panorama share one centre and overlap, so a neighbour shows the same surfaces where a
-known rotation puts them. A ring adapter turns the neighbours' feature maps into the view's own frame
-first, and only then compares them.
+The views of a panorama share one centre and overlap, so a neighbour shows the same surfaces where
+a known rotation puts them. A ring adapter turns the neighbours' feature maps into the view's own
+frame first, and only then compares them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mitigate.keys import HFOV_DEGREES, VIEWS
 
 
 class RingAdapter(nn.Module):
-    """Zero-initialised residual adapter over the views of a panorama, maps ``[P * views, C, h, w]``.
+    """Zero-initialised residual adapter over a panorama's views: maps ``[P * views, C, h, w]``.
 
     With y = gelu(down(x)), and ``aligned`` bringing a map's two neighbours into its own frame:
 

@@ -12,12 +12,12 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mitigate.corruptions import words
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.corruptions.prefixes import prefixes
-from mitigate.corruptions.style import MANNERS, Rewrite, restyle
+from mitigate.corruptions.language import words
+from mitigate.corruptions.language.prefixes import prefixes
+from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
+from mitigate.corruptions.language.tagger import Token, named
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
-from mitigate.corruptions.tagger import Token, named
 
 SPOKEN = words.bag("NOUN PROPN VERB ADP")  # what capitals stress
 SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")  # what masks may hide

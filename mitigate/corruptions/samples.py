@@ -14,10 +14,10 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
-from mitigate.corruptions.fidelity import check
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.corruptions.style import MANNERS, restyle
+from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.style import MANNERS, restyle
 from mitigate.corruptions.suite import INSTRUCTION
 from mitigate.envs.episodes import read_episodes
 

@@ -16,13 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.corruptions.clauses import clauses
-from mitigate.corruptions.fidelity import check
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.phrases import VOICES
-from mitigate.corruptions.prefixes import prefixes
-from mitigate.corruptions.style import MANNERS
+from mitigate.corruptions.language.clauses import clauses
+from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.phrases import VOICES
+from mitigate.corruptions.language.prefixes import prefixes
+from mitigate.corruptions.language.style import MANNERS
 from mitigate.envs.episodes import read_episodes
 from mitigate.files import atomic_text, open_text
 from mitigate.safeguard.routes import draw_route

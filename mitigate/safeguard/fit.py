@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.corruptions.fidelity import facts
-from mitigate.corruptions.landmarks import CANONICAL
-from mitigate.corruptions.prefixes import prefixes
+from mitigate.corruptions.language.fidelity import facts
+from mitigate.corruptions.language.landmarks import CANONICAL
+from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.files import atomic_text
 from mitigate.safeguard import routes
 from mitigate.safeguard.data import draw_pair, vary
@@ -34,7 +34,7 @@ def main() -> None:
             '"""Weights of the rules, written by ``python -m mitigate.safeguard.fit``."""\n\n'
         )
         file.write("from __future__ import annotations\n\n")
-        file.write("from mitigate.corruptions.words import bag\n\n")
+        file.write("from mitigate.corruptions.language.words import bag\n\n")
         file.write(f"BIAS = {bias:.3f}\nWEIGHTS: dict[str, float] = {{\n")
         file.writelines(f'    "{name}": {value:.3f},\n' for name, value in weights.items())
         file.write('}\nSTYLE = bag(\n    """\n')

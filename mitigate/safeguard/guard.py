@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Protocol
 
 from mitigate import cli
-from mitigate.corruptions.fidelity import check
+from mitigate.corruptions.language.fidelity import check
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
 

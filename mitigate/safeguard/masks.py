@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from functools import lru_cache
 
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.text import MASK
 from mitigate.seeding import generator

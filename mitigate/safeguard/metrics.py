@@ -7,7 +7,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 
-from mitigate.corruptions.fidelity import check, facts
+from mitigate.corruptions.language.fidelity import check, facts
 
 CLEAN = "clean"  # the family of instructions that nobody corrupted
 REMAINS = 0.5  # an injected sentence counts as removed below this share of its word pairs (ours)

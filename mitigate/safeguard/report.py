@@ -19,7 +19,7 @@ from torch import nn
 
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.style import MANNERS
+from mitigate.corruptions.language.style import MANNERS
 from mitigate.envs.episodes import read_episodes
 from mitigate.files import atomic_text, open_text
 from mitigate.safeguard.data import read_texts

@@ -14,9 +14,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
-from mitigate.corruptions.directions import MOTION, STOPS, TURN_VERBS
-from mitigate.corruptions.fidelity import ATTRIBUTES, facts
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
+from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
+from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.text import MASK, sentences, words
 from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
 
@@ -157,7 +157,7 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
 
 @lru_cache(maxsize=1)
 def _route_words() -> frozenset[str]:
-    from mitigate.corruptions.landmarks import CANONICAL
+    from mitigate.corruptions.language.landmarks import CANONICAL
     from mitigate.safeguard import routes
 
     text = " ".join((routes.OPEN, routes.MIDDLE, routes.CLOSE, *routes.ASIDES, *routes.ROOMS,

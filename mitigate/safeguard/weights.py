@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language.words import bag
 
 BIAS = -2.845
 WEIGHTS: dict[str, float] = {

@@ -20,12 +20,12 @@ from mitigate.corruptions import (
     NotApplicable,
     corrupt_instruction,
     inject_system_prompt,
-    words,
 )
-from mitigate.corruptions.fidelity import check
-from mitigate.corruptions.prefixes import SPLITS, prefixes
-from mitigate.corruptions.style import MANNERS
-from mitigate.corruptions.tagger import tag, tokens
+from mitigate.corruptions.language import words
+from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.prefixes import SPLITS, prefixes
+from mitigate.corruptions.language.style import MANNERS
+from mitigate.corruptions.language.tagger import tag, tokens
 
 SPOKEN = tuple(name for name in INSTRUCTION if name != "white_box")
 TEXT = (

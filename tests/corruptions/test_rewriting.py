@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from mitigate.corruptions import Key, corrupt_instruction
-from mitigate.corruptions.rewriting import PROMPT, TONES, Rewriter
-from mitigate.corruptions.style import MANNERS
+from mitigate.corruptions.language.rewriting import PROMPT, TONES, Rewriter
+from mitigate.corruptions.language.style import MANNERS
 
 TEXT = "Turn left at the sofa\u2028 and stop."
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from mitigate.corruptions import tagger
+from mitigate.corruptions.language import tagger
 
 LABELLED = (Path(__file__).parent / "tagged.txt").read_text(encoding="utf-8")
 TUNED, UNSEEN = LABELLED.split("# what follows")

@@ -7,8 +7,8 @@ import re
 
 import pytest
 
-from mitigate.corruptions.prefixes import prefixes
-from mitigate.corruptions.style import MANNERS
+from mitigate.corruptions.language.prefixes import prefixes
+from mitigate.corruptions.language.style import MANNERS
 from mitigate.envs.apartments.instructions import TEMPLATES
 from mitigate.envs.episodes import read_episodes
 from mitigate.safeguard import data, routes

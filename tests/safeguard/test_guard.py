@@ -7,9 +7,9 @@ import time
 
 import pytest
 
-from mitigate.corruptions.fidelity import check
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
+from mitigate.corruptions.language.fidelity import check
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.guard import Safeguard, open_safeguard, refusal
 from mitigate.safeguard.routes import draw_route

@@ -8,7 +8,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from mitigate.corruptions.clauses import COMMANDS
+from mitigate.corruptions.language.clauses import COMMANDS
 
 BARE_VERB = (
     rf"(?:just |simply |slowly |carefully |immediately |directly )?(?:{COMMANDS}|execute|perform|"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language.words import bag
 
 COMMANDS = (
     "walk|go|head|turn|take|make|stop|wait|exit|enter|leave|continue|proceed|move|pass|climb|"

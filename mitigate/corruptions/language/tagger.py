@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from mitigate.corruptions import words
+from mitigate.corruptions.language import words
 
 TOKEN = re.compile(r"\[\w+\]|<\w+>|[^\W_]+(?:['’][^\W_]+)*|[^\w\s]|_", re.UNICODE)
 WORD = re.compile(r"[^\W_]")

@@ -11,10 +11,10 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mitigate.corruptions import phrases
-from mitigate.corruptions.clauses import Clause, clauses
-from mitigate.corruptions.fidelity import check
 from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.language import phrases
+from mitigate.corruptions.language.clauses import Clause, clauses
+from mitigate.corruptions.language.fidelity import check
 
 MANNERS = ("friendly", "novice", "professional", "formal")
 TRIES = 3  # rewrites of one instruction before the original is kept (ours)

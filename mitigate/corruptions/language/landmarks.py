@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language.words import bag
 
 # canonical name -> other names; a phrase of several words is joined before nouns are read
 SYNONYMS: dict[str, tuple[str, ...]] = {

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from mitigate.corruptions.directions import at
-from mitigate.corruptions.tagger import SENTENCE_ENDS, Token
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language.directions import at
+from mitigate.corruptions.language.tagger import SENTENCE_ENDS, Token
+from mitigate.corruptions.language.words import bag
 
 _COUNTED = ("two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
 _NUMBERS = {str(number): word for number, word in enumerate(_COUNTED, 2)} | {

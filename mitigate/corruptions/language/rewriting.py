@@ -13,7 +13,7 @@ from collections.abc import Callable
 from hashlib import blake2b
 from pathlib import Path
 
-from mitigate.corruptions.style import MANNERS
+from mitigate.corruptions.language.style import MANNERS
 
 TONES = {
     "friendly": "warm and chatty, as to a friend",

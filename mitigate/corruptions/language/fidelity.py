@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
 
-from mitigate.corruptions import directions, landmarks, quantities
-from mitigate.corruptions.directions import at
-from mitigate.corruptions.tagger import SENTENCE_ENDS, Token, tag
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language import directions, landmarks, quantities
+from mitigate.corruptions.language.directions import at
+from mitigate.corruptions.language.tagger import SENTENCE_ENDS, Token, tag
+from mitigate.corruptions.language.words import bag
 
 COMPASS = re.compile(r"(?:north|south|east|west)(?:east|west)?(?:ern|erly|wards?|bound)?$|o'clock$")
 COLOURS = bag(

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import re
 
-from mitigate.corruptions.tagger import Token
-from mitigate.corruptions.words import bag
+from mitigate.corruptions.language.tagger import Token
+from mitigate.corruptions.language.words import bag
 
 STOPS = bag("stop stops stopping stopped wait waits waiting halt halts pause pauses")
 MOTION = bag(

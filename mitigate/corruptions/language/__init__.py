@@ -1,0 +1,1 @@
+"""What the instruction families and their fidelity gate know about English."""
