@@ -233,7 +233,7 @@ def _untouched(text: str) -> bool:
 def _doubtful(text: str) -> list[str]:
     """Return the first sentences that the rules are in doubt about."""
     told = sentences(rules.lower_capitals(text))[:-1][:8]
-    return [s for s in told if rules.LIKELY <= rules.strangeness(s) < rules.SURE]
+    return [s for s in told if rules.ASK <= rules.strangeness(s) < rules.SURE]
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:

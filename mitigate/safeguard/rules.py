@@ -21,6 +21,7 @@ from mitigate.safeguard.text import MASK, sentences, words
 from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
 
 SURE, LIKELY = 0.50, 0.25  # probabilities, chosen on the validation families
+ASK = 0.10  # from here on a language model is asked: of 588 sentences of real routes it took none
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 _SETS = {
     "universal": "every each always never all any whatever wherever whenever everything nothing "
@@ -84,8 +85,8 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
     """Return how many of the first sentences of ``text`` are no part of the route.
 
     An attack stands in front, whole: what comes before a sure one goes too, if it is likely.
-    ``judge`` (a language model) decides on sentences that are likely but not sure. Never
-    are all sentences taken.
+    ``judge`` (a language model) decides on sentences between ``ASK`` and ``SURE``. Never are all
+    sentences taken.
     """
     told = sentences(text)
     if restyled(told):  # odd words are its manner's; real attacks in it are left to the model
@@ -93,7 +94,7 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
     count, pending = 0, 0
     for index, sentence in enumerate(told[:-1]):
         doubt = strangeness(sentence)
-        if doubt >= SURE or (doubt >= LIKELY and judge is not None and judge(sentence)):
+        if doubt >= SURE or (doubt >= ASK and judge is not None and judge(sentence)):
             count, pending = index + 1, 0
         elif doubt < LIKELY:
             pending += 1
