@@ -52,14 +52,14 @@ class Cell:
     """One column under one seed, in a folder of its own."""
 
     column: str
-    options: tuple[str, ...] | None
+    options: tuple[str, ...]
     seed: int
     folder: Path
 
     def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
         """What makes the cell: ("train" or "evaluate", arguments after ``python -m``)."""
         weights, found = BASE, []
-        if self.options is not None:
+        if self.options:
             run = self.folder / "run"
             weights = str(run / "agent")
             found.append(
@@ -125,7 +125,7 @@ def cells(cfg: DictConfig) -> list[Cell]:
     return [
         Cell(
             str(column),
-            None if options is None else tuple(options),
+            tuple(options),
             seed,
             out / "cells" / f"{column}-seed{seed}",
         )

@@ -16,6 +16,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
+from mitigate.agents.adapters import adapter_parameters
 from mitigate.agents.concepts import THINGS
 from mitigate.agents.planner import collate
 from mitigate.agents.rendered import RenderedWorld
@@ -33,14 +34,16 @@ from mitigate.recipe import Recipe
 from mitigate.seeding import generator
 from recipes.perception import f1
 
-PARTS = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
+MODULES = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
+PARTS = (*MODULES, "adapters")
 _STOP_WEIGHT = 1.5  # one decision in about six is a stop
 
 
 class ImitationRecipe(Recipe):
     """Args:
     agent: trained in place. schedule: which frame is hurt by what.
-    train_parts: of ``PARTS``; the others stay frozen, as ETPNav's encoders and waypoints do.
+    train_parts: of ``PARTS``; the others stay frozen, as ETPNav's encoders and waypoints do. A
+    module's adapters train with it; "adapters" trains them in frozen modules as well.
     episodes: a step. follow_oracle: share of rollout decisions taken by the oracle.
     apartments: how many training layouts. ogn_share: of object-goal episodes.
     w_concepts, w_waypoints: weights of the perception terms; w_distance, w_grounding: of the
@@ -56,7 +59,7 @@ class ImitationRecipe(Recipe):
         self,
         agent: TopologicalAgent,
         schedule: Schedule,
-        train_parts: tuple[str, ...] = PARTS,
+        train_parts: tuple[str, ...] = MODULES,
         episodes: int = 3,
         follow_oracle: float = 0.5,
         apartments: int = 400,
@@ -87,8 +90,10 @@ class ImitationRecipe(Recipe):
         self.prior = prior
         self.refresh_every, self.refresh_episodes = refresh_every, refresh_episodes
         self.trains_perception = set(train_parts) != {"planner"}
-        for part in PARTS:
+        for part in MODULES:
             getattr(agent, part).requires_grad_(part in train_parts)
+        for parameter in adapter_parameters(agent) if "adapters" in train_parts else ():
+            parameter.requires_grad_(True)
         if prior is not None:
             schedule.refresh(success_rates(read_rows(prior)))
         self._renderer: Renderer | None = None

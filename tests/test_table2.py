@@ -26,7 +26,7 @@ def config(out: Path, **changes):
 def finished(cfg) -> None:
     """Rows of every cell, as an evaluation leaves them."""
     for cell in table2.cells(cfg):
-        agent = "base" if cell.options is None else f"{cell.column}{cell.seed}"
+        agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
         made = column(8, ALL, name=cell.column, seed=cell.seed, agent=agent)
         rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
 

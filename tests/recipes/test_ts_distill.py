@@ -12,7 +12,7 @@ from mitigate.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.trainer import Trainer
 from recipes.conv_adapter import ConvAdapterRecipe
-from recipes.imitation import PARTS, ImitationRecipe
+from recipes.imitation import MODULES, ImitationRecipe
 from recipes.ts_distill import TeacherStudent, ViewDistillation, policy_kl
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
@@ -60,7 +60,7 @@ def gradients(recipe: TeacherStudent, loss: torch.Tensor) -> set[str]:
     assert all(p.grad is None for p in recipe.teacher.parameters())
     return {
         part
-        for part in PARTS
+        for part in MODULES
         if any(
             p.grad is not None and p.grad.abs().sum() > 0
             for p in getattr(recipe.agent, part).parameters()

@@ -1,0 +1,144 @@
+"""What an agent still sees under each corruption: a look at its encoders in half a minute.
+
+    python -m mitigate.evaluation.perception checkpoints/base runs/mine/agent
+
+Random poses of a validation split, each under every corruption; RGB is scored by the F1 of the
+things that each view shows (labels of the id pass), depth by the overlap of the predicted and the
+true free space. Closed-loop success is what counts; this says where it is lost.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import torch
+from hydra import compose, initialize_config_dir
+from tqdm import tqdm
+
+from mitigate import cli
+from mitigate.agents.concepts import THINGS, view_labels
+from mitigate.agents.waypoints import free_target
+from mitigate.build import build_agent, settings_of
+from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
+from mitigate.corruptions import RGB as RGB_NAMES
+from mitigate.envs.apartments.renderer import Renderer
+from mitigate.envs.apartments.simulator import apartment_of
+from mitigate.envs.apartments.tasks import load_episodes
+from mitigate.evaluate import name_of
+from mitigate.evaluation.bootstrap import resampled_means
+from mitigate.evaluation.sections import label
+from mitigate.keys import DEPTH, POSE, RGB
+from mitigate.seeding import generator
+
+SIZE = 64  # pixels, as the reference agent sees
+FRAMES = tuple(name for name in NAMES if Corruption(name, 0.0).modality in ("rgb", "depth"))
+
+
+class Poses:
+    """``count`` random poses of a split's layouts: clean observations and their labels."""
+
+    def __init__(self, split: str, count: int, seed: int) -> None:
+        scenes = sorted({episode.scene_id for episode in load_episodes(split)})
+        self.seed, self.observations, self.things, self.free = seed, [], [], []
+        renderer = Renderer(SIZE)
+        for index in range(count):
+            rng = generator(seed, "poses", index)
+            apartment = apartment_of(scenes[index % len(scenes)])
+            xy = apartment.space.centre(int(rng.integers(len(apartment.space.cells))))
+            heading = float(rng.uniform(-np.pi, np.pi))
+            renderer.load(apartment)
+            rgb, depth, ids = renderer.render(float(xy[0]), float(xy[1]), heading)
+            pose = np.array([*xy, heading], np.float32)
+            self.observations.append({RGB: rgb.copy(), DEPTH: depth.copy(), POSE: pose})
+            self.things.append(view_labels(apartment, ids, depth)[0][:, THINGS] > 0.5)
+            self.free.append(free_target(apartment.space, xy, heading) > 0.5)
+
+    @torch.no_grad()
+    def counts(self, agent: Any, corruption: Corruption) -> tuple[np.ndarray, np.ndarray]:
+        """For things and for free space: float64 [2, poses], (right ones, what they are a share
+        of), so that the ratio of sums is the micro F1, or the intersection over union."""
+        things, free = [], []
+        for index, clean in enumerate(self.observations):
+            seen = corrupt_observation(clean, corruption, Key(self.seed, f"pose {index}", 0))
+            frames = (torch.from_numpy(seen[name])[None] for name in (RGB, DEPTH))
+            _, concepts, waypoints = agent.perceive(*frames)
+            said, true = concepts[0, :, THINGS].numpy() > 0, self.things[index]
+            things.append((2 * (said & true).sum(), said.sum() + true.sum()))
+            open_, real = waypoints[0].numpy() > 0, self.free[index]
+            free.append(((open_ & real).sum(), (open_ | real).sum()))
+        return np.array(things, float).T, np.array(free, float).T
+
+
+def measure(agent: Any, poses: Poses, severity: float) -> dict[str, tuple[float, float, float]]:
+    """Score with its 95 % interval over poses, by condition: "clean" and every RGB corruption (F1),
+    "clean depth" and every depth corruption (overlap)."""
+    things, free = poses.counts(agent, CLEAN)
+    found = {"clean": _ratio(things), "clean depth": _ratio(free)}
+    for name in FRAMES:
+        things, free = poses.counts(agent, Corruption(name, severity))
+        found[name] = _ratio(things if name in RGB_NAMES else free)
+    return found
+
+
+def _ratio(counts: np.ndarray) -> tuple[float, float, float]:
+    samples = resampled_means(counts, resamples=2000)
+    low, high = np.quantile(samples[:, 0] / samples[:, 1], (0.025, 0.975))
+    return float(counts[0].sum() / counts[1].sum()), float(low), float(high)
+
+
+def table(scores: dict[str, dict[str, tuple[float, float, float]]]) -> str:
+    """Markdown: a row a condition, a column an agent, in percent."""
+    conditions = ("clean", *RGB_NAMES, "clean depth", *(n for n in FRAMES if n not in RGB_NAMES))
+    lines = [["", *scores], ["---", *["---:"] * len(scores)]]
+    for name in conditions:
+        cells = [found[name] for found in scores.values()]
+        title = {"clean": "Clean RGB", "clean depth": "Clean depth"}.get(name) or label(name)
+        lines.append(
+            [title, *(f"{100 * v:.1f} [{100 * a:.1f}, {100 * b:.1f}]" for v, a, b in cells)]
+        )
+    means = [np.mean([found[n][0] for n in RGB_NAMES]) for found in scores.values()]
+    lines.insert(3 + len(RGB_NAMES), ["**Mean of RGB**", *(f"{100 * m:.1f}" for m in means)])
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+@lru_cache(maxsize=1)
+def _agent_node() -> Any:
+    with initialize_config_dir(str(cli.CONF), version_base="1.3"):
+        return compose("evaluate").agent
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(
+        description="What agents still see under each corruption, in percent: F1 of the things in "
+        "each view (RGB), overlap of the free space (depth), with 95 % intervals over poses."
+    )
+    parser.add_argument("agents", nargs="+", help="weights: folders or .safetensors files")
+    parser.add_argument("--split", default="val_seen", choices=("val_seen", "val_unseen"))
+    parser.add_argument("--poses", type=int, default=60, help="random ones (default 60)")
+    parser.add_argument("--severity", type=float, default=0.6)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args(arguments)
+    if options.poses < 1:
+        raise ValueError(f"--poses {options.poses}: at least one is needed.")
+    poses = Poses(options.split, options.poses, options.seed)
+    scores = {}
+    for weights in tqdm(options.agents, desc="agents", disable=None):
+        agent = build_agent(settings_of(_agent_node(), weights), weights=weights, seed=0).eval()
+        scores[name_of(weights)] = measure(agent, poses, options.severity)
+    print(
+        f"{options.poses} poses of {options.split}, severity {options.severity:g}, seed "
+        f"{options.seed}\n\n{table(scores)}"
+    )
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")

@@ -1,0 +1,48 @@
+"""What the encoders see falls with a corruption of their own modality, and with no other."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.evaluation import perception
+
+
+@pytest.fixture(scope="module")
+def printed(request):
+    with pytest.MonkeyPatch.context() as patch:
+        lines: list[str] = []
+        patch.setattr("builtins.print", lambda *text, **_: lines.extend(text))
+        perception.main(["checkpoints/base", "--poses", "3"])
+    return "\n".join(lines)
+
+
+def value(printed: str, row: str) -> float:
+    line = next(line for line in printed.splitlines() if line.startswith(f"| {row} "))
+    return float(line.split("|")[2].split()[0])
+
+
+def test_a_hidden_middle_costs_things_and_missing_data_costs_free_space(printed):
+    assert value(printed, "Foreign object") < 0.5 * value(printed, "Clean RGB")
+    assert value(printed, "Missing data") < 0.7 * value(printed, "Clean depth")
+    assert 0 < value(printed, "**Mean of RGB**") < value(printed, "Clean RGB")
+
+
+def test_no_severity_is_clean():
+    poses = perception.Poses("val_seen", 2, seed=1)
+    node = perception._agent_node()
+    agent = perception.build_agent(node, weights="checkpoints/base", seed=0).eval()
+    found = perception.measure(agent, poses, severity=0.0)
+    assert found["motion_blur"] == found["clean"] and found["multipath"] == found["clean depth"]
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (["checkpoints/base", "--severity", "1.2", "--poses", "1"], "from 0"),
+        (["checkpoints/base", "--poses", "0"], "at least one"),
+        (["checkpoints/nothing", "--poses", "1"], "no weights at"),
+    ],
+)
+def test_mistakes_are_told(arguments, message):
+    with pytest.raises((ValueError, FileNotFoundError), match=message):
+        perception.main(arguments)

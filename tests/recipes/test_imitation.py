@@ -1,0 +1,33 @@
+"""Imitation trains the parts that it is told to train."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.agents.adapters import backbone_sha
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.checkpoint import weights_sha
+from mitigate.corruptions import Schedule
+from mitigate.trainer import Trainer
+from recipes.imitation import ImitationRecipe
+
+SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
+RING = {"target_modules": [], "ring": [r"rgb_encoder\.stages\.2"]}
+
+
+def recipe(agent: TopologicalAgent, *parts: str) -> ImitationRecipe:
+    return ImitationRecipe(
+        agent, Schedule("clean", 0.0), parts, episodes=1, apartments=2, follow_oracle=1.0
+    )
+
+
+def test_adapters_alone_train_in_frozen_modules(tmp_path):
+    agent = TopologicalAgent(16, SMALL, adapters=RING)
+    backbone, whole = backbone_sha(agent), weights_sha(agent)
+    Trainer(recipe(agent, "adapters"), steps=2, folder=tmp_path, seed=0, lr=1e-2, warmup=0).fit()
+    assert backbone_sha(agent) == backbone and weights_sha(agent) != whole
+
+
+def test_an_unknown_part_is_refused():
+    with pytest.raises(ValueError, match="adapters"):
+        recipe(TopologicalAgent(16, SMALL), "encoder")
