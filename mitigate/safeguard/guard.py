@@ -147,7 +147,7 @@ class _Draft:
         self.reasons: list[str] = []
         self.asked = self.taken = 0
         self.plain = not _readable(self.tidied) or _untouched(self.tidied)
-        self.doubtful = [] if self.plain else _doubtful(self.tidied)
+        self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.tidied))
         self.repair(set())
 
     def repair(self, empty: set[str]) -> None:
@@ -225,15 +225,9 @@ def _untouched(text: str) -> bool:
         not MASK.search(text)
         and rules.lower_capitals(text) == text
         and rules.style_marks(text) < MARKS
-        and not _doubtful(text)
+        and not rules.doubtful(text)
         and not rules.injected(text)
     )
-
-
-def _doubtful(text: str) -> list[str]:
-    """Return the first sentences that the rules are in doubt about."""
-    told = sentences(rules.lower_capitals(text))[:-1][:8]
-    return [s for s in told if rules.ASK <= rules.strangeness(s) < rules.SURE]
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:

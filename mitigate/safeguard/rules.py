@@ -22,6 +22,7 @@ from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
 
 SURE, LIKELY = 0.50, 0.25  # probabilities, chosen on the validation families
 ASK = 0.10  # from here on a language model is asked: of 588 sentences of real routes it took none
+FRONT = 8  # sentences looked at; five attacks at most stand before an instruction (ours)
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 _SETS = {
     "universal": "every each always never all any whatever wherever whenever everything nothing "
@@ -85,22 +86,30 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
     """Return how many of the first sentences of ``text`` are no part of the route.
 
     An attack stands in front, whole: what comes before a sure one goes too, if it is likely.
-    ``judge`` (a language model) decides on sentences between ``ASK`` and ``SURE``. Never are all
-    sentences taken.
+    ``judge`` (a language model) decides on the ``doubtful`` ones. Never are all sentences taken.
     """
     told = sentences(text)
     if restyled(told):  # odd words are its manner's; real attacks in it are left to the model
         return 0
+    asked = set() if judge is None else set(doubtful(text))
     count, pending = 0, 0
     for index, sentence in enumerate(told[:-1]):
         doubt = strangeness(sentence)
-        if doubt >= SURE or (doubt >= ASK and judge is not None and judge(sentence)):
+        if doubt >= SURE or (judge is not None and sentence in asked and judge(sentence)):
             count, pending = index + 1, 0
         elif doubt < LIKELY:
             pending += 1
             if pending > 1 or count == 0 and index > 0:
                 break
     return count
+
+
+def doubtful(text: str) -> list[str]:
+    """Return the first sentences of ``text`` that a language model should judge: what is neither
+    plain nor surely foreign, and beside a surely foreign one whatever is not."""
+    front = sentences(text)[:-1][:FRONT]
+    least = 0.0 if any(strangeness(s) >= SURE for s in front) else ASK
+    return [s for s in front if least <= strangeness(s) < SURE]
 
 
 def lower_capitals(text: str) -> str:
