@@ -137,7 +137,9 @@ def summary(scores: dict[str, dict[str, Scores]]) -> str:
         hurt = {f: s for f, s in found.items() if f not in (CLEAN, "all")}
         count = sum(s.count for s in hurt.values())
         means = [
-            sum(s.count * (getattr(s, field) or 0.0) for s in hurt.values()) / max(1, count)
+            sum(s.count * (getattr(s, field) or 0.0) for s in hurt.values()) / count
+            if count
+            else None
             for field in ("directions", "landmarks", "token_f1")
         ]
         removed, clean = found["all"].removed, found["all"].changed
