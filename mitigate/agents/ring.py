@@ -69,30 +69,33 @@ class RingAdapter(nn.Module):
 
     def forward(self, x: Tensor) -> Tensor:
         y = F.gelu(self.down(x))
+        parts = [x, y, self.score(y)]
         grid = neighbour_grid(x.shape[-2], x.shape[-1], 360 / self.views, self.hfov).to(x.device)
-        seen = F.pad((grid.abs() <= 1).all(-1), (0, 0, 0, 0, 1, 0), value=True)  # [3, h, w]
-        scores = self._aligned(self.score(y), grid).masked_fill(~seen[:, None], -math.inf)
-        weights = scores.softmax(1)
-        z = F.gelu(self.mix(torch.cat([y, self._fused(y, weights, grid)], 1)))
-        moved = self._fused(x, weights, grid) - x
-        return x + self.share(z).tanh() * moved + self.up(z)
+        maps = self.aligned(torch.cat([part.float() for part in parts], 1), grid)
+        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; a view sees all of itself
+        scores = torch.stack([each[:, -1] for each in maps], 1)
+        scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
+        weights = scores.softmax(1).unsqueeze(2).unbind(1)
+        fused = maps[0] * weights[0]
+        for each, weight in zip(maps[1:], weights[1:], strict=True):
+            fused = torch.addcmul(fused, each, weight)
+        around, y_around, _ = fused.to(x.dtype).split([part.shape[1] for part in parts], 1)
+        z = F.gelu(self.mix(torch.cat([y, y_around], 1)))
+        return x + self.share(z).tanh() * (around - x) + self.up(z)
 
-    def _fused(self, x: Tensor, weights: Tensor, grid: Tensor) -> Tensor:
-        return (weights * self._aligned(x, grid)).sum(1).to(x.dtype)
-
-    def _aligned(self, x: Tensor, grid: Tensor) -> Tensor:
-        """Each map beside its neighbours in its own frame: [P * views, 3, C, h, w] (itself, the one
-        to the left, the one to the right); zero where a neighbour does not see."""
-        ring = x.unflatten(0, (-1, self.views))
-        sides = [
+    def aligned(self, maps: Tensor, grid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Each map ``[P * views, C, h, w]``, the one to its left and the one to its right, turned
+        into its own frame; zero where a neighbour does not see."""
+        ring = maps.unflatten(0, (-1, self.views))
+        left, right = (
             F.grid_sample(
-                ring.roll(shift, 1).flatten(0, 1).float(),
-                turned.expand(len(x), -1, -1, -1),
+                ring.roll(shift, 1).flatten(0, 1),
+                turned.expand(len(maps), -1, -1, -1),
                 align_corners=False,
             )
             for shift, turned in zip((1, -1), grid, strict=True)
-        ]
-        return torch.stack([x.float(), *sides], 1)
+        )
+        return maps, left, right
 
 
 def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:

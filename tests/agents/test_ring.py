@@ -25,9 +25,9 @@ def panorama():
 def test_a_neighbour_turned_into_a_views_frame_shows_what_the_view_shows(panorama):
     grid = neighbour_grid(64, 64, VIEW_STEP_DEGREES, HFOV_DEGREES)
     seen = (grid.abs() <= 1).all(-1)
-    aligned = RingAdapter(3)._aligned(panorama, grid)
+    aligned = RingAdapter(3).aligned(panorama, grid)
     for side in (0, 1):
-        error = (aligned[:, side + 1] - panorama).abs().mean(1)[:, seen[side]]
+        error = (aligned[side + 1] - panorama).abs().mean(1)[:, seen[side]]
         plain = (panorama.roll(1 - 2 * side, 0) - panorama).abs().mean(1)[:, seen[side]]
         assert error.median() < 2 and error.mean() < 0.25 * plain.mean()
         assert 0.5 < seen[side].float().mean() < 0.7  # 60 of 90 degrees, less the corners
