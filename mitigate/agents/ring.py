@@ -90,7 +90,7 @@ class RingAdapter(nn.Module):
         left, right = (
             F.grid_sample(
                 ring.roll(shift, 1).flatten(0, 1),
-                turned.expand(len(maps), -1, -1, -1),
+                turned.expand(maps.shape[0], -1, -1, -1),
                 align_corners=False,
             )
             for shift, turned in zip((1, -1), grid, strict=True)
