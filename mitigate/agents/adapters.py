@@ -112,8 +112,9 @@ def remove_adapters(model: nn.Module) -> None:
     """Take all adapters out; the backbone is what it was before they came in."""
     for name in adapted(model):
         module = model.get_submodule(name)
-        getattr(module, _HOOK).remove()
-        delattr(module, _HOOK)
+        if hasattr(module, _HOOK):
+            getattr(module, _HOOK).remove()
+            delattr(module, _HOOK)
         delattr(module, NAME)
 
 
@@ -196,7 +197,8 @@ def _adapt(module: nn.Module, inputs: Any, output: Tensor) -> Tensor:
 
 def _attach(module: nn.Module, adapter: nn.Module) -> None:
     module.add_module(NAME, adapter)
-    setattr(module, _HOOK, module.register_forward_hook(_adapt))
+    if type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
+        setattr(module, _HOOK, module.register_forward_hook(_adapt))
 
 
 def _find(model: nn.Module, targets: Iterable[str]) -> set[str]:

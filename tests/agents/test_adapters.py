@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import copy
 import json
+import re
 from collections import OrderedDict
+from pathlib import Path
 
 import pytest
 import torch
@@ -119,6 +121,33 @@ def test_removal_gives_the_model_back_and_a_folder_brings_them_in_again(encoder,
     assert torch.equal(model(x), clean) and weights_sha(model) == before
     assert len(load_adapters(model, tmp_path)) == count
     assert torch.equal(model(x), hurt) and not torch.equal(hurt, clean)
+
+
+def test_an_adapter_adapts_once(encoder):
+    model, targets, x, _ = encoder
+    insert_adapters(model, targets)
+    calls = []
+    for name in adapters.adapted(model):
+        adapter = getattr(model.get_submodule(name), adapters.NAME)
+        adapter.register_forward_hook(lambda *_, name=name: calls.append(name))
+    model(x)
+    assert calls == adapters.adapted(model)
+
+
+def test_the_lines_in_the_readme_load_adapters_without_this_package(tmp_path, monkeypatch):
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    train, load = (
+        b for b in re.findall(r"```python\n(.*?)```", readme, re.S) if "my-adapters" in b
+    )
+    monkeypatch.chdir(tmp_path)
+    torch.manual_seed(0)
+    model, x = ResNet().eval(), torch.randn(2, 3, 32, 32)
+    twin = copy.deepcopy(model)
+    exec(train.replace("save_adapters(encoder", "shake(encoder); save_adapters(encoder"),
+         {"encoder": model, "torch": torch, "shake": shaken})  # fmt: skip
+    assert "mitigate" not in load
+    exec(load, {"encoder": twin})
+    assert torch.equal(twin(x), model(x)) and adapters.adapted(model) and not adapters.adapted(twin)
 
 
 def test_a_copy_has_adapters_of_its_own(encoder):
