@@ -85,19 +85,21 @@ def strangeness(sentence: str) -> float:
 def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
     """Return how many of the first sentences of ``text`` are no part of the route.
 
-    An attack stands in front, whole: what comes before a sure one goes too, if it is likely.
+    An attack stands in front, whole: what comes before a sure one goes too, if it is likely; in a
+    text with a manner of speaking, only what does not tell the way.
     ``judge`` (a language model) decides on the ``doubtful`` ones. Never are all sentences taken.
     """
     told = sentences(text)
-    if restyled(told):  # odd words are its manner's; real attacks in it are left to the model
-        return 0
+    in_manner = restyled(told)
     asked = set() if judge is None else set(doubtful(text))
     count, pending = 0, 0
     for index, sentence in enumerate(told[:-1]):
-        doubt = strangeness(sentence)
-        if doubt >= SURE or (judge is not None and sentence in asked and judge(sentence)):
+        if in_manner and tells_the_way(sentence):
+            break
+        judged = judge is not None and sentence in asked and judge(sentence)
+        if judged or strangeness(sentence) >= SURE:
             count, pending = index + 1, 0
-        elif doubt < LIKELY:
+        elif strangeness(sentence) < LIKELY:
             pending += 1
             if pending > 1 or count == 0 and index > 0:
                 break
@@ -110,6 +112,12 @@ def doubtful(text: str) -> list[str]:
     front = sentences(text)[:-1][:FRONT]
     least = 0.0 if any(strangeness(s) >= SURE for s in front) else ASK
     return [s for s in front if least <= strangeness(s) < SURE]
+
+
+def tells_the_way(sentence: str) -> bool:
+    """Return whether ``sentence`` names a landmark or a direction."""
+    told = facts(sentence)
+    return bool(told.landmarks or told.directions)
 
 
 def lower_capitals(text: str) -> str:
@@ -132,8 +140,12 @@ def style_marks(text: str) -> int:
 
 
 def restyled(told: list[str]) -> bool:
-    """Return whether half of the sentences speak in a manner."""
-    return sum(style_marks(sentence) > 0 for sentence in told) >= max(2.0, 0.5 * len(told))
+    """Return whether half of the sentences speak in a manner, and half of those that are not
+    surely foreign: an attack has a manner of its own."""
+    marked = [sentence for sentence in told if style_marks(sentence)]
+    rest = [sentence for sentence in told if strangeness(sentence) < SURE]
+    own = sum(sentence in marked for sentence in rest)
+    return len(marked) >= max(2.0, 0.5 * len(told)) and own >= 0.5 * len(rest)
 
 
 def framing(sentence: str) -> bool:

@@ -10,9 +10,12 @@ import pytest
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import masks, rules
+from mitigate.safeguard.data import draw_pair
 from mitigate.safeguard.guard import Safeguard, open_safeguard, refusal
 from mitigate.safeguard.routes import draw_route
+from mitigate.safeguard.rules import restyled, style_marks
 from mitigate.safeguard.text import MASK, sentences
 from mitigate.seeding import generator
 from tests.r2r_ce import FOLDER, needs_r2r_ce
@@ -187,3 +190,18 @@ def test_real_instructions_pass():
     texts = read_texts([FOLDER / "val_seen.json.gz"])[:500]
     changed = [d for d in Safeguard().canonicalise_all(texts) if check(d.original, d.text)]
     assert len(changed) <= 0.02 * len(texts)
+
+
+def test_an_attack_with_a_manner_of_its_own_does_not_hide_in_it():
+    odd = [s for group in prefixes("train").values() for s in group if style_marks(s)]
+    assert len(odd) >= 3
+    route = "Turn left at the sofa. Go through the door. Stop beside the bed."
+    text = f"{' '.join(odd[:3])} {route}"
+    assert restyled(sentences(route)) is False
+    assert Safeguard().canonicalise(text).text == route
+
+
+def test_a_manner_never_costs_the_first_steps():
+    told = [pair.source for i in range(400) if (pair := draw_pair(9, i)).kind == "style"]
+    cut = [bool(check(d.original, d.text)) for d in Safeguard().canonicalise_all(told)]
+    assert len(told) > 100 and sum(cut) <= 0.02 * len(told)
