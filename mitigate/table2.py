@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -34,6 +35,7 @@ class Table2Config:
     """Types of ``conf/table2.yaml``; the meaning of each entry is written there."""
 
     out: str = "runs/table2"
+    rows: list[str] = field(default_factory=list)
     columns: dict[str, Any] = field(default_factory=dict)
     seeds: list[int] = field(default_factory=list)
     split: str = "val_unseen"
@@ -97,10 +99,13 @@ class Cell:
 def run(cfg: DictConfig) -> Path:
     """Make all cells and the report; return the report's path.
 
-    Raises ValueError for settings that make no sense, and if a cell failed (after the others are
-    done), with the end of its log.
+    With ``cfg.rows`` the report is made of those rows, and no cell is run. Raises ValueError for
+    settings that make no sense, and if a cell failed (after the others are done), with the end of
+    its log; FileNotFoundError for rows that are not there.
     """
     out = Path(cfg.out)
+    if cfg.rows:
+        return write_report(cfg, out, list(cfg.rows))
     made = cells(cfg)
     with ThreadPoolExecutor(cfg.jobs) as pool, tqdm(total=len(made), desc="cells") as bar:
         failed = []
@@ -109,7 +114,7 @@ def run(cfg: DictConfig) -> Path:
                 failed.append(f"{cell.column}, seed {cell.seed}: {problem}")
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
-    report = write_report(cfg, out)
+    report = write_report(cfg, out, [c.folder for c in made if c.folder.is_dir()])
     if failed:
         raise ValueError("Some cells failed; run again to go on with them. " + " ".join(failed))
     return report
@@ -168,12 +173,13 @@ def _add_cost(path: Path, kind: str, seconds: float) -> None:
             json.dump(cost, file)
 
 
-def write_report(cfg: DictConfig, out: Path) -> Path:
-    """Write ``table.md`` with its pictures, and ``table2.md`` with the paper beside it."""
+def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:
+    """Write ``table.md`` with its pictures, and ``table2.md`` with the paper beside it, from the
+    rows under ``paths``."""
     from mitigate.evaluation import report, rows
     from mitigate.evaluation.sections import sections
 
-    found = rows.gather([cell.folder for cell in cells(cfg) if cell.folder.is_dir()])
+    found = rows.gather(paths)
     report.write(found, out)
     section = next(s for s in sections(found) if s.severity == cfg.severity)
     paper = OmegaConf.to_container(cfg.paper)
@@ -189,8 +195,9 @@ def costs(out: Path) -> dict[str, float]:
     """Mean CPU minutes of training by column."""
     spent: dict[str, list[float]] = {}
     for path in sorted((out / "cells").glob(f"*/{COST}")):
-        seconds = json.loads(path.read_text(encoding="utf-8")).get("train", 0.0)
-        spent.setdefault(path.parent.name.rpartition("-seed")[0], []).append(seconds / 60)
+        seconds = json.loads(path.read_text(encoding="utf-8")).get("train")
+        if seconds is not None:
+            spent.setdefault(path.parent.name.rpartition("-seed")[0], []).append(seconds / 60)
     return {column: sum(minutes) / len(minutes) for column, minutes in spent.items()}
 
 
@@ -219,7 +226,8 @@ def beside(section: Any, paper: dict[str, list], spent: dict[str, float]) -> str
         for name in names:
             rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
             lines.append([label(name), *(cell(v, name, c) for c, v in rates.items())])
-    lines.append(["Training, CPU minutes", *(f"{spent.get(c, 0.0):.0f}" for c in section.columns)])
+    minutes = (f"{spent[c]:.0f}" if c in spent else "–" for c in section.columns)
+    lines.append(["Training, CPU minutes", *minutes])
     table = "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
     return (
         "SR in %, in brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65). "

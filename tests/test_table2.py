@@ -69,6 +69,16 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     assert json.loads(costs[0].read_text())["train"] >= first > 0
 
 
+def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
+    cfg = config(tmp_path / "all")
+    finished(cfg)
+    whole = table2.run(cfg).read_text(encoding="utf-8").splitlines()
+    again = config(tmp_path / "again", rows=[str(c.folder) for c in table2.cells(cfg)])
+    report = table2.run(again).read_text(encoding="utf-8").splitlines()
+    assert report[:-1] == whole[:-1] and report[-1] == "| Training, CPU minutes | – | – |"
+    assert not (tmp_path / "again" / "cells").exists()
+
+
 def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path)
     finished(cfg)
