@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Protocol
 
 from mitigate import cli
-from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
 
@@ -206,7 +206,11 @@ def refusal(passage: str, answer: str | None) -> str:
     if answer is None:
         return "no answer in time"
     if MASK.search(passage):
-        return "" if masks.aligned(passage, answer) else "other words than the masks changed"
+        if not masks.aligned(passage, answer):
+            return "other words than the masks changed"
+        known = facts(MASK.sub(" ", passage)).attributes
+        invented = sorted({*facts(answer).attributes} - {*known})
+        return f"invented: {', '.join(invented)}" if invented else ""
     if len(words(answer)) > len(words(passage)) + 3:
         return "longer than what it replaces"
     problems = check(passage, answer)

@@ -192,6 +192,12 @@ def test_real_instructions_pass():
     assert len(changed) <= 0.02 * len(texts)
 
 
+@pytest.mark.parametrize("word, taken", [("the", True), ("the big", False), ("a purple", False)])
+def test_a_hidden_word_may_not_be_guessed_to_be_a_colour_or_a_size(word, taken):
+    masked = "Walk on until you see [MASK] [MASK] rug."
+    assert (refusal(masked, f"Walk on until you see {word} rug.") == "") is taken
+
+
 def test_an_attack_with_a_manner_of_its_own_does_not_hide_in_it():
     odd = [s for group in prefixes("train").values() for s in group if style_marks(s)]
     assert len(odd) >= 3
