@@ -65,8 +65,7 @@ def run(cfg: DictConfig) -> Path:
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.safeguard.guard import open_safeguard
 
-    node = settings_of(cfg.agent, cfg.checkpoint)
-    agent = build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
+    agent = load(cfg.agent, cfg.checkpoint, cfg.seed)
     name = cfg.name or name_of(cfg.checkpoint)
     if cfg.safeguard != "none":
         name += f"+{Path(cfg.safeguard).name}"
@@ -88,10 +87,16 @@ def run(cfg: DictConfig) -> Path:
     return out
 
 
+def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
+    """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
+    by ``node``. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
+    return build_agent(settings_of(node, weights), weights=weights, seed=seed).eval()
+
+
 def name_of(weights: str) -> str:
     """Return the name of weights by their path: of the run, for a run's ``agent`` folder."""
     path = Path(weights.removesuffix(".safetensors"))
-    while path.name in ("model", "agent"):
+    while path.name in ("model", "agent", "run"):
         path = path.parent
     return path.name or "agent"
 

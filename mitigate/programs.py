@@ -130,6 +130,8 @@ def export_programs(agent: TopologicalAgent, size: int) -> dict[str, ExportedPro
         made[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
         made[name].example_inputs = None  # frames; nothing needs them
         _drop_type_checks(made[name])
+        for node in made[name].graph.nodes:  # where lines of code lay on this machine
+            node.meta.pop("stack_trace", None)
     return made
 
 

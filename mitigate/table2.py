@@ -20,10 +20,11 @@ from typing import Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 from tqdm import tqdm
 
 from mitigate import cli
+from mitigate.evaluate import episodes, load
 from mitigate.files import atomic_text
 
 BASE = "checkpoints/base"
@@ -43,6 +44,7 @@ class Table2Config:
     severity: float = 0.6
     train: list[str] = field(default_factory=list)
     jobs: int = 2
+    walks: list[str] = field(default_factory=list)
     paper: dict[str, Any] = field(default_factory=dict)
 
 
@@ -58,12 +60,15 @@ class Cell:
     seed: int
     folder: Path
 
+    @property
+    def weights(self) -> str:
+        """Where the agent's weights are, or will be."""
+        return str(self.folder / "run" / "agent") if self.options else BASE
+
     def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
         """What makes the cell: ("train" or "evaluate", arguments after ``python -m``)."""
-        weights, found = BASE, []
+        found = []
         if self.options:
-            run = self.folder / "run"
-            weights = str(run / "agent")
             found.append(
                 (
                     "train",
@@ -72,7 +77,7 @@ class Cell:
                         *self.options,
                         *cfg.train,
                         f"seed={self.seed}",
-                        f"folder={run}",
+                        f"folder={self.folder / 'run'}",
                         "evaluation.enabled=false",
                     ],
                 )
@@ -83,7 +88,7 @@ class Cell:
                 "evaluate",
                 [
                     "mitigate.evaluate",
-                    f"checkpoint={weights}",
+                    f"checkpoint={self.weights}",
                     f"name={self.column}",
                     f"seed={self.seed}",
                     f"split={cfg.split}",
@@ -117,6 +122,7 @@ def run(cfg: DictConfig) -> Path:
     report = write_report(cfg, out, [c.folder for c in made if c.folder.is_dir()])
     if failed:
         raise ValueError("Some cells failed; run again to go on with them. " + " ".join(failed))
+    print("\n".join(f"wrote {path}" for path in draw_walks(cfg, out)), flush=True)
     return report
 
 
@@ -177,18 +183,41 @@ def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Pat
     """Write ``table.md`` with its pictures, and ``table2.md`` with the paper beside it, from the
     rows under ``paths``."""
     from mitigate.evaluation import report, rows
+    from mitigate.evaluation.paper import beside
     from mitigate.evaluation.sections import sections
 
     found = rows.gather(paths)
     report.write(found, out)
-    section = next(s for s in sections(found) if s.severity == cfg.severity)
-    paper = OmegaConf.to_container(cfg.paper)
-    assert isinstance(paper, dict)
-    figures = {str(name): list(values) for name, values in paper.items()}
+    made = [s for s in sections(found) if (s.grid.split, s.severity) == (cfg.split, cfg.severity)]
+    if not made:
+        held = sorted({f"{row['split']} at {row['severity']:g}" for row in found})
+        raise ValueError(
+            f"There are no rows of {cfg.split} at severity {cfg.severity:g}, only of "
+            f"{', '.join(held)}. Set split= and severity=."
+        )
+    figures = {str(name): list(values) for name, values in cfg.paper.items()}
+    spent = {} if cfg.rows else costs(out)
     with atomic_text(out / REPORT) as file:
-        file.write(beside(section, figures, costs(out)))
+        file.write("\n".join(beside(section, figures, spent) for section in made))
     print((out / REPORT).read_text(encoding="utf-8"), flush=True)
     return out / REPORT
+
+
+def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
+    """Write pictures of episodes that the last of ``cfg.walks`` wins back for the first, by the
+    agents of the first seed; nothing if one of them has no cell."""
+    from mitigate.evaluation import rows
+    from mitigate.evaluation.trajectories import write_pictures
+
+    made = {c.column: c for c in cells(cfg) if c.seed == cfg.seeds[0] and c.column in cfg.walks}
+    if len(made) < len(cfg.walks) or not made:
+        return []
+    node = cli.load_config("evaluate")
+    agents: dict[str, Any] = {name: load(node.agent, made[name].weights) for name in cfg.walks}
+    found = rows.gather([cell.folder / "evaluation" for cell in made.values()])
+    chosen = episodes(node.env, cfg.split, cfg.episodes)
+    seed, size = cfg.seeds[0], node.env.size
+    return write_pictures(agents, chosen, found, out / "pictures", seed=seed, size=size)
 
 
 def costs(out: Path) -> dict[str, float]:
@@ -199,40 +228,6 @@ def costs(out: Path) -> dict[str, float]:
         if seconds is not None:
             spent.setdefault(path.parent.name.rpartition("-seed")[0], []).append(seconds / 60)
     return {column: sum(minutes) / len(minutes) for column, minutes in spent.items()}
-
-
-def beside(section: Any, paper: dict[str, list], spent: dict[str, float]) -> str:
-    """Markdown of our table with the paper's figure after each of ours, in brackets."""
-    from mitigate.evaluation.sections import label
-
-    theirs = {
-        name: dict(zip(paper["columns"], values, strict=True))
-        for name, values in paper.items()
-        if name != "columns"
-    }
-
-    def cell(value: str, name: str, column: str) -> str:
-        reference = theirs.get(name, {}).get(column)
-        return value if reference is None else f"{value} ({reference})"
-
-    lines = [["Corruption", *section.columns], ["---", *["---:"] * len(section.columns)]]
-    clean = [100 * section.value(c, "clean") for c in section.columns]
-    lines.append(["Clean SR", *(f"{value:.1f}" for value in clean)])
-    for block, names in section.blocks.items():
-        title = f"PRS-SR ({block})"
-        kept = {c: section.retained.get((c, block, "SR")) for c in section.columns}
-        values = {c: "–" if r is None else f"{r.estimate.value:.2f}" for c, r in kept.items()}
-        lines.append([f"**{title}**", *(cell(v, title, c) for c, v in values.items())])
-        for name in names:
-            rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
-            lines.append([label(name), *(cell(v, name, c) for c, v in rates.items())])
-    minutes = (f"{spent[c]:.0f}" if c in spent else "–" for c in section.columns)
-    lines.append(["Training, CPU minutes", *minutes])
-    table = "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
-    return (
-        "SR in %, in brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65). "
-        "Intervals are in table.md.\n\n" + table + "\n"
-    )
 
 
 @hydra.main(version_base="1.3", config_path=str(cli.CONF), config_name="table2")

@@ -24,8 +24,8 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate import checkpoint, cli, seeding
-from mitigate.build import build, build_agent, settings_of
-from mitigate.evaluate import EvaluationConfig, conditions, episodes
+from mitigate.build import build, build_agent
+from mitigate.evaluate import EvaluationConfig, conditions, episodes, load
 from mitigate.files import atomic_text
 from mitigate.trainer import Trainer
 
@@ -104,8 +104,7 @@ def run(cfg: DictConfig) -> Path:
     if cfg.evaluation.enabled:
         base = None
         if cfg.init:
-            node = settings_of(cfg.agent, cfg.init)
-            base = build_agent(node, weights=cfg.init, seed=cfg.seed).eval()
+            base = load(cfg.agent, cfg.init, cfg.seed)
         get_method(cfg.report)(cfg, base, agent, folder)
     print(f"done: {folder}", flush=True)
     return folder

@@ -74,6 +74,7 @@ def test_weights_are_named_after_their_folder_or_run():
     for path in (
         "checkpoints/base",
         "runs/base/agent",
+        "runs/table2/cells/base/run/agent",
         "x/base/model.safetensors",
         "base.safetensors",
     ):

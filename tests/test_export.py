@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -406,3 +407,32 @@ def test_the_examples_of_the_deployment_page_run(place, tmp_path, monkeypatch):
     assert names["action"] in range(4) and names["logits"].shape == (1, 3)
     assert names["logits"].isfinite().tolist() == [[True, False, True]]
     assert not torch.equal(names["features"], plain) and torch.equal(encoder(images), plain)
+
+
+def test_no_file_says_where_it_was_made(place):
+    """Neither the checkout nor the folder of the export, as the programs' traces once did."""
+    for name in ("whole", "adapted"):
+        for file in (place / "hardened" / name).iterdir():
+            parts = [file.read_bytes()]
+            if file.suffix == ".pt2":
+                with zipfile.ZipFile(file) as archive:
+                    parts = [archive.read(part) for part in archive.namelist()]
+            for where in (str(ROOT), sys.prefix):
+                assert not any(where.encode() in part for part in parts), (file.name, where)
+
+
+SHIPPED = sorted(p.name for p in (ROOT / "checkpoints/hardened").glob("[!.]*"))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_shipped_folder_is_whole_and_its_program_decides_as_the_agent_does(name):
+    folder = ROOT / "checkpoints/hardened" / name
+    agent = hardened.load_hardened(folder)
+    given = programs.probe(agent, SIZE)
+    program = programs.load_programs(folder / hardened.PROGRAM)
+    wanted = programs.outputs(programs.networks(agent), given)
+    assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
+
+
+def test_the_hardened_agents_of_the_readme_are_shipped():
+    assert {"conv_adapter", "stacked", "ts_distill"} <= set(SHIPPED)

@@ -11,7 +11,7 @@ from omegaconf import OmegaConf
 from mitigate import cli, table2
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import rows
-from tests.evaluation.made_rows import column
+from tests.evaluation.made_rows import column, row
 
 ALL = dict.fromkeys((*RGB, *DEPTH), 4)
 
@@ -62,6 +62,7 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
     assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
     assert "Training, CPU minutes" in lines
+    assert lines["Seeds"] == "| Seeds | 0 1 | 0 1 |"
     costs = sorted(tmp_path.glob("cells/*/cost.json"))
     assert len(costs) == len(table2.cells(cfg))
     first = json.loads(costs[0].read_text())["train"]
@@ -98,3 +99,44 @@ def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
 def test_an_empty_table_is_refused(tmp_path):
     with pytest.raises(ValueError, match="must not be empty"):
         table2.cells(config(tmp_path, seeds=[]))
+
+
+def test_rows_of_another_severity_are_told(tmp_path):
+    cfg = config(tmp_path, severity=0.9)
+    rows.write(tmp_path / "cells" / "rows.jsonl", column(8, ALL))
+    cfg = OmegaConf.merge(cfg, {"rows": [str(tmp_path / "cells")]})
+    with pytest.raises(ValueError, match="only of val_unseen at 0, val_unseen at 0.6"):
+        table2.run(cfg)
+
+
+def test_the_papers_figures_stand_only_beside_its_severity(tmp_path):
+    rows.write(tmp_path / "rows.jsonl", column(8, ALL, name="da_per_frame", severity=0.9))
+    cfg = config(tmp_path / "out", severity=0.9, rows=[str(tmp_path / "rows.jsonl")])
+    lines = table2.run(cfg).read_text(encoding="utf-8").splitlines()
+    assert "| Motion blur | 40.0 |" in lines
+
+
+def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick, monkeypatch):
+    """Every cell's weights are the base agent's, so a test takes seconds; the rows say who won."""
+    monkeypatch.setattr(table2.Cell, "weights", "checkpoints/base")
+    cfg = config(tmp_path, walks=["base", "da_per_frame"], episodes=2, seeds=[0])
+    ids = [
+        episode.episode_id
+        for episode in table2.episodes(cli.load_config("evaluate").env, cfg.split, 2)
+    ]
+    for cell, wins in zip(table2.cells(cfg), ("10", "11"), strict=True):
+        made = [
+            row(i, won == "1", name=cell.column, corruption=c, severity=0.6 * (c != "clean"))
+            for c in ("clean", "flare")
+            for i, won in zip(ids, wins, strict=True)
+        ]
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
+    table2.run(cfg)
+    assert {p.name for p in (tmp_path / "pictures").iterdir()} == {
+        f"{ids[1]}-flare.png",
+        "sheet.png",
+    }
+
+
+def test_no_walks_without_the_agents_cells(tmp_path):
+    assert table2.draw_walks(config(tmp_path), tmp_path) == []

@@ -85,8 +85,7 @@ def insert_adapters(
     Raises ValueError for a target that matches nothing (with the names there are), a module whose
     channels cannot be told, or a model that has adapters already.
     """
-    if adapted(model):
-        raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
+    _refuse_adapted(model)
     plain, ringed = _find(model, target_modules), _find(model, ring)
     model.requires_grad_(False)
     names = [name for name, _ in model.named_modules() if name in plain or name in ringed]
@@ -98,8 +97,7 @@ def insert_adapters(
             if name in ringed
             else ConvAdapter(channels, reduction, kernel)
         )
-        like = next(module.parameters())
-        _attach(module, adapter.to(like.device, like.dtype))
+        _attach(module, adapter)
     return names
 
 
@@ -151,10 +149,12 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
 def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     """Insert the adapters that ``save_adapters`` wrote; returns the adapted modules' names.
 
-    Raises FileNotFoundError if a file is missing; ValueError for a damaged file, for adapters
-    trained on another backbone, or for modules that ``model`` does not have.
+    Each goes to its module's device and dtype. Raises FileNotFoundError if a file is missing;
+    ValueError for a damaged file, for a model that has adapters already, for adapters trained on
+    another backbone, or for modules that ``model`` does not have.
     """
     folder = Path(folder)
+    _refuse_adapted(model)
     for file in (folder / WEIGHTS, folder / SETTINGS):
         if not file.is_file():
             raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
@@ -174,13 +174,18 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
         raise ValueError(f"This model has no module called {', '.join(missing)}.")
+    made = {}
+    try:
+        for name, shape in shapes.items():
+            made[name] = (RingAdapter if "views" in shape else ConvAdapter)(**shape)
+            prefix = f"{_key(name)}."
+            made[name].load_state_dict(
+                {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
+            )
+    except (RuntimeError, TypeError) as error:
+        raise ValueError(f"The adapters in {folder} are damaged ({error}).") from error
     model.requires_grad_(False)
-    for name, shape in shapes.items():
-        adapter = (RingAdapter if "views" in shape else ConvAdapter)(**shape)
-        prefix = f"{_key(name)}."
-        adapter.load_state_dict(
-            {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
-        )
+    for name, adapter in made.items():
         _attach(model.get_submodule(name), adapter)
     return list(shapes)
 
@@ -195,8 +200,14 @@ def _adapt(module: nn.Module, inputs: Any, output: Tensor) -> Tensor:
     return getattr(module, NAME)(output)
 
 
+def _refuse_adapted(model: nn.Module) -> None:
+    if adapted(model):
+        raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
+
+
 def _attach(module: nn.Module, adapter: nn.Module) -> None:
-    module.add_module(NAME, adapter)
+    like = next(module.parameters())
+    module.add_module(NAME, adapter.to(like.device, like.dtype))
     if type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
         setattr(module, _HOOK, module.register_forward_hook(_adapt))
 

@@ -85,7 +85,8 @@ class RingAdapter(nn.Module):
 
     def aligned(self, maps: Tensor, grid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Each map ``[P * views, C, h, w]``, the one to its left and the one to its right, turned
-        into its own frame; zero where a neighbour does not see."""
+        into its own frame; zero where a neighbour does not see, and fading to it within half a cell
+        of the neighbour's border."""
         ring = maps.unflatten(0, (-1, self.views))
         left, right = (
             F.grid_sample(

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -23,13 +23,12 @@ from tqdm import tqdm
 from mitigate import cli
 from mitigate.agents.concepts import THINGS, view_labels
 from mitigate.agents.waypoints import free_target
-from mitigate.build import build_agent, settings_of
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
 from mitigate.corruptions import RGB as RGB_NAMES
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import apartment_of
 from mitigate.envs.apartments.tasks import load_episodes
-from mitigate.evaluate import name_of
+from mitigate.evaluate import load, name_of
 from mitigate.evaluation.bootstrap import resampled_means
 from mitigate.evaluation.sections import label
 from mitigate.keys import DEPTH, POSE, RGB
@@ -106,6 +105,12 @@ def table(scores: dict[str, dict[str, tuple[float, float, float]]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
+def _column(weights: str, taken: Collection[str]) -> str:
+    """The name of ``weights``, or their path where another has that name."""
+    name = name_of(weights)
+    return weights if name in taken else name
+
+
 @lru_cache(maxsize=1)
 def _agent_node() -> Any:
     with initialize_config_dir(str(cli.CONF), version_base="1.3"):
@@ -126,11 +131,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     options = parser.parse_args(arguments)
     if options.poses < 1:
         raise ValueError(f"--poses {options.poses}: at least one is needed.")
+    agents: dict[str, Any] = {}
+    for weights in options.agents:  # all first: a wrong path must not cost the others' minutes
+        agents[_column(weights, agents)] = load(_agent_node(), weights)
     poses = Poses(options.split, options.poses, options.seed)
-    scores = {}
-    for weights in tqdm(options.agents, desc="agents", disable=None):
-        agent = build_agent(settings_of(_agent_node(), weights), weights=weights, seed=0).eval()
-        scores[name_of(weights)] = measure(agent, poses, options.severity)
+    scores = {
+        name: measure(agent, poses, options.severity)
+        for name, agent in tqdm(agents.items(), desc="agents", disable=None)
+    }
     print(
         f"{options.poses} poses of {options.split}, severity {options.severity:g}, seed "
         f"{options.seed}\n\n{table(scores)}"

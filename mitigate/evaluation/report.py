@@ -58,11 +58,12 @@ def write(rows: Iterable[Row], folder: Path | str) -> list[Path]:
 def _heading(section: Section) -> str:
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
-    seeds = sorted({seed for column in columns for seed in grid.seeds[column]})
+    kinds = {grid.seeds[column] for column in columns}
+    seeds = "seed " + _listed(kinds.pop()) if len(kinds) == 1 else _seeds_by_column(section)
     agents = ", ".join(f"{x} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns)
     return (
         f"## {grid.split}, {at}\n\n"
-        f"N = {len(grid.episodes)} episodes, seed {', '.join(map(str, seeds))}, corruption suite "
+        f"N = {len(grid.episodes)} episodes, {seeds}, corruption suite "
         f"{grid.suite}. Success: {grid.rule}. Agents: {agents}.\n"
         f"SR in %. PRS = mean over the block's corruptions of SR (SPL) / the same agent's clean "
         f"SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over episodes, {RESAMPLES:,} "
@@ -70,11 +71,23 @@ def _heading(section: Section) -> str:
     )
 
 
+def _seeds_by_column(section: Section) -> str:
+    found = (f"{_listed(section.grid.seeds[c])} of {c}" for c in section.columns)
+    return f"seeds {'; '.join(found)}"
+
+
+def _listed(seeds: Iterable[int]) -> str:
+    return ", ".join(map(str, seeds))
+
+
 def _table(section: Section) -> str:
     lines = [["Corruption", *section.columns]]
     for metric in METRICS:
         cells = [_interval(section.clean.get((c, metric)), metric) for c in section.columns]
         lines.append([f"Clean {metric}", *cells])
+    if len(section.columns) > 1:
+        cells = [_moved(section.moved.get((c, "SR"))) for c in section.columns]
+        lines.append([f"Clean SR against {section.reference}", *cells])
     for block, names in section.blocks.items():
         for metric in METRICS:
             cells = [_prs(section, (c, block, metric)) for c in section.columns]
@@ -115,7 +128,7 @@ def _notes(section: Section) -> str:
             "so it is not applicable and no part of the PRS."
         )
     if section.gained:
-        notes.append("Differences of PRS in bold have intervals that exclude zero.")
+        notes.append("Differences in bold have intervals that exclude zero.")
     if section.gaps:
         notes.append("\\* over the episodes at hand. Missing cells:")
         notes += [
@@ -153,6 +166,14 @@ def _prs(section: Section, place: tuple[str, str, str]) -> str:
     if math.isnan(prs.value):
         return f"undefined{marks}"
     return f"**{prs.value:.2f}** [{prs.low:.2f}, {prs.high:.2f}]{marks}"
+
+
+def _moved(change: Estimate | None) -> str:
+    if change is None:
+        return "–"
+    text = f"{100 * change.value:+.1f}"
+    text = f"**{text}**" if change.excludes_zero else text
+    return f"{text} [{100 * change.low:+.1f}, {100 * change.high:+.1f}]"
 
 
 def _change(section: Section, place: tuple[str, str, str]) -> str:

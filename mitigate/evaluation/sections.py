@@ -40,8 +40,9 @@ class Retained:
 class Section:
     """One table: a grid at one severity (0 where only clean cells exist).
 
-    ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
-    the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
+    ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric). ``moved`` and
+    ``gained`` are the paired differences of both to the ``reference`` column, keyed likewise;
+    metrics are "SR" and "SPL".
     """
 
     grid: Grid
@@ -50,6 +51,7 @@ class Section:
     blocks: dict[str, tuple[str, ...]]
     reference: str
     clean: dict[tuple[str, str], Estimate]
+    moved: dict[tuple[str, str], Estimate]
     retained: dict[tuple[str, str, str], Retained]
     gained: dict[tuple[str, str, str], Retained]
     gaps: list[Gap]
@@ -102,12 +104,15 @@ def _section(grid: Grid, severity: float) -> Section:
         grid.columns_at(severity), key=lambda label: rank.get(grid.columns[label][0], len(rank))
     )
     blocks, reference = grid.blocks_at(severity), columns[0]
-    clean, retained, gained = {}, {}, {}
+    clean, moved, retained, gained = {}, {}, {}, {}
     for column in columns:
         for metric, key in METRICS.items():
             values = grid.cell(column, "clean", 0.0, key)[grid.measured(column, key)]
             if len(values):
                 clean[column, metric] = bootstrap.mean(values)
+            change = grid.cell(column, "clean", 0.0, key) - grid.cell(reference, "clean", 0.0, key)
+            if column != reference and not np.isnan(change).all():
+                moved[column, metric] = bootstrap.mean(change[~np.isnan(change)])
             for block, names in blocks.items():
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):
@@ -116,7 +121,9 @@ def _section(grid: Grid, severity: float) -> Section:
                 if pair and (parts := grid.retention(pair, names, severity, key)):
                     gained[place] = _retained(parts)
     gaps = grid.gaps(severity)
-    return Section(grid, severity, tuple(columns), blocks, reference, clean, retained, gained, gaps)
+    return Section(
+        grid, severity, tuple(columns), blocks, reference, clean, moved, retained, gained, gaps
+    )
 
 
 def _retained(parts: list[Retention]) -> Retained:

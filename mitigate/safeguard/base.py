@@ -30,6 +30,8 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     place, gguf = _source(base)
     dtype = torch.bfloat16 if precision == "bf16" else torch.float32
     given = {**gguf, "quantization_config": GgufConfig(dequantize=True)} if gguf else {}
+    # on CPUs plain attention trains these short texts a fifth faster than the fused kernel
+    how: dict[str, Any] = {} if torch.cuda.is_available() else {"attn_implementation": "eager"}
     with _explained(base, precision):
         tokenizer = AutoTokenizer.from_pretrained(place, **gguf)
         if precision == "int8" and given:  # bitsandbytes quantises a dense checkpoint, not GGUF
@@ -39,14 +41,14 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
                 )
                 eight = BitsAndBytesConfig(load_in_8bit=True)
                 network = AutoModelForCausalLM.from_pretrained(
-                    dense, dtype=dtype, quantization_config=eight
+                    dense, dtype=dtype, quantization_config=eight, **how
                 )
         elif precision == "int8":
             network = AutoModelForCausalLM.from_pretrained(
-                place, dtype=dtype, quantization_config=BitsAndBytesConfig(load_in_8bit=True)
+                place, dtype=dtype, quantization_config=BitsAndBytesConfig(load_in_8bit=True), **how
             )
         else:
-            network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given)
+            network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given, **how)
     if tokenizer.pad_token_id is None:  # Llama 3.2 has none; positions are masked anyway
         tokenizer.pad_token = tokenizer.eos_token
     if tokenizer.chat_template is None:

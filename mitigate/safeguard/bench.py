@@ -97,6 +97,10 @@ def _resident() -> float:
         return int(file.read().split()[1]) * resource.getpagesize() / 1e6
 
 
+def _shown(value: float) -> str:
+    return f"{value:,.0f}" if value >= 100 else f"{value:.3g}"
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure every kind and print a Markdown table."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -116,7 +120,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
             print(f"| {kind} | {done.stderr.strip().splitlines()[-1][:120]} |", flush=True)
             continue
         found = json.loads(done.stdout.strip().splitlines()[-1])
-        print(f"| {kind} | {' | '.join(f'{found[n]:.3g}' for n in COLUMNS)} |", flush=True)
+        print(f"| {kind} | {' | '.join(_shown(found[n]) for n in COLUMNS)} |", flush=True)
 
 
 if __name__ == "__main__":

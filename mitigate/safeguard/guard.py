@@ -206,15 +206,26 @@ def refusal(passage: str, answer: str | None) -> str:
     if answer is None:
         return "no answer in time"
     if MASK.search(passage):
-        if not masks.aligned(passage, answer):
-            return "other words than the masks changed"
-        known = facts(MASK.sub(" ", passage)).attributes
-        invented = sorted({*facts(answer).attributes} - {*known})
-        return f"invented: {', '.join(invented)}" if invented else ""
+        return _refused_filling(passage, answer)
     if len(words(answer)) > len(words(passage)) + 3:
         return "longer than what it replaces"
     problems = check(passage, answer)
     return problems[0] if problems else ""
+
+
+def _refused_filling(passage: str, answer: str) -> str:
+    """Return why ``answer`` may not fill the masks of ``passage``: only small words are hidden, so
+    what stands for one must not say where to go, what is there or what it is like."""
+    found = masks.filled(passage, answer)
+    if found is None:
+        return "other words than the masks changed"
+    said = facts(", ".join(word for word in found if word))
+    added = (*said.landmarks, *said.numbers, *said.compass, *said.attributes)
+    if added:
+        return f"invented: {', '.join(added)}"
+    if said.denials or facts(answer).directions != facts(masks.fill(passage)).directions:
+        return "directions changed by a hidden word"
+    return ""
 
 
 def _readable(text: str) -> bool:

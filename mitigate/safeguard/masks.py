@@ -41,15 +41,14 @@ def fill(text: str) -> str:
     return re.sub(r"\s+([.,;!?])", r"\1", " ".join(("".join(pieces) + text[at:]).split()))
 
 
-def aligned(masked: str, answer: str) -> bool:
-    """Return whether ``answer`` is ``masked`` with up to three words for each mask.
-
-    Nothing else may differ, but for case and marks at the ends.
-    """
+def filled(masked: str, answer: str) -> list[str] | None:
+    """Return what ``answer`` has in place of each mask of ``masked``, up to three words for one;
+    None if anything else differs, but for case and marks at the ends."""
     body = re.sub(r"\s+", " ", MASK.sub(" [mask] ", masked)).strip(" .")
     parts = [re.escape(part.strip()) for part in body.split("[mask]")]
-    pattern = r"\s*(?:[\w'’-]+\s*){0,3}".join(re.sub(r"\\ ", r"\\s+", part) for part in parts)
-    return re.fullmatch(pattern, " ".join(answer.split()).strip(" ."), re.IGNORECASE) is not None
+    pattern = r"\s*((?:[\w'’-]+\s*){0,3})".join(re.sub(r"\\ ", r"\\s+", part) for part in parts)
+    found = re.fullmatch(pattern, " ".join(answer.split()).strip(" ."), re.IGNORECASE)
+    return None if found is None else [words.strip() for words in found.groups()]
 
 
 @lru_cache(maxsize=4096)

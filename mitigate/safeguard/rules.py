@@ -37,7 +37,8 @@ _SETS = {
 }
 CLOSED = {name: bag(text) for name, text in _SETS.items()}
 VERBS = MOTION | STOPS | TURN_VERBS
-_IDIOMS = re.compile(r"\b(?:all the way|each other|each side|all around)\b")
+# no words about all cases; "the" may be hidden
+_IDIOMS = re.compile(r"\b(?:all\s+(?:the\s+)?way|each other|each side|all around)\b")
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 

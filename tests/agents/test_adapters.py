@@ -123,6 +123,17 @@ def test_removal_gives_the_model_back_and_a_folder_brings_them_in_again(encoder,
     assert torch.equal(model(x), hurt) and not torch.equal(hurt, clean)
 
 
+def test_loaded_adapters_have_their_modules_type_and_do_not_come_in_twice(tmp_path):
+    model = ResNet().double()
+    insert_adapters(model, ["layer1"])
+    save_adapters(model, tmp_path)
+    with pytest.raises(ValueError, match="has adapters already"):
+        load_adapters(model, tmp_path)
+    remove_adapters(model)
+    load_adapters(model, tmp_path)
+    assert {p.dtype for p in adapters.adapter_parameters(model)} == {torch.float64}
+
+
 def test_an_adapter_adapts_once(encoder):
     model, targets, x, _ = encoder
     insert_adapters(model, targets)
@@ -212,7 +223,7 @@ def test_a_second_set_is_refused(encoder):
         insert_adapters(model, targets)
 
 
-@pytest.mark.parametrize("spoil", ["missing", "cut", "settings", "backbone"])
+@pytest.mark.parametrize("spoil", ["missing", "cut", "settings", "shapes", "backbone"])
 def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
     torch.manual_seed(0)
     model = ResNet()
@@ -226,10 +237,13 @@ def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
         weights.write_bytes(weights.read_bytes()[:100])
     elif spoil == "settings":
         settings.write_text(json.dumps({"adapters": 3}), encoding="utf-8")
+    elif spoil == "shapes":
+        text = settings.read_text(encoding="utf-8")
+        settings.write_text(text.replace('"channels": 16', '"channels": 8'), encoding="utf-8")
     else:
         with torch.no_grad():
             model.fc.bias.add_(1)
     error = FileNotFoundError if spoil == "missing" else ValueError
-    with pytest.raises(error, match="is missing|cut short|another|trained on a backbone"):
+    with pytest.raises(error, match="is missing|cut short|are damaged|trained on a backbone"):
         load_adapters(model, tmp_path)
     assert not adapters.adapted(model)

@@ -29,8 +29,7 @@ def test_a_hidden_middle_costs_things_and_missing_data_costs_free_space(printed)
 
 def test_no_severity_is_clean():
     poses = perception.Poses("val_seen", 2, seed=1)
-    node = perception._agent_node()
-    agent = perception.build_agent(node, weights="checkpoints/base", seed=0).eval()
+    agent = perception.load(perception._agent_node(), "checkpoints/base")
     found = perception.measure(agent, poses, severity=0.0)
     assert found["motion_blur"] == found["clean"] and found["multipath"] == found["clean depth"]
 
@@ -46,3 +45,8 @@ def test_no_severity_is_clean():
 def test_mistakes_are_told(arguments, message):
     with pytest.raises((ValueError, FileNotFoundError), match=message):
         perception.main(arguments)
+
+
+def test_agents_of_one_name_have_columns_of_their_own():
+    assert perception._column("runs/a/agent", ["base"]) == "a"
+    assert perception._column("checkpoints/base", ["base"]) == "checkpoints/base"

@@ -39,7 +39,7 @@ def test_the_table_has_the_papers_rows_and_their_numbers():
     assert found["L-L w/ noise"] == ["40.0", "40.0"]
     names = list(found)
     assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
-    assert len([n for n in names if "PRS" not in n]) == 1 + 1 + 2 + 12  # head, rule, clean, suite
+    assert len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 12  # head, rule, clean, suite
 
 
 def test_the_conditions_of_the_result_are_printed():
@@ -60,6 +60,15 @@ def test_prs_differences_are_paired_and_against_base():
     (section,) = sections(same)
     nothing = section.gained["da_per_episode", "Depth", "SPL"].estimate
     assert (nothing.low, nothing.high) == (0.0, 0.0)
+
+
+def test_clean_differences_are_paired_and_against_base():
+    found = lines(column(8, ALL) + column(5, ALL, **HARD))
+    first, second = found["Clean SR against base"]
+    assert first == "–" and second.strip("*").startswith("-30.0")
+    (section,) = sections(column(8, ALL) + column(8, ALL, **HARD))
+    same = section.moved["da_per_episode", "SR"]
+    assert (same.low, same.high) == (0, 0)
 
 
 def test_partial_rows_give_a_partial_table_that_lists_its_gaps():

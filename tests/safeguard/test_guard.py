@@ -9,7 +9,7 @@ import pytest
 
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.data import draw_pair
@@ -108,7 +108,7 @@ def test_masks_are_filled_by_neighbours_without_a_model():
     assert masks.fill("Walk past [MASK] sofa.") == "Walk past the sofa."
     filled = masks.fill("Turn left [MASK] walk past <mask> bed.")
     assert filled == "Turn left and walk past the bed."
-    assert masks.aligned("Go to [MASK] bed.", "Go to the bed") and not masks.aligned(
+    assert masks.filled("Go to [MASK] bed.", "Go to the bed") == ["the"] and not masks.filled(
         "a [MASK]", "b c"
     )
 
@@ -192,10 +192,30 @@ def test_real_instructions_pass():
     assert len(changed) <= 0.02 * len(texts)
 
 
-@pytest.mark.parametrize("word, taken", [("the", True), ("the big", False), ("a purple", False)])
-def test_a_hidden_word_may_not_be_guessed_to_be_a_colour_or_a_size(word, taken):
-    masked = "Walk on until you see [MASK] [MASK] rug."
-    assert (refusal(masked, f"Walk on until you see {word} rug.") == "") is taken
+@pytest.mark.parametrize(
+    "answer, taken",
+    [
+        ("Walk on and until you see the rug.", True),
+        ("Walk on and until you see the big rug.", False),
+        ("Walk on north until you see the rug.", False),
+        ("Walk on left until you see the rug.", False),
+        ("Walk on past the sofa until you see the rug.", False),
+        ("Walk on two steps until you see the rug.", False),
+        ("Walk on and stop until you see the rug.", False),
+    ],
+)
+def test_a_hidden_word_may_not_be_guessed_to_say_where_what_or_how_many(answer, taken):
+    masked = "Walk on [MASK] until you see [MASK] [MASK] rug."
+    assert (refusal(masked, answer) == "") is taken
+
+
+def test_a_sentence_of_a_route_stays_though_words_in_it_are_hidden():
+    for first in ("Turn all [MASK] way around.", "Go all [MASK] way down [MASK] hall."):
+        text = f"{first} Next, head through [MASK] doorway. Stop beside [MASK] bed."
+        assert (
+            facts(Safeguard().canonicalise(text).text).directions
+            == facts(text.replace("[MASK]", "the")).directions
+        )
 
 
 def test_an_attack_with_a_manner_of_its_own_does_not_hide_in_it():

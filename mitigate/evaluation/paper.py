@@ -1,0 +1,54 @@
+"""The paper's Table II beside ours: its figure in brackets after each of our own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from mitigate.evaluation.sections import Section, label
+
+SEVERITY = 0.6  # of the paper's Table II (its caption); other severities stand alone
+
+
+def beside(section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, float]) -> str:
+    """Return Markdown of ``section`` with the paper's figures and the CPU minutes of training.
+
+    Args:
+        paper: "columns" -> names of its columns, and by row ("PRS-SR (RGB)", "motion_blur") its
+            figures in their order. spent: CPU minutes by column.
+    """
+    theirs = {
+        name: dict(zip(paper["columns"], values, strict=True))
+        for name, values in paper.items()
+        if name != "columns" and section.severity == SEVERITY
+    }
+
+    def cells(title: str, name: str, values: Mapping[str, str]) -> list[str]:
+        known = theirs.get(name, {})
+        return [title, *(f"{v} ({known[c]})" if c in known else v for c, v in values.items())]
+
+    lines = [["Corruption", *section.columns], ["---", *["---:"] * len(section.columns)]]
+    lines.append(["Clean SR", *(f"{100 * section.value(c, 'clean'):.1f}" for c in section.columns)])
+    for block, names in section.blocks.items():
+        title = f"PRS-SR ({block})"
+        kept = {c: section.retained.get((c, block, "SR")) for c in section.columns}
+        values = {c: "–" if r is None else f"{r.estimate.value:.2f}" for c, r in kept.items()}
+        lines.append(cells(f"**{title}**", title, values))
+        for name in names:
+            rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
+            lines.append(cells(label(name), name, rates))
+    held = (" ".join(map(str, section.grid.seeds[c])) for c in section.columns)
+    lines.append(["Seeds", *held])
+    minutes = (f"{spent[c]:.0f}" if c in spent else "–" for c in section.columns)
+    lines.append(["Training, CPU minutes", *minutes])
+    table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    return f"{_header(section, bool(theirs))}\n\n{table}\n"
+
+
+def _header(section: Section, compared: bool) -> str:
+    text = (
+        f"{section.grid.split}, severity {section.severity:g}, N = {len(section.grid.episodes)}, "
+        f"corruption suite {section.grid.suite}. SR in %. Intervals are in table.md."
+    )
+    if compared:
+        text += " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65)."
+    return text
