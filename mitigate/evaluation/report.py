@@ -86,7 +86,7 @@ def _table(section: Section) -> str:
         cells = [_interval(section.clean.get((c, metric)), metric) for c in section.columns]
         lines.append([f"Clean {metric}", *cells])
     if len(section.columns) > 1:
-        cells = [_moved(section.moved.get((c, "SR"))) for c in section.columns]
+        cells = [_moved(section.moved.get(c)) for c in section.columns]
         lines.append([f"Clean SR against {section.reference}", *cells])
     for block, names in section.blocks.items():
         for metric in METRICS:

@@ -40,9 +40,9 @@ class Retained:
 class Section:
     """One table: a grid at one severity (0 where only clean cells exist).
 
-    ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric). ``moved`` and
-    ``gained`` are the paired differences of both to the ``reference`` column, keyed likewise;
-    metrics are "SR" and "SPL".
+    ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
+    the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
+    ``moved`` is the paired difference of clean SR, by column.
     """
 
     grid: Grid
@@ -51,7 +51,7 @@ class Section:
     blocks: dict[str, tuple[str, ...]]
     reference: str
     clean: dict[tuple[str, str], Estimate]
-    moved: dict[tuple[str, str], Estimate]
+    moved: dict[str, Estimate]
     retained: dict[tuple[str, str, str], Retained]
     gained: dict[tuple[str, str, str], Retained]
     gaps: list[Gap]
@@ -105,14 +105,15 @@ def _section(grid: Grid, severity: float) -> Section:
     )
     blocks, reference = grid.blocks_at(severity), columns[0]
     clean, moved, retained, gained = {}, {}, {}, {}
+    base = grid.cell(reference, "clean", 0.0, METRICS["SR"])
     for column in columns:
+        change = grid.cell(column, "clean", 0.0, METRICS["SR"]) - base
+        if column != reference and not np.isnan(change).all():
+            moved[column] = bootstrap.mean(change[~np.isnan(change)])
         for metric, key in METRICS.items():
             values = grid.cell(column, "clean", 0.0, key)[grid.measured(column, key)]
             if len(values):
                 clean[column, metric] = bootstrap.mean(values)
-            change = grid.cell(column, "clean", 0.0, key) - grid.cell(reference, "clean", 0.0, key)
-            if column != reference and not np.isnan(change).all():
-                moved[column, metric] = bootstrap.mean(change[~np.isnan(change)])
             for block, names in blocks.items():
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):

@@ -30,7 +30,7 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     place, gguf = _source(base)
     dtype = torch.bfloat16 if precision == "bf16" else torch.float32
     given = {**gguf, "quantization_config": GgufConfig(dequantize=True)} if gguf else {}
-    # on CPUs plain attention trains these short texts a fifth faster than the fused kernel
+    # on CPUs plain attention trains these short texts faster than the fused kernel
     how: dict[str, Any] = {} if torch.cuda.is_available() else {"attn_implementation": "eager"}
     with _explained(base, precision):
         tokenizer = AutoTokenizer.from_pretrained(place, **gguf)

@@ -67,7 +67,7 @@ def test_clean_differences_are_paired_and_against_base():
     first, second = found["Clean SR against base"]
     assert first == "–" and second.strip("*").startswith("-30.0")
     (section,) = sections(column(8, ALL) + column(8, ALL, **HARD))
-    same = section.moved["da_per_episode", "SR"]
+    same = section.moved["da_per_episode"]
     assert (same.low, same.high) == (0, 0)
 
 
