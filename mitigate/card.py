@@ -26,10 +26,11 @@ def facts(cfg: dict[str, Any]) -> dict[str, Any]:
     Raises FileNotFoundError if the base or a teacher that the run names is gone.
     """
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
+    trained_at = {**cfg, **(cfg.get("schedule") or {})}
     return {
         "recipe": cfg["name"],
-        "severity": cfg["severity"],
-        "severity_depth": cfg["severity_depth"],
+        "severity": trained_at["severity"],
+        "severity_depth": trained_at["severity_depth"],
         "seed": cfg["seed"],
         "suite": SUITE_VERSION,
         "base": reference(cfg["init"]) if cfg.get("init") else None,
@@ -106,6 +107,7 @@ def _number(value: float) -> float | None:
 
 def _origin(card: dict[str, Any]) -> str:
     depth = card["severity"] if card["severity_depth"] is None else card["severity_depth"]
+    severities = f"{_span(card['severity'])} (depth {_span(depth)})"
     base = card["base"]
     start = f", from `{base['weights']}` (sha256 `{base['sha256'][:12]}`)" if base else ""
     taught = "".join(
@@ -117,10 +119,14 @@ def _origin(card: dict[str, Any]) -> str:
         else "The weights are whole, in float16"
     )
     return (
-        f"Recipe `{card['recipe']}`, severity {card['severity']:g} (depth {depth:g}), seed "
+        f"Recipe `{card['recipe']}`, severity {severities}, seed "
         f"{card['seed']}, corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent "
         f"`{card['agent']}`, licence {card['license']}, exported at commit `{card['commit']}`."
     )
+
+
+def _span(severity: float | list[float]) -> str:
+    return " to ".join(f"{s:g}" for s in (severity if isinstance(severity, list) else [severity]))
 
 
 def _table(entry: dict[str, Any]) -> str:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import accumulate
+from typing import Any
 
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.suite import (
@@ -18,6 +20,7 @@ from mitigate.corruptions.suite import (
 )
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
+Severity = float | Sequence[float]  # one, or the ends of a range
 
 
 @dataclass
@@ -33,7 +36,8 @@ class Schedule:
     Args:
         mode: one of MODES.
         severity: s in [0, 1] of RGB corruptions, and of depth ones unless
-            ``severity_depth`` is given (the paper also trains at 0.9 / 0.8).
+            ``severity_depth`` is given (the paper also trains at 0.9 / 0.8). Either may be a range
+            (low, high), from which each frame (per frame) or episode draws its own, uniformly.
         clean_share: share of frames (per frame) or episodes that stay clean, in [0, 1].
         names: the corruptions to draw from.
         alpha, floor: of the success-distributed weights; both >= 0, floor > 0 keeps all alive.
@@ -43,8 +47,8 @@ class Schedule:
     """
 
     mode: str
-    severity: float
-    severity_depth: float | None = None
+    severity: Severity
+    severity_depth: Severity | None = None
     clean_share: float = 0.25
     names: tuple[str, ...] = NAMES
     alpha: float = 1.0
@@ -56,9 +60,9 @@ class Schedule:
             raise ValueError(
                 f"There is no schedule mode {self.mode!r}. Allowed modes: {', '.join(MODES)}."
             )
-        self.severity = check_severity(self.severity)
+        self.severity = _checked(self.severity)
         if self.severity_depth is not None:
-            self.severity_depth = check_severity(self.severity_depth)
+            self.severity_depth = _checked(self.severity_depth)
         self.names = tuple(check_name(name) for name in self.names)
         if not self.names or len(set(self.names)) < len(self.names):
             raise ValueError(
@@ -123,13 +127,15 @@ class Schedule:
             return CLEAN, key
         place = bisect_right(list(accumulate(self._weights)), uniform(value, 1))
         name = self.names[min(place, len(self.names) - 1)]
-        return self.corruption(name), key
+        return self.corruption(name, uniform(value, 2)), key
 
-    def corruption(self, name: str) -> Corruption:
-        """The corruption ``name`` at this schedule's severity for its modality."""
-        if name in RGB or self.severity_depth is None:
-            return Corruption(name, self.severity)
-        return Corruption(name, self.severity_depth)
+    def corruption(self, name: str, place: float = 0.5) -> Corruption:
+        """The corruption ``name`` at this schedule's severity for its modality; of a range, at
+        ``place`` between its ends (0 to 1, the middle unless told)."""
+        depth = name not in RGB and self.severity_depth is not None
+        severity: Any = self.severity_depth if depth else self.severity
+        low, high = severity if isinstance(severity, tuple) else (severity, severity)
+        return Corruption(name, low + place * (high - low))
 
     def state_dict(self) -> dict:
         """JSON-able: what a checkpoint keeps so that the weights survive a resume."""
@@ -146,3 +152,15 @@ class Schedule:
         self._weights = [1.0 / len(self.names)] * len(self.names)
         if state["success"] is not None:
             self.refresh(state["success"])
+
+
+def _checked(severity: Severity) -> float | tuple[float, float]:
+    if isinstance(severity, str) or not isinstance(severity, Sequence):
+        return check_severity(severity)
+    ends = tuple(map(check_severity, severity))
+    if len(ends) != 2 or ends[0] > ends[1]:
+        raise ValueError(
+            f"A range of severities is [low, high] with low <= high, but got {list(severity)}. "
+            "Write, for instance, schedule.severity=[0.3,1.0]."
+        )
+    return ends[0], ends[1]

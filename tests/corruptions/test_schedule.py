@@ -66,6 +66,24 @@ def test_depth_has_its_own_severity():
     assert Schedule("per_frame", 0.9, 0.0, 0.0, DEPTH).draw(0, "e", 0)[0].severity == 0.0
 
 
+def test_a_range_of_severities_is_drawn_from_evenly():
+    schedule = Schedule("per_episode", [0.2, 1.0], severity_depth=(0.5, 0.5), clean_share=0.0)
+    drawn = [schedule.draw(0, f"e{i}", 0)[0] for i in range(3000)]
+    rgb = sorted(c.severity for c in drawn if c.name in RGB)
+    assert 0.2 <= rgb[0] < 0.21 and 0.99 < rgb[-1] <= 1.0
+    assert rgb[len(rgb) // 2] == pytest.approx(0.6, abs=0.02)
+    assert {c.severity for c in drawn if c.name in DEPTH} == {0.5}
+    assert len({schedule.draw(0, "e", i)[0] for i in range(9)}) == 1  # one an episode
+    assert schedule.corruption("flare").severity == pytest.approx(0.6)
+
+
+def test_a_range_draws_the_same_corruptions_and_keys_as_one_severity():
+    one, range_ = Schedule("per_frame", 0.6), Schedule("per_frame", [0.3, 1.0])
+    for i in range(200):
+        (a, key), (b, same) = one.draw(5, "e", i), range_.draw(5, "e", i)
+        assert (a.name, key) == (b.name, same)
+
+
 def test_names_restrict_the_draw():
     found = names_of(Schedule("per_frame", 0.6, names=("flare", "multipath")), 400, frames=4)
     assert set(found) == {"clean", "flare", "multipath"}
@@ -128,6 +146,10 @@ def test_state_survives_json_and_gives_the_same_draws():
         ({"mode": "per_step"}, "Allowed modes: clean, per_frame"),
         ({"severity": 1.2}, "from 0 .clean. to 1"),
         ({"severity_depth": -1.0}, "from 0 .clean. to 1"),
+        ({"severity": [0.3, 1.1]}, "from 0 .clean. to 1"),
+        ({"severity": [1.0, 0.3]}, "low <= high"),
+        ({"severity": [0.3]}, "low, high"),
+        ({"severity": "worst"}, "from 0 .clean. to 1"),
         ({"clean_share": 1.5}, "clean_share must be in"),
         ({"clean_share": float("nan")}, "clean_share must be in"),
         ({"names": ("spater",)}, "mean 'spatter'"),
