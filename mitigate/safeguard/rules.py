@@ -16,6 +16,7 @@ from functools import lru_cache
 
 from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
+from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.text import MASK, sentences, words
 from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
@@ -36,6 +37,10 @@ _SETS = {
     "negation": "not no never don't dont doesn't cannot nor nobody nothing none",
 }
 CLOSED = {name: bag(text) for name, text in _SETS.items()}
+# style words that attacks use, too (ours, chosen on the validation families)
+FAINT = bag("this for do think what have want that's let let's like or so")
+MANNER = STYLE - FAINT
+KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 VERBS = MOTION | STOPS | TURN_VERBS
 # no words about all cases; "the" may be hidden
 _IDIOMS = re.compile(r"\b(?:all\s+(?:the\s+)?way|each other|each side|all around)\b")
@@ -86,21 +91,25 @@ def strangeness(sentence: str) -> float:
 def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
     """Return how many of the first sentences of ``text`` are no part of the route.
 
-    An attack stands in front, whole: what comes before a sure one goes too, if it is likely; in a
-    text with a manner of speaking, only what does not tell the way.
+    An attack stands in front, whole: beside a sure one goes what is likely, before it in any case,
+    behind it if it has no manner of speaking and names nothing that routes name. In a text with a
+    manner of speaking only what does not tell the way goes.
     ``judge`` (a language model) decides on the ``doubtful`` ones. Never are all sentences taken.
     """
     told = sentences(text)
     in_manner = restyled(told)
     asked = set() if judge is None else set(doubtful(text))
-    count, pending = 0, 0
+    count, pending, attacked = 0, 0, False
     for index, sentence in enumerate(told[:-1]):
         if in_manner and tells_the_way(sentence):
             break
+        strange, plain = strangeness(sentence), not mannered(sentence)
+        attacked |= strange >= SURE and plain
+        follows = attacked and strange >= LIKELY and plain and not on_the_way(sentence)
         judged = judge is not None and sentence in asked and judge(sentence)
-        if judged or strangeness(sentence) >= SURE:
+        if judged or follows or strange >= SURE:
             count, pending = index + 1, 0
-        elif strangeness(sentence) < LIKELY:
+        elif strange < LIKELY:
             pending += 1
             if pending > 1 or count == 0 and index > 0:
                 break
@@ -119,6 +128,13 @@ def tells_the_way(sentence: str) -> bool:
     """Return whether ``sentence`` names a landmark or a direction."""
     told = facts(sentence)
     return bool(told.landmarks or told.directions)
+
+
+def on_the_way(sentence: str) -> bool:
+    """Return whether ``sentence`` names a thing that routes name, or a direction but to stop."""
+    told = facts(sentence)
+    known = any(name in KNOWN for name in told.landmarks)
+    return known or any(direction != "stop" for direction in told.directions)
 
 
 def lower_capitals(text: str) -> str:
@@ -140,10 +156,15 @@ def style_marks(text: str) -> int:
     return sum(word in STYLE for word in words(text))
 
 
+def mannered(sentence: str) -> bool:
+    """Return whether ``sentence`` holds a word of a manner of speaking that attacks rarely use."""
+    return any(word in MANNER for word in words(sentence))
+
+
 def restyled(told: list[str]) -> bool:
     """Return whether half of the sentences speak in a manner, and half of those that are not
     surely foreign: an attack has a manner of its own."""
-    marked = [sentence for sentence in told if style_marks(sentence)]
+    marked = [sentence for sentence in told if mannered(sentence)]
     rest = [sentence for sentence in told if strangeness(sentence) < SURE]
     own = sum(sentence in marked for sentence in rest)
     return len(marked) >= max(2.0, 0.5 * len(told)) and own >= 0.5 * len(rest)
@@ -180,7 +201,6 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
 
 @lru_cache(maxsize=1)
 def _route_words() -> frozenset[str]:
-    from mitigate.corruptions.language.landmarks import CANONICAL
     from mitigate.safeguard import routes
 
     text = " ".join((routes.OPEN, routes.MIDDLE, routes.CLOSE, *routes.ASIDES, *routes.ROOMS,
