@@ -141,6 +141,13 @@ def check(cfg: DictConfig) -> None:
             )
     if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
+    for name, stage in cfg.stages.items():
+        if stage is not None and not OmegaConf.select(stage, "recipe._target_", default=None):
+            own = [n for n, s in cfg.stages.items() if s and OmegaConf.select(s, "recipe._target_")]
+            raise ValueError(
+                f"The recipe {cfg.name} has no stage {name!r}: its stages are {', '.join(own)}. "
+                "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
+            )
     if cfg.evaluation.enabled:  # a mistake there must not show only after hours of training
         episodes(cfg.env, cfg.evaluation.split, 1)
         conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)

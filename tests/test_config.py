@@ -99,6 +99,14 @@ def test_smoke_shortens_every_stage():
     assert cfg.trainer.steps == 2 and cfg.evaluation.episodes == 2
 
 
+def test_frozen_fits_only_recipes_with_its_stages():
+    train.check(cli.load_config("train", ["recipe=da_success", "experiment=frozen"]))
+    for recipe in ("ts_distill", "conv_adapter"):
+        cfg = cli.load_config("train", [f"recipe={recipe}", "experiment=frozen"])
+        with pytest.raises(ValueError, match="has no stage 'imitation'.*imitation and da_"):
+            train.check(cfg)
+
+
 def complaint(monkeypatch, capsys, *options: str) -> str:
     monkeypatch.setattr(sys, "argv", ["train", *options])
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)

@@ -19,7 +19,7 @@ from mitigate.corruptions.gallery import rendered_frame
 SEVERITY = 0.6  # the paper's for R2R
 SEED = 7  # of the apartment rendered and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-# Milliseconds a frame to stay under, at 480x640 and 224x224: SUITE section 6.
+# Milliseconds a frame to stay under, at 480x640 and 224x224 (aims, docs/benchmarks.md).
 BARS = {
     "motion_blur": (1.1, 0.10),
     "low_light": (0.10, 0.010),
@@ -46,7 +46,7 @@ class Cost:
     ``steady``: the frames of an episode; ``per_frame``: each frame starts an episode, as in the
     per-frame regime; ``first``: a new severity as well, whose tables are then built; ``call``: the
     steady state of a frame of 4 x 4 pixels; ``copy``: a plain copy of the frame; ``peers``: by
-    library; ``bar``: of SUITE section 6, None where it has none.
+    library; ``bar``: of BARS, None where it has none.
     """
 
     steady: float

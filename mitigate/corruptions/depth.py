@@ -2,7 +2,7 @@
 
 A pixel is invalid where z <= 0, NaN or infinite: it comes back as it was and takes no part in a
 neighbourhood. Valid depth becomes invalid only through missing data; the rest is clipped to
-[0.001, z_max]. Formulas and sources: SUITE section 3.
+[0.001, z_max]. Formulas and sources: docs/corruptions.md.
 """
 
 from __future__ import annotations

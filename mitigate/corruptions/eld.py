@@ -1,7 +1,7 @@
 """Low light with sensor noise: the ELD model (Wei et al., "Physics-based noise modeling for extreme
 low-light photography", IEEE TPAMI 2021), our own code.
 
-D = K Poisson(I) + TukeyLambda + row noise, rounded by the ADC (SUITE section 4). Simplifications:
+D = K Poisson(I) + TukeyLambda + row noise, rounded by the ADC. Simplifications:
 sRGB is treated as a 2.2 power, noise is drawn per channel without a Bayer pattern, and a row's
 draw is common to its three channels. Clipping at 0 brightens deep shadows as real cameras do.
 

@@ -1,7 +1,7 @@
 """The eight RGB corruptions of uint8 panoramas [V, H, W, 3].
 
 Every public function takes (views, severity in (0, 1], key, heading) and returns a new array of the
-same shape. Lengths are fractions of the frame. Formulas and sources: SUITE section 2; constants
+same shape. Lengths are fractions of the frame. Formulas and sources: docs/corruptions.md; constants
 without a source were chosen by this project. Masks are in ``masks``, compiled blurs in ``blur``.
 """
 

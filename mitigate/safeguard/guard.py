@@ -23,7 +23,7 @@ from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
-CHOICES = ("none", "rules", "prompted", "lora", "http://host/v1#model")
+CHOICES = ("none", "rules", "prompted", "lora", "http://host/v1@model")
 ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # for the language model, each instruction (ours)
@@ -111,7 +111,7 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     """Return the safeguard that ``choice`` names, None for "none".
 
     "rules"; "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``)
-    or an adapter folder; ``http://host/v1#model`` for an OpenAI-compatible endpoint. Raises
+    or an adapter folder; ``http://host/v1@model`` for an OpenAI-compatible endpoint. Raises
     ValueError or FileNotFoundError.
     """
     if choice == "none":
@@ -121,11 +121,9 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     if choice.startswith(("http://", "https://")):
         from mitigate.safeguard.endpoint import ChatEndpoint
 
-        url, _, model = choice.partition("#")
-        if not model:
-            raise ValueError(
-                f"Which model does {url} serve? Write safeguard={url}#name-of-the-model."
-            )
+        url, _, model = choice.rpartition("@")
+        if not url:
+            raise ValueError(f"Which model of {model}? Write safeguard={model}@name-of-the-model.")
         return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
     from mitigate.safeguard.model import LanguageModel, open_adapter
 

@@ -40,7 +40,7 @@ def test_tukey_lambda_passes_through_the_logistic():
 
 
 def slow_sample(levels, gain, severity, rng, camera=SONY_A7S2):
-    """The model of SUITE section 4, word for word: uint8 [V, H, W, 3] and mask [H, W] to uint8."""
+    """The documented model, word for word: uint8 [V, H, W, 3] and mask [H, W] to uint8."""
     noise = noise_at(severity, camera)
     light = (levels / 255 * gain[..., None]) ** 2.2
     electrons = rng.poisson(light * 15583 / noise.ratio / noise.gain)

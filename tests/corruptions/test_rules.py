@@ -1,4 +1,4 @@
-"""What every corruption promises (SUITE section 1)."""
+"""What every corruption promises."""
 
 import numpy as np
 import pytest

@@ -20,7 +20,7 @@ from mitigate.envs.apartments.instructions import describe, find
 from mitigate.envs.apartments.palette import SEED_RANGES, SPLITS
 from mitigate.envs.episodes import Episode, Goal, Instruction, Vector, read_episodes, write_episodes
 
-SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (DESIGN section 3)
+SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (docs/base-agent.md)
 SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
 TASKS = ("vln", "ogn")
 _TRIES = 60
