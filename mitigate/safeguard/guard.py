@@ -151,11 +151,12 @@ class _Draft:
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
         if self.plain:
-            self.repaired, self.passages = self.original, [self.original]
+            self.repaired, self.passages, self.styled = self.original, [self.original], False
             self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
             return
         done = rules.repair(self.tidied, empty.__contains__)
         self.repaired, self.reasons = done.text, list(done.reasons)
+        self.styled = done.marks >= MARKS
         if len(words(self.repaired)) > TOO_LONG:
             self.passages = [self.repaired]
             self.reasons.append(f"over {TOO_LONG} words: rules alone")
@@ -167,8 +168,7 @@ class _Draft:
         """The passages that the model is to say again."""
         if self.plain or len(words(self.repaired)) > TOO_LONG:
             return []
-        styled = rules.style_marks(self.tidied) >= MARKS
-        return [p for p in self.passages if MASK.search(p) or styled]
+        return [p for p in self.passages if MASK.search(p) or self.styled]
 
     def take(self, said: dict[str, str | None]) -> None:
         """Put safe answers in the place of their passages."""

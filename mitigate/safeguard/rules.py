@@ -49,11 +49,16 @@ _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 @dataclass(frozen=True)
 class Repaired:
-    """``text`` after the rules, the sentences they took out, and what they did, in words."""
+    """``text`` after the rules, the sentences they took out, and what they did, in words.
+
+    ``marks``: how many words belong to a manner of speaking; of what was taken out in front, only
+    those that attacks rarely use.
+    """
 
     text: str
     removed: tuple[str, ...]
     reasons: tuple[str, ...]
+    marks: int
 
 
 def features(sentence: str, marks: frozenset[str] = STYLE) -> dict[str, float]:
@@ -186,6 +191,7 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
     told = sentences(quiet)
     count = injected(quiet, judge)
     removed, kept = told[:count], told[count:]
+    marks = style_marks(" ".join(kept)) + sum(w in MANNER for s in removed for w in words(s))
     if removed:
         reasons.append(f"{count} injected sentence{'s' * (count > 1)} removed")
     frames = [s for s in (kept[0], kept[-1]) if len(kept) > 1 and framing(s)] if kept else []
@@ -194,9 +200,8 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
         reasons.append("framing removed")
     changed = removed or frames
     text = " ".join(kept) if changed else quiet
-    return Repaired(
-        text[:1].upper() + text[1:] if changed else text, (*removed, *frames), tuple(reasons)
-    )
+    text = text[:1].upper() + text[1:] if changed else text
+    return Repaired(text, (*removed, *frames), tuple(reasons), marks)
 
 
 @lru_cache(maxsize=1)
