@@ -29,7 +29,6 @@ ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs/deployment.md"
 SIZE = 64
 TINY = {"width": 16, "planner": {"heads": 2, "text_layers": 1, "layers": 1}}
-pytestmark = pytest.mark.xdist_group("export")  # its agents are exported once, by one worker
 ADAPTERS = {"target_modules": [r"depth_encoder\.stages\.0"], "ring": [r"rgb_encoder\.stages\.2"]}
 
 
