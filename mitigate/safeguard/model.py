@@ -7,9 +7,6 @@ the same way. LoRA weights are never merged into int8 weights: that changes what
 
 from __future__ import annotations
 
-import json
-import os
-import tempfile
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
@@ -22,10 +19,10 @@ from safetensors.torch import load_file
 from torch import Tensor, nn
 from tqdm import tqdm
 
+from mitigate.safeguard.adapter_folder import ADAPTER, read_adapter, write_adapter
 from mitigate.safeguard.base import PRECISIONS, SMOLLM2, base_sha256, load_base
 from mitigate.safeguard.data import PROMPTS, Pair, prompt_messages
 
-CARD, ADAPTER = "card.json", "adapter_model.safetensors"
 LONGEST = 512  # prompt tokens; a longer text is not rewritten (ours)
 
 
@@ -134,9 +131,11 @@ class LanguageModel(nn.Module):
     @torch.no_grad()
     def _generate(self, prompts: list[list[int]], seconds: float | None) -> list[str | None]:
         start = _shared(prompts)  # the same tokens in every row: read once, not once a row
-        first = torch.tensor([prompts[0][:start]], device=self.device)
-        cache = self.network(input_ids=first, use_cache=True).past_key_values
-        cache.batch_repeat_interleave(len(prompts))
+        first = torch.tensor([prompts[0][:start]], dtype=torch.long, device=self.device)
+        cache = None
+        if start:
+            cache = self.network(input_ids=first, use_cache=True).past_key_values
+            cache.batch_repeat_interleave(len(prompts))
         rest = collate([(ids[start:], []) for ids in prompts], self.tokenizer.pad_token_id)
         first = first.expand(len(prompts), -1)
         inputs = torch.cat([first, rest["input_ids"].to(self.device)], 1)
@@ -173,23 +172,14 @@ class LanguageModel(nn.Module):
 
         if not isinstance(self.network, PeftModel):
             raise ValueError("This language model has no adapter to save: build it with `lora`.")
-        folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
         tensors = get_peft_model_state_dict(self.network)
         kind = torch.float16 if half else torch.float32
-        with tempfile.TemporaryDirectory(dir=folder) as temporary:
-            self.network.peft_config["default"].base_model_name_or_path = self.base
-            self.network.save_pretrained(
-                temporary, state_dict={k: v.to(kind).cpu() for k, v in tensors.items()},
-                save_embedding_layers=False,
-            )  # fmt: skip
-            card = {
-                "base": self.base, "base_sha256": base_sha256(self.base), "prompt": self.prompt,
-                "trained_in": self.precision, "licence": "Apache-2.0",
-            }  # fmt: skip
-            (Path(temporary) / CARD).write_text(json.dumps(card, indent=1) + "\n", "utf-8")
-            for name in ("adapter_config.json", ADAPTER, CARD):
-                os.replace(Path(temporary) / name, folder / name)
+        self.network.peft_config["default"].base_model_name_or_path = self.base
+        card = {
+            "base": self.base, "base_sha256": base_sha256(self.base), "prompt": self.prompt,
+            "trained_in": self.precision, "licence": "Apache-2.0",
+        }  # fmt: skip
+        write_adapter(folder, self.network, {k: v.to(kind).cpu() for k, v in tensors.items()}, card)
 
     def load(self, folder: str | Path) -> None:
         """Fill the adapter from a folder that :meth:`save` wrote.
@@ -234,23 +224,6 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     if precision == "fp32":
         model.network.merge_adapter()
     return model.eval()
-
-
-def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the card and PEFT's config of an adapter folder; raises FileNotFoundError."""
-    missing = [
-        n for n in (CARD, "adapter_config.json", ADAPTER) if not (Path(folder) / n).is_file()
-    ]
-    if missing:
-        raise FileNotFoundError(
-            f"There is no adapter at {folder}: {', '.join(missing)} missing. Train one with `make "
-            "train RECIPE=safeguard_lora`, or name checkpoints/safeguard."
-        )
-    card, config = (
-        json.loads((Path(folder) / name).read_text("utf-8"))
-        for name in (CARD, "adapter_config.json")
-    )
-    return card, config
 
 
 def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str, Tensor]:
