@@ -82,7 +82,7 @@ def _entry(section: Section) -> dict[str, Any]:
         "suite": grid.suite,
         "rule": grid.rule,
         "episodes": len(grid.episodes),
-        "seeds": sorted(grid.seeds[column]),
+        "seeds": list(grid.seeds[column, section.severity]),
         "clean": {metric: _interval(found) for (_, metric), found in section.clean.items()},
         "PRS": {
             f"PRS-{metric} ({block})": _interval(found.estimate)

@@ -6,6 +6,8 @@ command again only fills what is missing.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
@@ -13,6 +15,7 @@ from typing import Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
+from hydra.core.hydra_config import HydraConfig
 from omegaconf import MISSING, DictConfig
 from torch import nn
 
@@ -57,16 +60,22 @@ class EvaluateConfig:
 ConfigStore.instance().store(name="evaluate_schema", node=EvaluateConfig)
 
 
-def run(cfg: DictConfig) -> Path:
+def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
 
+    ``overrides``: those of the command line. Its agent's settings (``agent.blind=[rgb]``) count
+    more than the weights' own, and are named in the table's column.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.safeguard.guard import open_safeguard
 
-    agent = load(cfg.agent, cfg.checkpoint, cfg.seed)
+    node = settings_of(cfg.agent, cfg.checkpoint)
     name = cfg.name or name_of(cfg.checkpoint)
+    for setting in _settings_named(overrides):
+        node[setting] = cfg.agent[setting]
+        name += "+" + re.sub(r"[^A-Za-z0-9.]+", "-", f"{setting}={node[setting]}").strip("-")
+    agent = build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     if cfg.safeguard != "none":
         name += f"+{Path(cfg.safeguard).name}"
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
@@ -85,6 +94,12 @@ def run(cfg: DictConfig) -> Path:
     )
     write_table([out / ROWS], out)
     return out
+
+
+def _settings_named(overrides: Sequence[str]) -> list[str]:
+    """Return which settings of the agent the command line names, each once."""
+    keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
+    return list(dict.fromkeys(key[1] for key in keys if key[0] == "agent" and len(key) > 1))
 
 
 def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
@@ -173,7 +188,7 @@ def write_table(rows: list[Path], out: Path) -> None:
 @hydra.main(version_base="1.3", config_path=str(cli.CONF), config_name="evaluate")
 def hydra_main(cfg: DictConfig) -> None:
     """Hydra's entry."""
-    run(cfg)
+    run(cfg, HydraConfig.get().overrides.task)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ from omegaconf import DictConfig
 from tqdm import tqdm
 
 from mitigate import cli
-from mitigate.evaluate import episodes, load
+from mitigate.evaluate import ROWS, episodes, load
 from mitigate.files import atomic_text
 
 BASE = "checkpoints/base"
@@ -65,6 +65,11 @@ class Cell:
         """Where the agent's weights are, or will be."""
         return str(self.folder / "run" / "agent") if self.options else BASE
 
+    @property
+    def evaluation(self) -> Path:
+        """The folder of the cell's result rows."""
+        return self.folder / "evaluation"
+
     def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
         """What makes the cell: ("train" or "evaluate", arguments after ``python -m``)."""
         found = []
@@ -94,7 +99,7 @@ class Cell:
                     f"split={cfg.split}",
                     f"episodes={count}",
                     f"severity={cfg.severity}",
-                    f"out={self.folder / 'evaluation'}",
+                    f"out={self.evaluation}",
                 ],
             )
         )
@@ -119,9 +124,13 @@ def run(cfg: DictConfig) -> Path:
                 failed.append(f"{cell.column}, seed {cell.seed}: {problem}")
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
-    report = write_report(cfg, out, [c.folder for c in made if c.folder.is_dir()])
+    problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
+    measured = [c.evaluation for c in made if (c.evaluation / ROWS).is_file()]
+    if failed and not measured:
+        raise ValueError(problem)
+    report = write_report(cfg, out, measured)
     if failed:
-        raise ValueError("Some cells failed; run again to go on with them. " + " ".join(failed))
+        raise ValueError(problem)
     print("\n".join(f"wrote {path}" for path in draw_walks(cfg, out)), flush=True)
     return report
 
@@ -214,8 +223,15 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
         return []
     node = cli.load_config("evaluate")
     agents: dict[str, Any] = {name: load(node.agent, made[name].weights) for name in cfg.walks}
-    found = rows.gather([cell.folder / "evaluation" for cell in made.values()])
     chosen = episodes(node.env, cfg.split, cfg.episodes)
+    drawn = {episode.episode_id for episode in chosen}
+    found = [
+        row
+        for row in rows.gather([cell.evaluation for cell in made.values()])
+        if row["split"] == cfg.split
+        and row["severity"] in (0.0, cfg.severity)
+        and row["episode_id"] in drawn
+    ]
     seed, size = cfg.seeds[0], node.env.size
     return write_pictures(agents, chosen, found, out / "pictures", seed=seed, size=size)
 

@@ -124,8 +124,9 @@ def train_stage(
         "recipe": dict(_identity(_plain(stage.recipe))),
         **recipe.identity(),
     }
-    with atomic_text(folder / IDENTITY) as file:
-        json.dump(identity, file, indent=2)
+    if not checkpoint.checkpoints(folder):  # else the trainer compares first, and may refuse
+        with atomic_text(folder / IDENTITY) as file:
+            json.dump(identity, file, indent=2)
     settings = {**_set(stage.trainer), **_set(cfg.trainer)}
     Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings).fit()
 

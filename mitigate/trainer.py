@@ -225,8 +225,9 @@ class Trainer:
 
 
 def to_device(value: Any, device: torch.device) -> Any:
-    """Move the tensors in nested dicts, lists and tuples to ``device``; leave the rest."""
-    if isinstance(value, Tensor):
+    """Move what has ``to`` (tensors, batches of them) in nested dicts, lists and tuples to
+    ``device``; leave the rest."""
+    if hasattr(value, "to"):
         return value.to(device)
     if isinstance(value, dict):
         return {name: to_device(item, device) for name, item in value.items()}

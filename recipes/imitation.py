@@ -9,6 +9,8 @@ waypoints (true free space). The same module trained in three schedules gives ``
 
 from __future__ import annotations
 
+import hashlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,8 +29,7 @@ from mitigate.corruptions import Schedule
 from mitigate.envs.apartments.drawing import strip
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.tasks import draw_training_episode
-from mitigate.evaluation.rows import read as read_rows
-from mitigate.evaluation.success import measure, success_rates
+from mitigate.evaluation.success import measure, prior_rates
 from mitigate.keys import DEPTH, RGB
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
@@ -48,7 +49,7 @@ class ImitationRecipe(Recipe):
     apartments: how many training layouts. ogn_share: of object-goal episodes.
     w_concepts, w_waypoints: weights of the perception terms; w_distance, w_grounding: of the
     planner's auxiliary terms (metres to the goal; which views show the goal's landmark).
-    prior: rows of an earlier evaluation, from which a success-distributed schedule starts.
+    prior: rows of one earlier evaluation, from which a success-distributed schedule starts.
     refresh_every: steps between two measurements of the success rates that such a schedule draws
     by, each on ``refresh_episodes`` training episodes under every corruption; 0: never.
 
@@ -95,8 +96,13 @@ class ImitationRecipe(Recipe):
         for parameter in adapter_parameters(agent) if "adapters" in train_parts else ():
             parameter.requires_grad_(True)
         if prior is not None:
-            schedule.refresh(success_rates(read_rows(prior)))
+            schedule.refresh(prior_rates(prior))
         self._renderer: Renderer | None = None
+
+    def identity(self) -> dict[str, str]:
+        if self.prior is None:
+            return {}
+        return {"prior_sha256": hashlib.sha256(Path(self.prior).read_bytes()).hexdigest()}
 
     def batch(self, step: int) -> dict[str, Any]:
         if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):
@@ -136,13 +142,13 @@ class ImitationRecipe(Recipe):
         for world in worlds:
             world.observe()
         rgb, depth = (
-            torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])) for name in (RGB, DEPTH)
+            torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])).to(self.agent.device)
+            for name in (RGB, DEPTH)
         )
-        with torch.autocast("cpu", torch.bfloat16):
+        with torch.autocast(self.agent.device.type, torch.bfloat16):
             views, _, waypoints = self.agent.perceive(rgb, depth)
-        return [
-            (v, select(w)) for v, w in zip(views.float(), waypoints.float().numpy(), strict=True)
-        ]
+        found = waypoints.float().cpu().numpy()
+        return [(v, select(w)) for v, w in zip(views.float(), found, strict=True)]
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
         """A panorama as the agent saw it in the last batch."""

@@ -52,7 +52,8 @@ class PlannerRecipe(ImitationRecipe):
         encoders = torch.nn.ModuleList(
             [agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head]
         )
-        self.folder, self.steps = Path(folder) / weights_sha(encoders)[:12], steps
+        self.folder = Path(folder) / f"{weights_sha(encoders)}-{self.size}"
+        self.steps = steps
         agent.eval()
         cache.build(agent, self.folder, range(cached), self.size)
         self.caches = [cache.load(self.folder, seed) for seed in range(cached)]
@@ -69,7 +70,7 @@ class PlannerRecipe(ImitationRecipe):
         share = max(0.0, 1 - step / (_DECAY * self.steps))
         self.agent.eval()
         tokens = self.agent.tokens([e.instruction.text for e in episodes])
-        with torch.autocast("cpu", torch.bfloat16):
+        with torch.autocast(self.agent.device.type, torch.bfloat16):
             traces = roll_out(
                 self.agent.planner,
                 tokens,

@@ -20,7 +20,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mitigate import checkpoint
+from mitigate import checkpoint, hardened
 from mitigate.agents.adapters import remove_adapters
 from mitigate.agents.rendered import RenderedWorld
 from mitigate.agents.topological import TopologicalAgent
@@ -41,7 +41,7 @@ class Taught(Recipe):
         self.teacher_sha = checkpoint.weights_sha(self.teacher)
 
     def identity(self) -> dict[str, str]:
-        return {"teacher_sha256": self.teacher_sha}
+        return {**super().identity(), "teacher_sha256": self.teacher_sha}
 
     def train(self, mode: bool = True) -> Self:
         super().train(mode)
@@ -81,7 +81,8 @@ class ViewDistillation(Taught, PerceptionRecipe):
 
 class TeacherStudent(Taught, ImitationRecipe):
     """Args: as ``ImitationRecipe``; teacher: as for ``ViewDistillation``; w_il, w_kl, w_feat,
-    temperature: of the loss above; match: which features are matched, of ``FEATURES``.
+    temperature: of the loss above; match: which features are matched, of ``FEATURES``; "views" only
+    while the perception trains.
 
     With ``w_kl = w_feat = 0`` this is imitation, bit for bit.
     Raises FileNotFoundError for a missing teacher, ValueError for an unknown feature.
@@ -104,17 +105,18 @@ class TeacherStudent(Taught, ImitationRecipe):
             raise ValueError(f"match={unknown} is unknown; choose from {', '.join(FEATURES)}.")
         self.take_teacher(agent, teacher)
         self.w_il, self.w_kl, self.w_feat = w_il, w_kl, w_feat
-        self.temperature, self.match = temperature, tuple(match)
+        self.temperature = temperature
+        self.match = tuple(name for name in match if name != "views" or self.trains_perception)
 
     def look(self, worlds: list[RenderedWorld]) -> list[tuple[Tensor, np.ndarray]]:
         found = super().look(worlds)
         rgb, depth = (
-            torch.from_numpy(np.stack([world.looks[-1][name] for world in worlds]))
+            torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])).to(self.teacher.device)
             for name in (CLEAN_RGB, CLEAN_DEPTH)
         )
-        with torch.autocast("cpu", torch.bfloat16):
+        with torch.autocast(self.teacher.device.type, torch.bfloat16):
             views, _, _ = self.teacher.perceive(rgb, depth)
-        for world, clean in zip(worlds, views.float(), strict=True):
+        for world, clean in zip(worlds, views.float().cpu(), strict=True):
             world.looks[-1]["clean_views"] = clean.numpy()
         return found
 
@@ -145,6 +147,11 @@ def load_teacher(agent: TopologicalAgent, weights: str) -> TopologicalAgent:
 
     ``weights``: a file or folder; "start": those of ``agent`` as it is now.
     """
+    if hardened.adapters_only(weights):
+        raise ValueError(
+            f"{weights} holds adapters alone, and a teacher needs whole weights: name a folder "
+            f"with {checkpoint.WEIGHTS}, such as checkpoints/teacher."
+        )
     teacher = copy.deepcopy(agent)
     remove_adapters(teacher)
     teacher.planner.fusion = None
@@ -154,7 +161,8 @@ def load_teacher(agent: TopologicalAgent, weights: str) -> TopologicalAgent:
         except FileNotFoundError as error:
             raise FileNotFoundError(
                 f"There is no teacher at {weights}. Train one with `make train "
-                "RECIPE=da_per_episode` and name its folder (teacher=runs/.../agent)."
+                "RECIPE=da_per_episode` and name its folder "
+                "(stages.views_rgb.recipe.teacher=runs/.../agent: the other stages follow)."
             ) from error
     return teacher.requires_grad_(False).eval()
 

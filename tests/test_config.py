@@ -107,6 +107,26 @@ def test_frozen_fits_only_recipes_with_its_stages():
             train.check(cfg)
 
 
+def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch, tmp_path):
+    """The weights bring settings of their own; what the command names goes before them, and the
+    table's column says so, because the weights' hash does not."""
+    met = {}
+
+    def meet(agent, episodes, conditions, *, name, **others):
+        met[name] = agent
+
+    monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", meet)
+    monkeypatch.setattr(evaluate, "write_table", lambda rows, out: None)
+    for options in ([], ["agent.blind=[rgb]", "agent.planner={fusion: {rate: 4, cap: 3}}"]):
+        given = ["checkpoint=checkpoints/hardened/ts_distill", f"out={tmp_path}", *options]
+        monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+        cli.main(evaluate.hydra_main, "evaluate")
+    (plain, agent), (name, changed) = met.items()
+    assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
+    assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3"
+    assert changed.blind == ("rgb",) and changed.planner.fusion == {"rate": 4, "cap": 3}
+
+
 def complaint(monkeypatch, capsys, *options: str) -> str:
     monkeypatch.setattr(sys, "argv", ["train", *options])
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)

@@ -74,6 +74,15 @@ def test_a_stage_made_with_other_settings_is_not_resumed(tmp_path):
         train.run(config(tmp_path, "trainer.lr=0.5"))
 
 
+def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
+    train.run(config(tmp_path))
+    before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+    with pytest.raises(ValueError, match="other settings"):
+        train.run(config(tmp_path, "seed=1"))
+    after = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+    assert {p for p in before if after[p] != before[p]} == set()
+
+
 def test_a_truncated_checkpoint_stops_the_run_with_advice(tmp_path):
     train.run(config(tmp_path))
     newest = checkpoint.checkpoints(tmp_path / "second")[-1]

@@ -83,22 +83,19 @@ def insert_adapters(
             views), with ``ring_reduction`` as reduction. A module found by both gets this one.
     Returns the names of the adapted modules, in the model's order.
     Raises ValueError for a target that matches nothing (with the names there are), a module whose
-    channels cannot be told, or a model that has adapters already.
+    channels cannot be told or that has a child called "adapter", or a model that has adapters
+    already; the model is then as it was.
     """
     _refuse_adapted(model)
     plain, ringed = _find(model, target_modules), _find(model, ring)
-    model.requires_grad_(False)
-    names = [name for name, _ in model.named_modules() if name in plain or name in ringed]
-    for name in names:
-        module = model.get_submodule(name)
-        channels = _channels(name, module)
-        adapter = (
-            RingAdapter(channels, ring_reduction, kernel, views, hfov)
-            if name in ringed
-            else ConvAdapter(channels, reduction, kernel)
-        )
-        _attach(module, adapter)
-    return names
+    made: dict[str, nn.Module] = {}
+    for name, module in model.named_modules():
+        if name in ringed:
+            made[name] = RingAdapter(_channels(name, module), ring_reduction, kernel, views, hfov)
+        elif name in plain:
+            made[name] = ConvAdapter(_channels(name, module), reduction, kernel)
+    _attach_all(model, made)
+    return list(made)
 
 
 def adapted(model: nn.Module) -> list[str]:
@@ -107,7 +104,8 @@ def adapted(model: nn.Module) -> list[str]:
 
 
 def remove_adapters(model: nn.Module) -> None:
-    """Take all adapters out; the backbone is what it was before they came in."""
+    """Take all adapters out; the backbone computes what it did before they came in. It stays
+    frozen: ``model.requires_grad_(True)`` lets it train again."""
     for name in adapted(model):
         module = model.get_submodule(name)
         if hasattr(module, _HOOK):
@@ -174,7 +172,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
         raise ValueError(f"This model has no module called {', '.join(missing)}.")
-    made = {}
+    made: dict[str, nn.Module] = {}
     try:
         for name, shape in shapes.items():
             made[name] = (RingAdapter if "views" in shape else ConvAdapter)(**shape)
@@ -184,9 +182,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
             )
     except (RuntimeError, TypeError) as error:
         raise ValueError(f"The adapters in {folder} are damaged ({error}).") from error
-    model.requires_grad_(False)
-    for name, adapter in made.items():
-        _attach(model.get_submodule(name), adapter)
+    _attach_all(model, made)
     return list(shapes)
 
 
@@ -203,6 +199,19 @@ def _adapt(module: nn.Module, inputs: Any, output: Tensor) -> Tensor:
 def _refuse_adapted(model: nn.Module) -> None:
     if adapted(model):
         raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
+
+
+def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
+    """Freeze ``model`` and attach ``made``, all or none."""
+    taken = [name for name in made if hasattr(model.get_submodule(name), NAME)]
+    if taken:
+        raise ValueError(
+            f"{', '.join(taken)} has something called {NAME!r} of its own, the name that an "
+            "adapter takes. Choose other target modules."
+        )
+    model.requires_grad_(False)
+    for name, adapter in made.items():
+        _attach(model.get_submodule(name), adapter)
 
 
 def _attach(module: nn.Module, adapter: nn.Module) -> None:

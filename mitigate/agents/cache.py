@@ -42,14 +42,14 @@ class ApartmentCache:
     @torch.no_grad()
     def blank(self, agent: TopologicalAgent, size: int) -> None:
         """Replace what a blind agent cannot see by what it gets from blanked frames."""
-        rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8)
-        views, _, logits = agent.perceive(rgb, torch.zeros(1, VIEWS, size, size, 1))
-        depth = agent.planner.widths[-1]
+        rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
+        views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
+        views, depth = views.cpu(), agent.planner.widths[-1]
         if "rgb" in agent.blind:
             self.views[..., :-depth] = views[0, :, :-depth].half()
         if "depth" in agent.blind:
             self.views[..., -depth:] = views[0, :, -depth:].half()
-            found = select(logits[0].numpy())
+            found = select(logits[0].cpu().numpy())
             self.waypoints[:] = 0
             self.waypoints[:, : len(found)] = found
 
@@ -70,7 +70,10 @@ def path_of(folder: Path, seed: int) -> Path:
 
 @torch.no_grad()
 def build(agent: TopologicalAgent, folder: Path, apartments: range, size: int = 64) -> None:
-    """Fill the cache of some training apartments; those already there are kept."""
+    """Fill the cache of some training apartments; those already there are kept.
+
+    It holds what the encoders see, also those of a blind agent (``ApartmentCache.blank``).
+    """
     renderer = Renderer(size, scenes=2)
     folder.mkdir(parents=True, exist_ok=True)
     for seed in tqdm(
@@ -107,11 +110,14 @@ def _features(agent: TopologicalAgent, frames: list[tuple]) -> dict[str, np.ndar
     views, chosen = [], np.zeros((len(frames), COUNT, 2), np.float32)
     for first in range(0, len(frames), _BATCH):
         part = frames[first : first + _BATCH]
-        rgb, depth = (torch.from_numpy(np.stack([frame[i] for frame in part])) for i in (0, 1))
-        with torch.autocast("cpu", torch.bfloat16):
-            features, _, logits = agent.perceive(rgb, depth)
-        views.append(features.half().numpy())
-        for row, grid in enumerate(logits.float().numpy(), first):
+        rgb, depth = (
+            torch.from_numpy(np.stack([frame[i] for frame in part])).to(agent.device)
+            for i in (0, 1)
+        )
+        with torch.autocast(agent.device.type, torch.bfloat16):
+            features, _, logits = agent.encode(rgb, depth)
+        views.append(features.half().cpu().numpy())
+        for row, grid in enumerate(logits.float().cpu().numpy(), first):
             found = select(grid)
             chosen[row, : len(found)] = found
     return {

@@ -8,7 +8,7 @@ text. The 12 views of the current panorama are given as further context (as DUET
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 import torch
@@ -38,6 +38,10 @@ class DecisionBatch:
     geometry: Tensor
     valid: Tensor
     allowed: Tensor
+
+    def to(self, device: torch.device) -> DecisionBatch:
+        """Return the batch on ``device``."""
+        return DecisionBatch(*(getattr(self, part.name).to(device) for part in fields(self)))
 
 
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
@@ -120,8 +124,8 @@ class Layer(nn.Module):
 class Planner(nn.Module):
     """See the module's docstring.
 
-    ``fusion``: keyword arguments of ``fusion.reliability`` (rate, cap): every mean over views then
-    weighs them by the reliability of their encoder features; None: plain means.
+    ``fusion``: keyword arguments of ``fusion.reliability`` (rate, cap): nodes and ghosts are then
+    means of their views weighted by the reliability of the encoder features; None: plain means.
     """
 
     concept_words: Tensor
@@ -179,7 +183,8 @@ class Planner(nn.Module):
         return self.text_norm(x), mask
 
     def look(self, views: Tensor) -> Tensor:
-        """View features [P, 12, view_width] to view tokens [P, 12, width]."""
+        """View features [P, 12, view_width] to view tokens [P, 12, width]; with ``fusion`` each
+        view's reliability follows as one channel more."""
         rgb, concepts, depth = views.split(self.widths, -1)
         meaning = self.concept_words @ self.words.weight  # [concepts, width]
         seen = concepts[..., THINGS] @ meaning[THINGS]
@@ -199,19 +204,21 @@ class Planner(nn.Module):
         if self.fusion is None:
             return x
         weights = reliability(torch.cat([rgb, depth], -1).float(), **self.fusion)  # type: ignore[arg-type]
-        return x * (weights.unsqueeze(-1) * VIEWS).to(x.dtype)  # means over views are weighted now
+        return torch.cat([x, weights.unsqueeze(-1).to(x.dtype)], -1)
 
     def forward(
         self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch
     ) -> dict[str, Tensor]:
         """Scores of every token.
 
-        Args: text from ``read``; views [P, 12, width] from ``look``; the padded decisions.
+        Args: text from ``read``; views [P, 12, ...] from ``look``; the padded decisions.
         Returns logits [B, 1 + N + G] (-inf where not allowed), distance [B, 1 + N + G] (predicted
         metres to the goal / 5), grounding [B, 12] (logit that the goal's landmark shows), nodes
         [B, 1 + N + G, width] (the matched features of distillation).
         """
-        x = self._tokens(views, batch)
+        weights = None if self.fusion is None else views[..., -1:]
+        views = views if self.fusion is None else views[..., :-1]
+        x = self._tokens(views, weights, batch)
         size = x.shape[1]
         x = torch.cat([x, views[batch.panorama] + self.view_kind], 1)
         mask = F.pad(batch.valid, (0, VIEWS), value=True)
@@ -230,11 +237,17 @@ class Planner(nn.Module):
             "nodes": tokens,
         }
 
-    def _tokens(self, views: Tensor, batch: DecisionBatch) -> Tensor:
-        means = views.mean(1)
-        nodes = means[batch.nodes.clamp(min=0)]
+    def _tokens(self, views: Tensor, weights: Tensor | None, batch: DecisionBatch) -> Tensor:
         known = (batch.sightings >= 0).unsqueeze(-1)
-        flat = views.flatten(0, 1)[batch.sightings.clamp(min=0)] * known
-        ghosts = flat.sum(2) / known.sum(2).clamp(min=1)
+        places = batch.sightings.clamp(min=0)
+        if weights is None:
+            means = views.mean(1)
+            ghosts = (views.flatten(0, 1)[places] * known).sum(2) / known.sum(2).clamp(min=1)
+        else:
+            means = (views * weights).sum(1)  # of a panorama they add up to 1
+            shares = weights.flatten(0, 1)[places] * known
+            total = shares.sum(2)
+            ghosts = (views.flatten(0, 1)[places] * shares).sum(2) / total.where(total > 0, 1)
+        nodes = means[batch.nodes.clamp(min=0)]
         here = means[batch.panorama].unsqueeze(1)
         return torch.cat([here, nodes, ghosts], 1) + self.geometry(batch.geometry)

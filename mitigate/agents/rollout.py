@@ -106,7 +106,8 @@ def roll_out(
         own = [i for i in running if rng.random() >= follow_oracle]
         chosen = {i: _draw(traces[i].steps[-1].target[1:], rng) for i in running}
         if follow_oracle < 1.0 and running:
-            fresh = planner.look(torch.stack([traces[i].views[-1] for i in running]).float())
+            seen_now = torch.stack([traces[i].views[-1] for i in running]).float()
+            fresh = planner.look(seen_now.to(tokens.device))
             for row, i in enumerate(running):
                 tokens_of[i].append(fresh[row])
         if own:
@@ -132,11 +133,12 @@ def _planned(
     rng: np.random.Generator,
 ) -> list[int]:
     offsets = np.cumsum([0, *(len(tokens_of[i]) for i in own)])[:-1]
-    batch = collate([traces[i].steps[-1].decision for i in own], own, list(offsets))
     views = torch.stack([t for i in own for t in tokens_of[i]])
+    decisions = [traces[i].steps[-1].decision for i in own]
+    batch = collate(decisions, own, list(offsets)).to(views.device)
     logits = planner(text, views, batch)["logits"]
     first = 1 + batch.nodes.shape[1]
-    probabilities = logits[:, first:].softmax(-1).double().numpy()
+    probabilities = logits[:, first:].softmax(-1).double().cpu().numpy()
     counts = [len(traces[i].steps[-1].decision.ghosts) for i in own]
     return [_draw(p[:n], rng) for p, n in zip(probabilities, counts, strict=True)]
 

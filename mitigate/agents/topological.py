@@ -73,6 +73,10 @@ class TopologicalAgent(nn.Module):
         """
         rgb = torch.zeros_like(rgb) if "rgb" in self.blind else rgb
         depth = torch.zeros_like(depth) if "depth" in self.blind else depth
+        return self.encode(rgb, depth)
+
+    def encode(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """As :meth:`perceive`, whatever the agent is blind to."""
         rgb_features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
         depth_features = self.depth_encoder(depth.flatten(0, 1)).unflatten(0, (-1, VIEWS))
         concepts = concepts.unflatten(0, (-1, VIEWS))
@@ -118,7 +122,7 @@ class TopologicalAgent(nn.Module):
         self.map.add(pose, select(waypoints[0].float().cpu().numpy()))
         decision = self.map.decision(pose)
         logits = self.planner(
-            self._text, torch.cat(self._views), _to(collate([decision], [0], [0]), self.device)
+            self._text, torch.cat(self._views), collate([decision], [0], [0]).to(self.device)
         )["logits"][0]
         self.decisions += 1
         self._stop_scores.append((float(logits.softmax(0)[0]), self.map.current))
@@ -138,7 +142,3 @@ class TopologicalAgent(nn.Module):
         node = max(self._stop_scores)[1]
         self.controller.follow(self.map.route_to_node(node))
         return True
-
-
-def _to(batch: Any, device: torch.device) -> Any:
-    return type(batch)(*(getattr(batch, name).to(device) for name in batch.__dataclass_fields__))

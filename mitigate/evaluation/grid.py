@@ -45,18 +45,23 @@ class Retention:
 class Grid:
     """All results of one split, suite version and success rule.
 
-    ``columns`` maps a column's label to its (name, agent shas); ``seeds`` to the seeds it ran with.
+    ``columns`` maps a column's label to its (name, agent shas).
     ``cells[label, corruption, severity, metric]`` is float64 [N], one value an episode, the mean
-    over the column's seeds, NaN where a row is missing.
+    over ``seeds[label, severity]``, NaN where a row is missing; a clean cell is there once for each
+    severity, over that one's seeds. ``unfinished[label, severity]`` holds the seeds that are left
+    out, with the rows they have and the rows of a whole one. ``by_seed[label][seed]`` is the grid
+    of one seed alone, for columns with several.
     """
 
     split: str
     suite: str
     rule: str
     columns: dict[str, tuple[str, tuple[str, ...]]]
-    seeds: dict[str, tuple[int, ...]]
+    seeds: dict[tuple[str, float], tuple[int, ...]]
+    unfinished: dict[tuple[str, float], dict[int, tuple[int, int]]]
     episodes: tuple[str, ...]
     cells: dict[tuple[str, str, float, str], np.ndarray]
+    by_seed: dict[str, dict[int, Grid]]
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:
         """Return the values [N] of a cell; all NaN if nothing was measured."""
@@ -83,9 +88,9 @@ class Grid:
         }
         return {block: names for block, names in blocks.items() if names}
 
-    def measured(self, label: str, metric: str = "success") -> np.ndarray:
-        """Return which episodes [N] the clean cell of a column holds."""
-        return ~np.isnan(self.cell(label, "clean", 0.0, metric))
+    def measured(self, label: str, severity: float, metric: str = "success") -> np.ndarray:
+        """Return which episodes [N] the clean cell of a column holds, of the seeds at severity."""
+        return ~np.isnan(self.cell(label, "clean", severity, metric))
 
     def retention(
         self, labels: Sequence[str], names: Iterable[str], severity: float, metric: str
@@ -95,7 +100,7 @@ class Grid:
         All have the same corruptions, those measured in every column on at least
         :data:`COVERAGE` of the episodes, and the same episodes, those with no gap among these.
         """
-        known = np.all([self.measured(label, metric) for label in labels], axis=0)
+        known = np.all([self.measured(label, severity, metric) for label in labels], axis=0)
         held = {
             name: known & ~np.isnan([self.cell(x, name, severity, metric) for x in labels]).any(0)
             for name in names
@@ -107,7 +112,7 @@ class Grid:
         return [
             Retention(
                 kept,
-                self.cell(label, "clean", 0.0, metric)[common],
+                self.cell(label, "clean", severity, metric)[common],
                 np.stack([self.cell(label, name, severity, metric)[common] for name in kept]),
             )
             for label in labels
@@ -116,13 +121,13 @@ class Grid:
     def gaps(self, severity: float) -> list[Gap]:
         """Return the cells of the table at ``severity`` that lack episodes of the grid."""
         blocks = self.blocks_at(severity)
-        wanted = [("clean", 0.0)]
-        wanted += [(name, severity) for names in blocks.values() for name in names]
+        wanted = ["clean", *(name for names in blocks.values() for name in names)]
         found = []
         for label in self.columns_at(severity):
-            for name, at in wanted:
-                have = int((~np.isnan(self.cell(label, name, at, "success"))).sum())
+            for name in wanted:
+                have = int((~np.isnan(self.cell(label, name, severity, "success"))).sum())
                 if have < len(self.episodes):
+                    at = 0.0 if name == "clean" else severity
                     found.append(Gap(label, name, at, have, len(self.episodes)))
         return found
 
@@ -169,24 +174,73 @@ def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
     labels = {(name, agent): x for x, (name, agents) in columns.items() for agent in agents}
     episodes = tuple(sorted({row["episode_id"] for row in rows}, key=_natural))
     place = {episode: index for index, episode in enumerate(episodes)}
-    seeds: dict[str, set[int]] = defaultdict(set)
-    sums: dict[tuple[str, str, float, str], np.ndarray] = {}
-    counts: dict[tuple[str, str, float, str], np.ndarray] = {}
+    held: dict[str, dict[int, list[Row]]] = {label: defaultdict(list) for label in columns}
     for row in rows:
-        label = labels[row["name"], row["agent"]]
-        seeds[label].add(row["seed"])
-        for metric in METRICS.values():
-            cell = (label, row["corruption"], float(row["severity"]), metric)
-            total = sums.setdefault(cell, np.zeros(len(episodes)))
-            total[place[row["episode_id"]]] += row[metric]
-            count = counts.setdefault(cell, np.zeros(len(episodes), int))
-            count[place[row["episode_id"]]] += 1
-    cells = {
-        cell: np.where(counts[cell] == len(seeds[cell[0]]), total / len(seeds[cell[0]]), np.nan)
-        for cell, total in sums.items()
+        held[labels[row["name"], row["agent"]]][row["seed"]].append(row)
+    seeds, unfinished = {}, {}
+    cells: dict[tuple[str, str, float, str], np.ndarray] = {}
+    for label, runs in held.items():
+        measured = {seed: _cells(run, place) for seed, run in runs.items()}
+        for severity in {at for run in measured.values() for _, at, _ in run}:
+            spot = (label, severity)
+            seeds[spot], unfinished[spot] = _whole(measured, severity)
+            pooled = _pooled([measured[seed] for seed in seeds[spot]], severity)
+            cells |= {(label, name, severity, metric): v for (name, metric), v in pooled.items()}
+    by_seed = {
+        label: {seed: _grid(key, run) for seed, run in sorted(runs.items())}
+        for label, runs in held.items()
+        if len(runs) > 1
     }
-    ordered = {label: tuple(sorted(seeds[label])) for label in columns}
-    return Grid(*key, columns, ordered, episodes, cells)
+    return Grid(*key, columns, seeds, unfinished, episodes, cells, by_seed)
+
+
+_Run = dict[tuple[str, float, str], np.ndarray]  # (corruption, severity, metric): values [N]
+
+
+def _cells(rows: list[Row], place: dict[str, int]) -> _Run:
+    """Return the cells of one seed; ``place`` is where an episode stands."""
+    cells: _Run = {}
+    for row in rows:
+        for metric in METRICS.values():
+            cell = (row["corruption"], float(row["severity"]), metric)
+            values = cells.setdefault(cell, np.full(len(place), np.nan))
+            values[place[row["episode_id"]]] = row[metric]
+    return cells
+
+
+def _whole(
+    runs: dict[int, _Run], severity: float
+) -> tuple[tuple[int, ...], dict[int, tuple[int, int]]]:
+    """Return the seeds to pool at ``severity``, and those left out with (rows held, rows of all).
+
+    A seed counts if it holds :data:`COVERAGE` of the rows of the one that holds most, of the clean
+    ones and of the corrupted. One with nothing at ``severity`` is not mentioned.
+    """
+
+    def rows(run: _Run, at: float) -> int:
+        found = (v for (_, s, metric), v in run.items() if s == at and metric == METRICS["SR"])
+        return sum(int((~np.isnan(values)).sum()) for values in found)
+
+    have = {s: np.array([rows(run, 0.0), rows(run, severity)]) for s, run in sorted(runs.items())}
+    most = np.max(list(have.values()), axis=0)
+    kept = [seed for seed, counts in have.items() if (counts >= COVERAGE * most).all()]
+    kept = kept or [max(have, key=lambda seed: have[seed].sum())]
+    left = {
+        seed: (int(counts.sum()), int(most.sum()))
+        for seed, counts in have.items()
+        if seed not in kept and counts[1]
+    }
+    return tuple(kept), left
+
+
+def _pooled(runs: list[_Run], severity: float) -> dict[tuple[str, str], np.ndarray]:
+    """Return the mean over seeds of the clean and the corrupted cells of ``severity``."""
+    wanted = {(n, at, metric) for run in runs for n, at, metric in run if at in (0.0, severity)}
+    empty = np.full_like(next(iter(runs[0].values())), np.nan)
+    return {
+        (name, metric): np.mean([run.get((name, at, metric), empty) for run in runs], axis=0)
+        for name, at, metric in wanted
+    }
 
 
 def _natural(text: str) -> tuple[bool, int, str]:

@@ -36,7 +36,7 @@ def beside(section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, 
         for name in names:
             rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
             lines.append(cells(label(name), name, rates))
-    held = (" ".join(map(str, section.grid.seeds[c])) for c in section.columns)
+    held = (" ".join(map(str, section.grid.seeds[c, section.severity])) for c in section.columns)
     lines.append(["Seeds", *held])
     minutes = (f"{spent[c]:.0f}" if c in spent else "–" for c in section.columns)
     lines.append(["Training, CPU minutes", *minutes])

@@ -66,9 +66,9 @@ class Poses:
             seen = corrupt_observation(clean, corruption, Key(self.seed, f"pose {index}", 0))
             frames = (torch.from_numpy(seen[name])[None] for name in (RGB, DEPTH))
             _, concepts, waypoints = agent.perceive(*frames)
-            said, true = concepts[0, :, THINGS].numpy() > 0, self.things[index]
+            said, true = concepts[0, :, THINGS].cpu().numpy() > 0, self.things[index]
             things.append((2 * (said & true).sum(), said.sum() + true.sum()))
-            open_, real = waypoints[0].numpy() > 0, self.free[index]
+            open_, real = waypoints[0].cpu().numpy() > 0, self.free[index]
             free.append(((open_ & real).sum(), (open_ | real).sum()))
         return np.array(things, float).T, np.array(free, float).T
 

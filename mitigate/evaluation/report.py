@@ -6,7 +6,7 @@ Every number is computed from result rows. Partial rows give a partial table tha
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
@@ -58,7 +58,7 @@ def write(rows: Iterable[Row], folder: Path | str) -> list[Path]:
 def _heading(section: Section) -> str:
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
-    kinds = {grid.seeds[column] for column in columns}
+    kinds = {grid.seeds[column, section.severity] for column in columns}
     seeds = "seed " + _listed(kinds.pop()) if len(kinds) == 1 else _seeds_by_column(section)
     agents = ", ".join(f"{x} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns)
     return (
@@ -72,7 +72,8 @@ def _heading(section: Section) -> str:
 
 
 def _seeds_by_column(section: Section) -> str:
-    found = (f"{_listed(section.grid.seeds[c])} of {c}" for c in section.columns)
+    seeds = {c: section.grid.seeds[c, section.severity] for c in section.columns}
+    found = (f"{_listed(held)} of {column}" for column, held in seeds.items())
     return f"seeds {'; '.join(found)}"
 
 
@@ -85,6 +86,7 @@ def _table(section: Section) -> str:
     for metric in METRICS:
         cells = [_interval(section.clean.get((c, metric)), metric) for c in section.columns]
         lines.append([f"Clean {metric}", *cells])
+    lines += _by_seed(section, "clean", "Clean SR", lambda value: f"{100 * value:.1f}")
     if len(section.columns) > 1:
         cells = [_moved(section.moved.get(c)) for c in section.columns]
         lines.append([f"Clean SR against {section.reference}", *cells])
@@ -92,6 +94,7 @@ def _table(section: Section) -> str:
         for metric in METRICS:
             cells = [_prs(section, (c, block, metric)) for c in section.columns]
             lines.append([f"**PRS-{metric} ({block})**", *cells])
+        lines += _by_seed(section, block, "PRS-SR", lambda value: f"{value:.2f}")
         if len(section.columns) > 1:
             for metric in METRICS:
                 cells = [_change(section, (c, block, metric)) for c in section.columns]
@@ -102,6 +105,17 @@ def _table(section: Section) -> str:
             lines.append([label(PROMPT_ONLY), *["n/a"] * len(section.columns)])
     lines.insert(1, ["---", *["---:"] * len(section.columns)])
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def _by_seed(
+    section: Section, key: str, title: str, shown: Callable[[float], str]
+) -> list[list[str]]:
+    """Return a line of each seed's own value, or nothing if no column has several seeds."""
+    found = [section.by_seed.get((column, key), {}) for column in section.columns]
+    if not any(len(values) > 1 for values in found):
+        return []
+    cells = (" / ".join(map(shown, values.values())) or "–" for values in found)
+    return [[f"{title}, seed by seed", *cells]]
 
 
 def _notes(section: Section) -> str:
@@ -129,6 +143,16 @@ def _notes(section: Section) -> str:
         )
     if section.gained:
         notes.append("Differences in bold have intervals that exclude zero.")
+    if section.by_seed:
+        notes.append(
+            "Several seeds: an episode counts as their mean. Intervals are over episodes; how far "
+            "another training would lie apart is shown seed by seed."
+        )
+    for column in section.columns:
+        for seed, (have, want) in section.grid.unfinished[column, section.severity].items():
+            notes.append(
+                f"Seed {seed} of {column} is not finished and left out: {have:,} of {want:,} rows."
+            )
     if section.gaps:
         notes.append("\\* over the episodes at hand. Missing cells:")
         notes += [

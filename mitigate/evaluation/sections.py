@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -42,7 +43,8 @@ class Section:
 
     ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
     the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
-    ``moved`` is the paired difference of clean SR, by column.
+    ``moved`` is the paired difference of clean SR, by column. ``by_seed`` holds each seed's own
+    clean SR (key: column, "clean") and PRS-SR (column, block), for columns with several seeds.
     """
 
     grid: Grid
@@ -55,11 +57,11 @@ class Section:
     retained: dict[tuple[str, str, str], Retained]
     gained: dict[tuple[str, str, str], Retained]
     gaps: list[Gap]
+    by_seed: dict[tuple[str, str], dict[int, float]]
 
     def value(self, column: str, corruption: str, metric: str = "SR") -> float:
         """Return the mean of a cell over the episodes it holds, NaN if it holds none."""
-        severity = 0.0 if corruption == "clean" else self.severity
-        return _mean(self.grid.cell(column, corruption, severity, METRICS[metric]))
+        return _mean(self.grid.cell(column, corruption, self.severity, METRICS[metric]))
 
     def partial(self, column: str, corruption: str) -> bool:
         """Return whether a cell lacks episodes."""
@@ -105,13 +107,14 @@ def _section(grid: Grid, severity: float) -> Section:
     )
     blocks, reference = grid.blocks_at(severity), columns[0]
     clean, moved, retained, gained = {}, {}, {}, {}
-    base = grid.cell(reference, "clean", 0.0, METRICS["SR"])
+    base = grid.cell(reference, "clean", severity, METRICS["SR"])
     for column in columns:
-        change = grid.cell(column, "clean", 0.0, METRICS["SR"]) - base
+        change = grid.cell(column, "clean", severity, METRICS["SR"]) - base
         if column != reference and not np.isnan(change).all():
             moved[column] = bootstrap.mean(change[~np.isnan(change)])
         for metric, key in METRICS.items():
-            values = grid.cell(column, "clean", 0.0, key)[grid.measured(column, key)]
+            values = grid.cell(column, "clean", severity, key)
+            values = values[grid.measured(column, severity, key)]
             if len(values):
                 clean[column, metric] = bootstrap.mean(values)
             for block, names in blocks.items():
@@ -121,10 +124,36 @@ def _section(grid: Grid, severity: float) -> Section:
                 pair = () if column == reference else (column, reference)
                 if pair and (parts := grid.retention(pair, names, severity, key)):
                     gained[place] = _retained(parts)
-    gaps = grid.gaps(severity)
     return Section(
-        grid, severity, tuple(columns), blocks, reference, clean, moved, retained, gained, gaps
+        grid,
+        severity,
+        tuple(columns),
+        blocks,
+        reference,
+        clean,
+        moved,
+        retained,
+        gained,
+        grid.gaps(severity),
+        _by_seed(grid, severity, blocks),
     )
+
+
+def _by_seed(
+    grid: Grid, severity: float, blocks: dict[str, tuple[str, ...]]
+) -> dict[tuple[str, str], dict[int, float]]:
+    """Return the clean SR and the PRS-SR of every block, of each seed that is pooled."""
+    found: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
+    for column, runs in grid.by_seed.items():
+        for seed in grid.seeds.get((column, severity), ()):
+            run = runs[seed]
+            (alone,) = run.columns
+            found[column, "clean"][seed] = _mean(run.cell(alone, "clean", severity, METRICS["SR"]))
+            for block, names in blocks.items():
+                for part in run.retention([alone], names, severity, METRICS["SR"]) or ():
+                    value = float(part.corrupted.mean() / (part.clean.mean() or math.nan))
+                    found[column, block][seed] = value
+    return dict(found)
 
 
 def _retained(parts: list[Retention]) -> Retained:

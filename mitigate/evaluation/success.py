@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import draw_training_episode
 from mitigate.evaluation.evaluator import run_episode
+from mitigate.evaluation.rows import read
 from mitigate.seeding import generator
 
 
@@ -41,6 +43,27 @@ def measure(
             for episode in drawn
         ]
     )
+
+
+def prior_rates(path: Path | str) -> dict[str, float]:
+    """Success by corruption in a file of result rows.
+
+    Raises FileNotFoundError or ValueError for a file that is not there or broken, and ValueError
+    if it mixes agents, splits or severities.
+    """
+    found = read(path)
+    kinds = {
+        "agents": {row["name"] for row in found},
+        "splits": {row["split"] for row in found},
+        "severities": {f"{row['severity']:g}" for row in found} - {"0"},
+    }
+    for what, held in kinds.items():
+        if len(held) > 1:
+            raise ValueError(
+                f"{path} holds rows of several {what} ({', '.join(sorted(held))}), so its success "
+                "rates say nothing about one agent. Name a file of one evaluation (prior=...)."
+            )
+    return success_rates(found)
 
 
 def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:

@@ -12,9 +12,11 @@ import pytest
 import torch
 from torch import Tensor, nn
 
+import mitigate.train  # noqa: F401  (the schema of its config)
+from mitigate import cli
 from mitigate.agents import adapters
 from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
-from mitigate.agents.topological import TopologicalAgent
+from mitigate.build import build_agent
 from mitigate.checkpoint import weights_sha
 from mitigate.keys import VIEWS
 
@@ -172,14 +174,31 @@ def test_a_copy_has_adapters_of_its_own(encoder):
 
 
 def test_the_share_on_the_reference_agent_is_between_one_and_four_per_cent():
-    agent = TopologicalAgent(
-        adapters={
-            "target_modules": [r"(rgb|depth)_encoder\.stages\.[01]", r"depth_encoder\.stages\.2"],
-            "ring": [r"rgb_encoder\.stages\.2"],
-            "ring_reduction": 5,
-        }
-    )
+    cfg = cli.load_config("train", ["recipe=conv_adapter"])
+    agent = build_agent(cfg.agent, weights=cfg.init, seed=0)
     assert 0.01 <= adapters.trainable_share(agent) <= 0.04
+
+
+def test_a_refused_insertion_leaves_the_model_as_it_was():
+    model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.Flatten(), nn.Linear(8, 4))
+    for options in (
+        {"target_modules": ["0", "2"]},  # a Linear has no channels
+        {"target_modules": ["0"], "ring": ["0"], "hfov": 200.0},
+    ):
+        with pytest.raises(ValueError, match="channels of 2|hfov|field of view"):
+            insert_adapters(model, **options)
+        assert not adapters.adapted(model)
+        assert all(p.requires_grad for p in model.parameters())
+    assert insert_adapters(model, ["0"]) == ["0"]
+
+
+def test_a_child_that_is_called_adapter_already_is_not_overwritten():
+    model = nn.Sequential(nn.Conv2d(3, 8, 3))
+    model[0].add_module("adapter", nn.Conv2d(8, 8, 1))
+    own = model[0].adapter
+    with pytest.raises(ValueError, match="'adapter' of its own"):
+        insert_adapters(model, ["0"])
+    assert model[0].adapter is own and all(p.requires_grad for p in model.parameters())
 
 
 def test_a_ring_adapter_lets_a_view_see_its_neighbours_and_nothing_further():

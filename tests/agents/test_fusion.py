@@ -5,7 +5,11 @@ from __future__ import annotations
 import pytest
 import torch
 
+from mitigate import seeding
 from mitigate.agents.fusion import CAP, RATE, fuse, reliability
+from mitigate.agents.planner import Planner, collate
+from mitigate.keys import VIEWS
+from tests.agents.test_planner import decision
 
 
 @pytest.fixture
@@ -22,9 +26,12 @@ def test_a_blanked_or_inflated_view_falls_to_the_cap(views, factor):
     hurt[3] *= factor
     weights = reliability(hurt)
     others = weights[torch.arange(12) != 3]
-    assert weights[3] < others.min() and torch.isclose(weights.sum(), torch.tensor(1.0))
-    exponent = -torch.log(weights[3] / others.mean()) + RATE * 0  # relative to a typical view
-    assert exponent <= CAP + 1e-4
+    assert torch.isclose(weights.sum(), torch.tensor(1.0))
+    size = hurt.norm(dim=-1)
+    deviation = (size - size.mean()).abs() / size.mean()
+    assert RATE * deviation[3] > CAP  # so far off that the cap holds it, and no further
+    expected = CAP - RATE * deviation[torch.arange(12) != 3]
+    assert torch.allclose(torch.log(others / weights[3]), expected, atol=1e-4)
 
 
 @pytest.mark.parametrize("factor", [0.0, 5.0])
@@ -66,3 +73,55 @@ def test_gradients_are_finite_for_blank_views():
 def test_negative_constants_are_refused(views, bad):
     with pytest.raises(ValueError, match="at least 0"):
         reliability(views, **bad)
+
+
+def planner(fusion: dict | None) -> Planner:
+    """One and the same untrained planner, with or without fusion."""
+    seeding.seed_everything(0, "planner")
+    return Planner(8, 8, width=16, heads=2, text_layers=1, layers=1, fusion=fusion).eval()
+
+
+@torch.no_grad()
+def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor) -> torch.Tensor:
+    """Tokens of the ghosts of a decision, seen in the flat views ``sightings`` [G, 4]."""
+    made, batch = planner(fusion), collate([decision(4)], [0], [0])
+    batch.sightings[0, : len(sightings)] = sightings
+    tokens = made.look(features)
+    weights = None if fusion is None else tokens[..., -1:]
+    first = 1 + batch.nodes.shape[1]
+    return made._tokens(tokens[..., :16], weights, batch)[0, first : first + len(sightings)]
+
+
+@pytest.fixture
+def features() -> torch.Tensor:
+    """Four panoramas; every third view is inflated."""
+    torch.manual_seed(0)
+    made = torch.rand(4, VIEWS, sum(planner(None).widths))
+    made[:, ::3] *= 3.0
+    return made
+
+
+def test_in_the_planner_equal_weights_are_plain_means(features):
+    seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
+    plain = ghosts(None, features, seen)
+    level = ghosts({"rate": 0.0, "cap": 3.0}, features, seen)
+    assert torch.allclose(plain, level, atol=1e-5)
+
+
+def test_in_the_planner_the_weights_of_a_ghosts_views_add_up_to_one(features):
+    """Seen once, in whatever view, it is that view; seen twice, it leans on the better one."""
+    seen = torch.tensor([[0, -1, -1, -1], [1, -1, -1, -1], [0, 1, -1, -1]])
+    plain = ghosts(None, features, seen)
+    fused = ghosts({"rate": 4.0, "cap": 3.0}, features, seen)
+    assert torch.allclose(fused[:2], plain[:2], atol=1e-5)
+    assert not torch.allclose(fused[2], plain[2], atol=1e-3)
+
+
+def test_a_planner_with_fusion_scores_what_it_looked_at():
+    made, step = planner({}), decision(3)
+    tokens = torch.tensor([[2, 3, 4]])
+    with torch.no_grad():
+        looked = made.look(torch.rand(3, VIEWS, sum(made.widths)))
+        out = made(made.read(tokens), looked, collate([step], [0], [0]))
+    assert looked.shape == (3, VIEWS, 17)
+    assert torch.isfinite(out["logits"][0, 0]) and torch.isfinite(out["nodes"]).all()

@@ -152,6 +152,33 @@ def test_seeds_are_averaged_within_an_episode():
     assert [(gap.corruption, gap.have) for gap in section.gaps] == [("flare", 9)]
 
 
+def test_seeds_are_shown_one_by_one_where_there_are_several():
+    made = column(8, ALL) + column(5, ALL, seed=1) + column(8, ALL, **HARD)
+    found = lines(made)
+    assert found["Clean SR, seed by seed"] == ["80.0 / 50.0", "–"]
+    assert found["PRS-SR, seed by seed"] == ["0.50 / 0.80", "–"]
+    assert "seed by seed" not in markdown(sections(column(8, ALL)))
+
+
+def test_an_unfinished_seed_is_left_out_and_told():
+    """What another seed has measured in full must not shrink to what a new one has so far."""
+    part = [r for r in column(2, ALL, seed=1) if int(r["episode_id"]) < 2]
+    (section,) = sections(column(8, ALL) + part)
+    assert section.value("base", "clean") == pytest.approx(0.8)
+    assert section.retained["base", "RGB", "SR"].episodes == 10
+    assert "Seed 1 of base is not finished and left out: 26 of 130 rows." in markdown([section])
+
+
+def test_a_seed_counts_only_at_the_severities_it_was_measured_at():
+    made = column(8, ALL, 0.2) + column(8, ALL, 0.6) + column(4, ALL, 0.6, seed=1)
+    mild, strong = sections(made)
+    assert mild.value("base", "clean") == pytest.approx(0.8)  # seed 0 alone, as its corrupted cells
+    assert mild.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.5)
+    assert strong.value("base", "clean") == pytest.approx(0.6)
+    assert not mild.gaps and not strong.gaps
+    assert "left out" not in markdown([mild, strong])
+
+
 def test_controls_without_corruption_get_a_clean_table():
     clean, full = sections(column(8, ALL) + cell(1, name="random", agent="random"))
     assert clean.columns == ("base", "random")

@@ -8,8 +8,10 @@ from mitigate.agents.adapters import backbone_sha
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
+from mitigate.evaluation import rows
 from mitigate.trainer import Trainer
 from recipes.imitation import ImitationRecipe
+from tests.evaluation.made_rows import cell
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 RING = {"target_modules": [], "ring": [r"rgb_encoder\.stages\.2"]}
@@ -26,6 +28,19 @@ def test_adapters_alone_train_in_frozen_modules(tmp_path):
     backbone, whole = backbone_sha(agent), weights_sha(agent)
     Trainer(recipe(agent, "adapters"), steps=2, folder=tmp_path, seed=0, lr=1e-2, warmup=0).fit()
     assert backbone_sha(agent) == backbone and weights_sha(agent) != whole
+
+
+def test_a_prior_is_one_agents_evaluation(tmp_path):
+    """A run's own rows hold two agents, before and after: their mean is nobody's success."""
+    schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
+    hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
+    rows.write(tmp_path / "one.jsonl", cell(8) + hard)
+    ImitationRecipe(TopologicalAgent(16), schedule, prior=str(tmp_path / "one.jsonl"))
+    for other, said in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
+        mixed = [{**row, **other} for row in hard]
+        rows.write(tmp_path / "two.jsonl", hard + mixed)
+        with pytest.raises(ValueError, match=f"several {said}"):
+            ImitationRecipe(TopologicalAgent(16), schedule, prior=str(tmp_path / "two.jsonl"))
 
 
 def test_an_unknown_part_is_refused():

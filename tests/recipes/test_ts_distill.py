@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate import checkpoint, seeding
+import mitigate.train  # noqa: F401  (the schema of its config)
+from mitigate import checkpoint, cli, seeding
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
@@ -158,6 +159,23 @@ def test_adapters_train_alone(tmp_path):
 def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
     with pytest.raises(FileNotFoundError, match="make train RECIPE=da_per_episode"):
         TeacherStudent(small(), str(tmp_path), schedule=missing_data(), **EPISODES)
+
+
+def test_adapters_alone_are_no_teacher():
+    with pytest.raises(ValueError, match="holds adapters alone"):
+        ViewDistillation(small(), "rgb", "checkpoints/hardened/conv_adapter", **VIEWS)
+
+
+def test_one_option_names_the_teacher_of_all_stages():
+    for recipe in ("ts_distill", "stacked"):
+        options = [f"recipe={recipe}", "stages.views_rgb.recipe.teacher=mine"]
+        cfg = cli.load_config("train", options)
+        assert {stage.recipe.teacher for stage in cfg.stages.values()} == {"mine"}
+
+
+def test_frozen_views_are_no_part_of_the_loss(teacher):
+    frozen = TeacherStudent(small(), teacher, train_parts=("planner",), schedule=missing_data())
+    assert frozen.match == ("nodes",)
 
 
 def test_a_run_is_not_resumed_under_another_teacher(tmp_path):

@@ -1,0 +1,50 @@
+"""Planner training on stored features: what is stored does not depend on who is blind."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from mitigate import seeding
+from mitigate.agents.topological import TopologicalAgent
+from recipes.planner import PlannerRecipe
+
+SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
+
+
+def recipe(folder, blind: tuple[str, ...] = (), size: int = 64) -> PlannerRecipe:
+    seeding.seed_everything(0, "agent")
+    agent = TopologicalAgent(16, SMALL, blind=blind)
+    return PlannerRecipe(agent, str(folder), steps=2, cached=1, episodes=2, size=size)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("features")
+
+
+def spread(made: PlannerRecipe) -> tuple[float, float]:
+    """How much the RGB and the depth features of the stored poses differ."""
+    views, depth = made.caches[0].views.float(), made.agent.planner.widths[-1]
+    return float(views[..., :-depth].std(0).mean()), float(views[..., -depth:].std(0).mean())
+
+
+def test_a_blind_run_leaves_whole_features_to_the_next(folder):
+    """The blind one comes first and fills the cache."""
+    assert spread(recipe(folder, ("rgb",)))[0] == 0.0
+    seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
+    assert seeing.folder == deaf.folder and min(spread(seeing)) > 0
+    assert torch.equal(seeing.caches[0].views, deaf.caches[0].views)
+    assert spread(recipe(folder, ("depth",)))[1] == 0.0
+
+
+def test_views_of_another_size_are_stored_apart(folder):
+    assert recipe(folder, size=32).folder != recipe(folder).folder
+
+
+def test_a_batch_trains_the_planner_alone(folder):
+    made = recipe(folder)
+    losses = made(made.batch(0))
+    losses["loss"].backward()
+    moved = {n.partition(".")[0] for n, p in made.agent.named_parameters() if p.grad is not None}
+    assert moved == {"planner"} and torch.isfinite(losses["loss"])
