@@ -13,7 +13,7 @@ from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
 from mitigate.evaluation.grid import BLOCKS, METRICS, PROMPT_ONLY, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import Section, label, sections
+from mitigate.evaluation.sections import Retained, Section, label, sections
 from mitigate.files import atomic_text
 
 
@@ -90,6 +90,8 @@ def _table(section: Section) -> str:
     if len(section.columns) > 1:
         cells = [_moved(section.moved.get(c)) for c in section.columns]
         lines.append([f"Clean SR against {section.reference}", *cells])
+    if section.corrupted:
+        lines += _mean_sr(section)
     for block, names in section.blocks.items():
         for metric in METRICS:
             cells = [_prs(section, (c, block, metric)) for c in section.columns]
@@ -105,6 +107,24 @@ def _table(section: Section) -> str:
             lines.append([label(PROMPT_ONLY), *["n/a"] * len(section.columns)])
     lines.insert(1, ["---", *["---:"] * len(section.columns)])
     return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+
+
+def _mean_sr(section: Section) -> list[list[str]]:
+    """Return the lines of the mean SR over all corruptions, and of its differences."""
+
+    def cells(held: dict[str, Retained], shown: Callable[[Estimate], str]) -> list[str]:
+        found = {column: held.get(column) for column in section.columns}
+        return [
+            "–" if r is None else shown(r.estimate) + _escaped(section.marks(r, *section.blocks))
+            for r in found.values()
+        ]
+
+    count = sum(map(section.whole, section.blocks))
+    title = f"Mean SR of {count} corruptions"
+    lines = [[title, *cells(section.corrupted, lambda estimate: _interval(estimate, "SR"))]]
+    if len(section.columns) > 1:
+        lines.append([f"Mean SR against {section.reference}", *cells(section.raised, _moved)])
+    return lines
 
 
 def _by_seed(

@@ -29,7 +29,8 @@ LABELS = {  # the paper's Table II
 
 @dataclass(frozen=True)
 class Retained:
-    """A PRS or a difference of two, what it covers, and whether a clean value is too low."""
+    """A PRS, a mean SR or a difference of two, what it covers, and whether a clean value is too
+    low."""
 
     estimate: Estimate
     corruptions: tuple[str, ...]
@@ -43,7 +44,8 @@ class Section:
 
     ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
     the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
-    ``moved`` is the paired difference of clean SR, by column. ``by_seed`` holds each seed's own
+    ``moved`` is the paired difference of clean SR, by column. ``corrupted`` is the mean SR over all
+    corruptions and ``raised`` its paired difference, by column. ``by_seed`` holds each seed's own
     clean SR (key: column, "clean") and PRS-SR (column, block), for columns with several seeds.
     """
 
@@ -56,6 +58,8 @@ class Section:
     moved: dict[str, Estimate]
     retained: dict[tuple[str, str, str], Retained]
     gained: dict[tuple[str, str, str], Retained]
+    corrupted: dict[str, Retained]
+    raised: dict[str, Retained]
     gaps: list[Gap]
     by_seed: dict[tuple[str, str], dict[int, float]]
 
@@ -75,9 +79,9 @@ class Section:
         held = self.blocks[block]
         return sum(n in held or n != PROMPT_ONLY for n in BLOCKS.get(block, held))
 
-    def marks(self, found: Retained, block: str) -> str:
-        """Return the signs of a PRS that lacks corruptions or episodes, or is near the floor."""
-        held, wanted = len(found.corruptions), self.whole(block)
+    def marks(self, found: Retained, *blocks: str) -> str:
+        """Return the signs of a value that lacks corruptions or episodes, or is near the floor."""
+        held, wanted = len(found.corruptions), sum(map(self.whole, blocks))
         fewer = "*" * (found.episodes < len(self.grid.episodes))
         return fewer + f" † {held}/{wanted}" * (held < wanted) + " ‡" * found.near_floor
 
@@ -106,12 +110,18 @@ def _section(grid: Grid, severity: float) -> Section:
         grid.columns_at(severity), key=lambda label: rank.get(grid.columns[label][0], len(rank))
     )
     blocks, reference = grid.blocks_at(severity), columns[0]
-    clean, moved, retained, gained = {}, {}, {}, {}
+    clean, moved, retained, gained, corrupted, raised = {}, {}, {}, {}, {}, {}
+    every = tuple(name for names in blocks.values() for name in names)
     base = grid.cell(reference, "clean", severity, METRICS["SR"])
     for column in columns:
         change = grid.cell(column, "clean", severity, METRICS["SR"]) - base
         if column != reference and not np.isnan(change).all():
             moved[column] = bootstrap.mean(change[~np.isnan(change)])
+        if parts := grid.retention([column], every, severity, METRICS["SR"]):
+            corrupted[column] = _mean_sr(parts)
+        pair = () if column == reference else (column, reference)
+        if pair and (parts := grid.retention(pair, every, severity, METRICS["SR"])):
+            raised[column] = _mean_sr(parts)
         for metric, key in METRICS.items():
             values = grid.cell(column, "clean", severity, key)
             values = values[grid.measured(column, severity, key)]
@@ -121,7 +131,6 @@ def _section(grid: Grid, severity: float) -> Section:
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):
                     retained[place] = _retained(parts)
-                pair = () if column == reference else (column, reference)
                 if pair and (parts := grid.retention(pair, names, severity, key)):
                     gained[place] = _retained(parts)
     return Section(
@@ -134,6 +143,8 @@ def _section(grid: Grid, severity: float) -> Section:
         moved,
         retained,
         gained,
+        corrupted,
+        raised,
         grid.gaps(severity),
         _by_seed(grid, severity, blocks),
     )
@@ -162,6 +173,13 @@ def _retained(parts: list[Retention]) -> Retained:
     estimate = bootstrap.prs(*pairs[0]) if len(pairs) == 1 else bootstrap.prs_difference(*pairs)
     near_floor = min(part.clean.mean() for part in parts) < FLOOR
     return Retained(estimate, parts[0].corruptions, len(parts[0].clean), bool(near_floor))
+
+
+def _mean_sr(parts: list[Retention]) -> Retained:
+    """Return the mean SR under corruption of one part, or the first's minus the second's."""
+    means = [part.corrupted.mean(axis=0) for part in parts]
+    estimate = bootstrap.mean(means[0] if len(means) == 1 else means[0] - means[1])
+    return Retained(estimate, parts[0].corruptions, len(parts[0].clean), False)
 
 
 def _mean(values: np.ndarray) -> float:

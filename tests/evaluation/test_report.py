@@ -39,7 +39,7 @@ def test_the_table_has_the_papers_rows_and_their_numbers():
     assert found["L-L w/ noise"] == ["40.0", "40.0"]
     names = list(found)
     assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
-    assert len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 12  # head, rule, clean, suite
+    assert len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 2 + 12  # head, rule, clean, mean, suite
 
 
 def test_the_conditions_of_the_result_are_printed():
@@ -69,6 +69,15 @@ def test_clean_differences_are_paired_and_against_base():
     (section,) = sections(column(8, ALL) + column(8, ALL, **HARD))
     same = section.moved["da_per_episode"]
     assert (same.low, same.high) == (0, 0)
+
+
+def test_the_mean_sr_under_corruption_is_over_all_blocks_and_paired():
+    """PRS divides by an agent's own clean SR; this line does not."""
+    found = lines(column(8, ALL) + column(5, dict.fromkeys(NAMES, 6), **HARD))
+    assert [cell.split(" ")[0] for cell in found["Mean SR of 12 corruptions"]] == ["40.0", "60.0"]
+    assert found["Mean SR against base"][1].strip("*").startswith("+20.0")
+    part = lines(column(8, dict.fromkeys(RGB[:3], 4)))
+    assert part["Mean SR of 8 corruptions"][0].endswith("† 3/8")
 
 
 def test_partial_rows_give_a_partial_table_that_lists_its_gaps():
