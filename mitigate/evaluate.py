@@ -6,6 +6,7 @@ command again only fills what is missing.
 
 from __future__ import annotations
 
+import hashlib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -21,9 +22,13 @@ from torch import nn
 
 from mitigate import cli
 from mitigate.build import build_agent, settings_of
+from mitigate.files import atomic_text
+from mitigate.safeguard import adapter_folder
 
 ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
+LIST = "episodes.sha256"  # of the file that the episodes came from
+SIZE = 64  # pixels of a view, unless env.size says otherwise
 
 
 @dataclass
@@ -77,12 +82,16 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         name += "+" + re.sub(r"[^A-Za-z0-9.]+", "-", f"{setting}={node[setting]}").strip("-")
     agent = build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     if cfg.safeguard != "none":
-        name += f"+{Path(cfg.safeguard).name}"
+        name += f"+{_safeguard_label(cfg.safeguard)}"
+    if cfg.env.size != SIZE:
+        name += f"+size-{cfg.env.size}"
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
+    chosen = episodes(cfg.env, cfg.split, cfg.episodes)
+    _check_list(out / LIST, cfg.env.episodes[cfg.split])
     evaluate(
         agent,
-        episodes(cfg.env, cfg.split, cfg.episodes),
+        chosen,
         conditions(names, cfg.severity, cfg.severity_depth),
         name=name,
         out=out / ROWS,
@@ -94,6 +103,32 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     )
     write_table([out / ROWS], out)
     return out
+
+
+def _safeguard_label(choice: str) -> str:
+    """Return a safeguard's part of a column's name: an adapter's folder with a hash of its weights,
+    an endpoint's host and model; the names of ours as they are."""
+    if choice.startswith(("http://", "https://")):
+        return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
+    weights = Path(choice) / adapter_folder.ADAPTER
+    if not weights.is_file():
+        return Path(choice).name
+    return f"{name_of(choice)}-{hashlib.sha256(weights.read_bytes()).hexdigest()[:6]}"
+
+
+def _check_list(note: Path, source: str) -> None:
+    """Keep the hash of the episode file beside the rows; raise ValueError if it is another one's.
+
+    A row names its episode by id alone, so another list's rows would count as done.
+    """
+    found = hashlib.sha256(Path(source).read_bytes()).hexdigest()
+    if note.is_file() and note.read_text(encoding="utf-8").split()[0] != found:
+        raise ValueError(
+            f"{note.parent} holds rows of another {source} than there is now. Name another folder "
+            "(out=...), or delete this one."
+        )
+    with atomic_text(note) as file:
+        file.write(f"{found}  {source}\n")
 
 
 def _settings_named(overrides: Sequence[str]) -> list[str]:
@@ -153,9 +188,14 @@ def report_before_after(
 
 
 def episodes(env: DictConfig, split: str, count: int | None) -> list:
-    """Return the first ``count`` episodes (all, if None) of a split's shipped list."""
+    """Return the first ``count`` episodes (all, if None) of a split's shipped list.
+
+    Raises ValueError for an unknown split and a count below 1.
+    """
     from mitigate.envs.episodes import read_episodes
 
+    if count is not None and count < 1:
+        raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
     if split not in env.episodes:
         raise ValueError(cli.unknown("split", split, env.episodes))
     return list(islice(read_episodes(env.episodes[split]), count))

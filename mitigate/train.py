@@ -150,7 +150,8 @@ def check(cfg: DictConfig) -> None:
                 "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
             )
     if cfg.evaluation.enabled:  # a mistake there must not show only after hours of training
-        episodes(cfg.env, cfg.evaluation.split, 1)
+        count = cfg.evaluation.episodes
+        episodes(cfg.env, cfg.evaluation.split, count if count is None else min(count, 1))
         conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
 
 

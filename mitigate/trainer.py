@@ -80,6 +80,10 @@ class Trainer:
                 f"trainer.steps ({steps}) and trainer.keep ({keep}) must be at least 1, "
                 f"trainer.lr ({lr}) above 0. Set them on the command line, e.g. trainer.steps=100."
             )
+        if not grad_clip >= 0:
+            raise ValueError(
+                f"trainer.grad_clip ({grad_clip}) must be a norm above 0, or 0 to clip nothing."
+            )
         self.folder, self.steps, self.seed, self.keep = Path(folder), steps, seed, keep
         self.log_every, self.save_every = log_every, save_every
         self.eval_every, self.figure_every = eval_every, figure_every

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 
 import pytest
@@ -125,6 +126,44 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
     assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
     assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3"
     assert changed.blind == ("rgb",) and changed.planner.fusion == {"rate": 4, "cap": 3}
+
+
+def test_columns_tell_safeguards_apart(tmp_path):
+    """Every trained adapter lies in a folder called agent."""
+    for run, weights in (("first", b"a"), ("second", b"b")):
+        folder = tmp_path / run / "agent"
+        folder.mkdir(parents=True)
+        (folder / "adapter_model.safetensors").write_bytes(weights)
+    first, second = (
+        evaluate._safeguard_label(str(tmp_path / x / "agent")) for x in ("first", "second")
+    )
+    assert first.startswith("first-") and second.startswith("second-")
+    (tmp_path / "first" / "agent" / "adapter_model.safetensors").write_bytes(b"c")
+    assert evaluate._safeguard_label(str(tmp_path / "first" / "agent")) != first
+    assert evaluate._safeguard_label("http://one:80/v1@m") == "one-80-v1@m"
+    assert [evaluate._safeguard_label(x) for x in ("rules", "lora")] == ["rules", "lora"]
+
+
+def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
+    monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", lambda *a, **k: None)
+    monkeypatch.setattr(evaluate, "write_table", lambda rows, out: None)
+    mine = tmp_path / "mine.json.gz"
+    cfg = cli.load_config(
+        "evaluate", [f"+env.episodes.mine={mine}", "split=mine", f"out={tmp_path}"]
+    )
+    shutil.copy(cfg.env.episodes.val_seen, mine)
+    evaluate.run(cfg)
+    evaluate.run(cfg)
+    shutil.copy(cfg.env.episodes.val_unseen, mine)
+    with pytest.raises(ValueError, match="rows of another"):
+        evaluate.run(cfg)
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_no_episodes_are_refused_before_a_training(count):
+    cfg = cli.load_config("train", ["recipe=da_per_episode", f"evaluation.episodes={count}"])
+    with pytest.raises(ValueError, match=f"episodes={count} is none"):
+        train.check(cfg)
 
 
 def complaint(monkeypatch, capsys, *options: str) -> str:

@@ -184,6 +184,16 @@ def test_two_files_never_become_one(run, tmp_path):
     )
 
 
+def test_a_png_that_comes_later_does_not_take_a_jpegs_result_for_its_own(run, tmp_path):
+    save(tmp_path / "in/x.jpg", RGB[1])
+    run(*SPATTER)
+    before = (tmp_path / "out/x.png").read_bytes()
+    save(tmp_path / "in/x.png", RGB[0])
+    status, _, err = run(*SPATTER)
+    assert status != 0 and "x.jpg has taken its name" in err
+    assert (tmp_path / "out/x.png").read_bytes() == before
+
+
 def test_bad_files_are_left_out_with_the_reason_and_keep_their_number(run, tmp_path):
     folder = tmp_path / "in"
     save(folder / "0.png", RGB[0])

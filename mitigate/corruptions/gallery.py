@@ -82,6 +82,10 @@ def contact_sheet(
             f"RGB {rgb.shape} and depth {depth.shape} are not of the same instant and size. Pass "
             "[V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
         )
+    path = Path(path)
+    if not cv2.haveImageWriter(path.name):
+        raise ValueError(f"Cannot write {path}: use a file name that ends in .png or .jpg.")
+    path.parent.mkdir(parents=True, exist_ok=True)
     key = key or Key(0, "contact sheet")
     high, wide = rgb.shape[1] + GUTTER, rgb.shape[2] * len(views) + GUTTER
     shape = (TITLE + high * len(NAMES), LABEL + wide * len(severities), 3)
@@ -95,10 +99,8 @@ def contact_sheet(
             cell = _cell(rgb, depth, name, severity, key, views)
             left = LABEL + column * wide
             sheet[top : top + cell.shape[0], left : left + cell.shape[1]] = cell
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
     if not cv2.imwrite(str(path), sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
-        raise ValueError(f"Could not write {path}: use a file name that ends in .png or .jpg.")
+        raise ValueError(f"Cannot write {path}: is there space, and permission?")
     return sheet
 
 
@@ -140,7 +142,13 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
     picture = cv2.imread(str(rgb), cv2.IMREAD_COLOR)
     if picture is None:
         raise ValueError(f"{rgb} is not a picture that OpenCV can read: use PNG or JPEG.")
-    metres = np.load(depth, allow_pickle=False).astype(np.float32)
+    metres = np.load(depth, allow_pickle=False)
+    if metres.dtype.kind != "f":
+        raise ValueError(
+            f"{depth} holds {metres.dtype}, not metres as floating-point numbers. Divide counts by "
+            "the sensor's counts a metre first (millimetres by 1000)."
+        )
+    metres = metres.astype(np.float32)
     return np.ascontiguousarray(picture[..., ::-1]), metres
 
 

@@ -22,7 +22,7 @@ def corrupt_normalised(
     all that are 0, negative, NaN or infinite, come back bit for bit. A hole of missing data reads
     ``sensor.missing`` metres: 0 for the default, 1 for ``DepthSensor(missing=z_max)``.
 
-    Raises ValueError for depth above 1 (it is in metres), a sensor without a range, and as
+    Raises ValueError for depth above 1 (it is in metres), a negative sentinel, and as
     ``corrupt_observation`` does.
     """
     check_sensor(sensor)
@@ -36,11 +36,10 @@ def corrupt_normalised(
 
 
 def check_sensor(sensor: DepthSensor) -> None:
-    """Raise ValueError unless 0 <= z_min < z_max < infinity and the sentinel is not negative."""
-    if not 0.0 <= sensor.z_min < sensor.z_max < float("inf") or not sensor.missing >= 0.0:
+    """Raise ValueError for a sentinel that normalised depth cannot hold: a negative one or NaN."""
+    if not sensor.missing >= 0.0:
         raise ValueError(
-            f"{sensor} has no range in metres: it needs 0 <= z_min < z_max and missing >= 0, such "
-            "as DepthSensor(0.0, 10.0) for R2R-CE or DepthSensor(0.5, 5.0) for RxR-CE."
+            f"{sensor} cannot be normalised: missing must be 0 (no reading) or more metres."
         )
 
 

@@ -175,7 +175,7 @@ def corrupt(
         sensor: depth range and sentinel.
 
     Returns a new array of the same shape and dtype; the input is not modified.
-    Raises ValueError for a wrong name, severity, dtype, shape or key.
+    Raises ValueError for a wrong name, severity, dtype, shape, heading or key.
     """
     check_name(name)
     severity = check_severity(severity)

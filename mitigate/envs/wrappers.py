@@ -126,6 +126,12 @@ class CorruptObservation(gymnasium.ObservationWrapper):
             for name, box in found.items():
                 if not isinstance(box, gymnasium.spaces.Box) or _modality(box) != name:
                     raise ValueError(_explain(name, self._entries[name], box))
+            if POSE in self._entries and self._entries[POSE] not in space.spaces:
+                raise ValueError(
+                    f"pose={self._entries[POSE]!r} is no entry of the observation (it has "
+                    f"{', '.join(space.spaces)}). Name the one that holds x, y and heading, or "
+                    "pass pose=None: the flare then keeps its place in the picture."
+                )
         else:
             found = {}
         if not found:

@@ -81,7 +81,7 @@ def main() -> None:
             "name": name,
             "corruption": "clean",
             "severity": 0.0,
-            "split": args.split,
+            "split": args.split if args.task == "vln" else f"{args.split}_{args.task}",
             "seed": 0,
             "suite": SUITE_VERSION,
             "rule": metrics.rule(SUCCESS_METRES),

@@ -129,6 +129,14 @@ def test_valid_depth_is_clipped_to_the_range_of_the_sensor(name):
     assert out.max() <= 5.0 and out[out != 0].min() >= np.float32(1e-3)
 
 
+@pytest.mark.parametrize(
+    "ends", [(5.0, 0.5), (0.0, 0.0), (0.0, -5.0), (0.0, np.inf), (0.0, np.nan)]
+)
+def test_a_sensor_without_a_range_is_refused(ends):
+    with pytest.raises(ValueError, match="no range in metres"):
+        DepthSensor(*ends)
+
+
 def test_a_normalised_sensor_goes_through_metres_and_back():
     sensor = DepthSensor(0.5, 5.0)
     unit = np.array([0.0, 0.2, 1.0], np.float32)

@@ -34,6 +34,12 @@ def test_bad_files_are_named(tmp_path, scene):
         gallery.contact_sheet(rgb, depth[:-1], tmp_path / "sheet.png")
     with pytest.raises(SystemExit):
         gallery.main(["--out", "x.png", "--rgb", "only.png"])
+    with pytest.raises(ValueError, match=r"ends in \.png or \.jpg"):
+        gallery.contact_sheet(rgb, depth, tmp_path / "sheet")
+    cv2.imwrite(str(tmp_path / "rgb.png"), rgb)
+    np.save(tmp_path / "depth.npy", (1000 * depth).astype(np.uint16))
+    with pytest.raises(ValueError, match="uint16, not metres"):
+        gallery.read_frame(tmp_path / "rgb.png", tmp_path / "depth.npy")
 
 
 def test_the_page_holds_every_corruption_and_its_pictures(tmp_path):

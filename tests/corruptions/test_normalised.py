@@ -64,8 +64,8 @@ def test_wrong_depth_and_sensors_are_refused(depth):
         corrupt_normalised({"depth": np.full((4, 4), 3, np.float32)}, hurt, KEY)
     with pytest.raises(ValueError, match="must be float32 in 0-1, but this frame is float64"):
         corrupt_normalised({"depth": np.ones((4, 4))}, hurt, KEY)
-    with pytest.raises(ValueError, match="no range in metres"):
-        corrupt_normalised({"depth": depth}, hurt, KEY, DepthSensor(5.0, 0.5))
+    with pytest.raises(ValueError, match="cannot be normalised"):
+        corrupt_normalised({"depth": depth}, hurt, KEY, DepthSensor(missing=-1.0))
     with pytest.raises(ValueError, match="does not hold"):
         corrupt_normalised({"rgb": np.zeros((4, 4, 3), np.uint8)}, hurt, KEY)
 

@@ -217,3 +217,11 @@ def test_black_out_is_drawn_for_each_frame_and_view():
     assert dark.mean(0).std() < 0.08 and dark.mean(1).std() < 0.2
     assert abs(np.corrcoef(dark[:, 0], dark[:, 1])[0, 1]) < 0.25
     assert (corrupt(GREY, "black_out", 1.0, key=Key(0, "a")) == 0).all()
+
+
+@pytest.mark.parametrize("heading", [float("nan"), float("inf")])
+def test_a_flare_needs_a_heading_that_is_a_number(scene, heading):
+    """A light that is nowhere would pass for a clean frame."""
+    rgb, _ = scene.draw(24, 32)
+    with pytest.raises(ValueError, match="heading in finite radians"):
+        corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

@@ -116,6 +116,8 @@ def test_the_pose_keeps_a_flare_at_its_place_in_the_world():
     wanted = corrupt(clean["rgb"], "flare", 1.0, key=env.key, heading=heading)
     assert np.array_equal(seen["rgb"], wanted)
     assert not np.array_equal(wanted, corrupt(clean["rgb"], "flare", 1.0, key=env.key))
+    with pytest.raises(ValueError, match="pose='were' is no entry.*rgb, where"):
+        CorruptObservation(Room(space), Schedule.always("flare", 1.0), pose="were")
 
 
 @pytest.mark.parametrize(

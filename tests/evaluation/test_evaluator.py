@@ -16,7 +16,7 @@ from mitigate.corruptions import (
 )
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import load_episodes
-from mitigate.evaluation import evaluator
+from mitigate.evaluation import controls, evaluator, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
 from mitigate.evaluation.evaluator import LazyObservation, evaluate, run_episode
 from mitigate.keys import DEPTH, POSE, RGB, STOP
@@ -191,3 +191,12 @@ def test_the_random_control_repeats_itself_and_rarely_succeeds():
     assert rows == [run_episode(RandomAgent(), simulator, e, CLEAN, 0) for e in episodes]
     oracle = [run_episode(OracleAgent(simulator), simulator, e, CLEAN, 0) for e in episodes]
     assert sum(r["success"] for r in rows) <= 3 < 10 == sum(r["success"] for r in oracle)
+
+
+@pytest.mark.parametrize(("task", "split"), [("vln", "val_seen"), ("ogn", "val_seen_ogn")])
+def test_rows_of_controls_belong_to_the_tasks_own_split(task, split, monkeypatch, tmp_path):
+    monkeypatch.setattr(controls, "run_episode", lambda *given: {"success": 1, "spl": 1.0})
+    given = ["--split", "val_seen", "--task", task, "--episodes", "1", "--out"]
+    monkeypatch.setattr("sys.argv", ["controls", *given, str(tmp_path / "rows.jsonl")])
+    controls.main()
+    assert {row["split"] for row in rows.read(tmp_path / "rows.jsonl")} == {split}

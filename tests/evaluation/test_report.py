@@ -39,7 +39,9 @@ def test_the_table_has_the_papers_rows_and_their_numbers():
     assert found["L-L w/ noise"] == ["40.0", "40.0"]
     names = list(found)
     assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
-    assert len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 2 + 12  # head, rule, clean, mean, suite
+    assert (
+        len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 2 + 12
+    )  # head, rule, clean, mean, suite
 
 
 def test_the_conditions_of_the_result_are_printed():
