@@ -15,6 +15,7 @@ from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Section, label, sections
+from mitigate.files import sha256
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
 LICENCE = "Apache-2.0"
@@ -46,7 +47,7 @@ def reference(weights: str) -> dict[str, str]:
     """Return the path of ``weights`` (below the current folder: relative) and its sha256."""
     own = Path(weights) / adapters.WEIGHTS
     file = own if own.is_file() else checkpoint.weights_file(weights)
-    return {"weights": weights.removeprefix(f"{Path.cwd()}/"), "sha256": hardened.sha256(file)}
+    return {"weights": weights.removeprefix(f"{Path.cwd()}/"), "sha256": sha256(file)}
 
 
 def commit() -> str | None:

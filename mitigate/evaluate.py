@@ -6,7 +6,6 @@ command again only fills what is missing.
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -22,13 +21,12 @@ from torch import nn
 
 from mitigate import cli
 from mitigate.build import build_agent, settings_of
-from mitigate.files import atomic_text
+from mitigate.files import atomic_text, sha256
 from mitigate.safeguard import adapter_folder
 
 ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 LIST = "episodes.sha256"  # of the file that the episodes came from
-SIZE = 64  # pixels of a view, unless env.size says otherwise
 
 
 @dataclass
@@ -69,7 +67,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
 
     ``overrides``: those of the command line. Its agent's settings (``agent.blind=[rgb]``) count
-    more than the weights' own, and are named in the table's column.
+    more than the weights' own, and are named in the table's column, as is the size of a view.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
     from mitigate.evaluation.evaluator import evaluate
@@ -83,7 +81,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     agent = build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     if cfg.safeguard != "none":
         name += f"+{_safeguard_label(cfg.safeguard)}"
-    if cfg.env.size != SIZE:
+    if any(override.startswith("env.size=") for override in overrides):
         name += f"+size-{cfg.env.size}"
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
@@ -113,7 +111,7 @@ def _safeguard_label(choice: str) -> str:
     weights = Path(choice) / adapter_folder.ADAPTER
     if not weights.is_file():
         return Path(choice).name
-    return f"{name_of(choice)}-{hashlib.sha256(weights.read_bytes()).hexdigest()[:6]}"
+    return f"{name_of(choice)}-{sha256(weights)[:6]}"
 
 
 def _check_list(note: Path, source: str) -> None:
@@ -121,7 +119,7 @@ def _check_list(note: Path, source: str) -> None:
 
     A row names its episode by id alone, so another list's rows would count as done.
     """
-    found = hashlib.sha256(Path(source).read_bytes()).hexdigest()
+    found = sha256(source)
     if note.is_file() and note.read_text(encoding="utf-8").split()[0] != found:
         raise ValueError(
             f"{note.parent} holds rows of another {source} than there is now. Name another folder "

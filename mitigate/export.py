@@ -29,6 +29,7 @@ from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.card import facts, metrics, readme
 from mitigate.evaluation import rows as result_rows
+from mitigate.files import sha256
 
 HARDENED = Path("checkpoints/hardened")
 SIZE = 64  # pixels of a view where the run's config does not say
@@ -170,7 +171,7 @@ def _write(
     (draft / hardened.README).write_text(readme(card), encoding="utf-8")
     for file in draft.iterdir():
         file.chmod(0o644)  # safetensors are written for their owner alone
-    card["files"] = {file.name: hardened.sha256(file) for file in sorted(draft.iterdir())}
+    card["files"] = {file.name: sha256(file) for file in sorted(draft.iterdir())}
     card["sha256"] = hardened.card_sha(card)
     _write_json(draft / hardened.CARD, card)
     print("reloading in a fresh process", flush=True)

@@ -19,6 +19,7 @@ from mitigate import checkpoint
 from mitigate.agents import adapters
 from mitigate.agents.text import vocabulary
 from mitigate.agents.topological import TopologicalAgent
+from mitigate.files import sha256
 
 FORMAT = 1
 CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
@@ -165,12 +166,6 @@ def card_sha(card: dict[str, Any]) -> str:
 def vocabulary_sha() -> str:
     """Return the first 12 hex digits of the sha256 of the words, in the order of their ids."""
     return hashlib.sha256("\n".join(vocabulary()).encode()).hexdigest()[:12]
-
-
-def sha256(path: Path) -> str:
-    """Return the sha256 of a file, as hex."""
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _base(folder: Path, reference: dict[str, str], given: str | Path | None) -> Path:

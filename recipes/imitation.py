@@ -9,8 +9,6 @@ waypoints (true free space). The same module trained in three schedules gives ``
 
 from __future__ import annotations
 
-import hashlib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -30,6 +28,7 @@ from mitigate.envs.apartments.drawing import strip
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.tasks import draw_training_episode
 from mitigate.evaluation.success import measure, prior_rates
+from mitigate.files import sha256
 from mitigate.keys import DEPTH, RGB
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
@@ -102,7 +101,7 @@ class ImitationRecipe(Recipe):
     def identity(self) -> dict[str, str]:
         if self.prior is None:
             return {}
-        return {"prior_sha256": hashlib.sha256(Path(self.prior).read_bytes()).hexdigest()}
+        return {"prior_sha256": sha256(self.prior)}
 
     def batch(self, step: int) -> dict[str, Any]:
         if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):

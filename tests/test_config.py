@@ -118,13 +118,16 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
 
     monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", meet)
     monkeypatch.setattr(evaluate, "write_table", lambda rows, out: None)
-    for options in ([], ["agent.blind=[rgb]", "agent.planner={fusion: {rate: 4, cap: 3}}"]):
+    for options in (
+        [],
+        ["agent.blind=[rgb]", "agent.planner={fusion: {rate: 4, cap: 3}}", "env.size=32"],
+    ):
         given = ["checkpoint=checkpoints/hardened/ts_distill", f"out={tmp_path}", *options]
         monkeypatch.setattr(sys, "argv", ["evaluate", *given])
         cli.main(evaluate.hydra_main, "evaluate")
     (plain, agent), (name, changed) = met.items()
     assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
-    assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3"
+    assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3+size-32"
     assert changed.blind == ("rgb",) and changed.planner.fusion == {"rate": 4, "cap": 3}
 
 

@@ -23,6 +23,7 @@ from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.card import metrics
 from mitigate.evaluation import rows
+from mitigate.files import sha256
 from mitigate.keys import DEPTH, POSE, RGB, VIEWS
 
 ROOT = Path(__file__).parent.parent
@@ -129,7 +130,7 @@ def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
     folder = place / "hardened/whole"
     card = hardened.check(folder)
     assert card["recipe"] == "tiny" and card["seed"] == 3 and card["license"] == "Apache-2.0"
-    assert card["base"]["sha256"] == hardened.sha256(place / "base/model.safetensors")
+    assert card["base"]["sha256"] == sha256(place / "base/model.safetensors")
     assert card["files"].keys() | {"card.json"} == {p.name for p in folder.iterdir()}
     (entry,) = card["metrics"]
     assert entry["episodes"] == 8 and entry["clean"]["SR"][0] == 0.75
@@ -140,7 +141,7 @@ def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
     for kind in ("eager", "exported"):
         for name in ("perceive", "decide"):
             assert card["latency_ms"][kind][name]["cpu"] > 0
-    assert hardened.sha256(folder / "model.safetensors") == card["files"]["model.safetensors"]
+    assert sha256(folder / "model.safetensors") == card["files"]["model.safetensors"]
     tensors = (folder / "model.safetensors").stat().st_size
     assert tensors < 0.6 * (place / "runs/whole/agent/model.safetensors").stat().st_size
 
@@ -303,7 +304,7 @@ def test_a_config_is_data_and_names_no_other_class(copied):
     config["agent"]["_target_"] = "os.system"
     (copied / "config.yaml").write_text(yaml.safe_dump(config))
     files = json.loads((copied / "card.json").read_text())["files"]
-    resign(copied, files={**files, "config.yaml": hardened.sha256(copied / "config.yaml")})
+    resign(copied, files={**files, "config.yaml": sha256(copied / "config.yaml")})
     with pytest.raises(ValueError, match=r"os\.system"):
         hardened.load_hardened(copied)
 
