@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,7 @@ from mitigate.safeguard import adapter_folder
 ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 LIST = "episodes.sha256"  # of the file that the episodes came from
+GOLDEN = (5**0.5 - 1) / 2
 
 
 @dataclass
@@ -186,8 +186,11 @@ def report_before_after(
 
 
 def episodes(env: DictConfig, split: str, count: int | None) -> list:
-    """Return the first ``count`` episodes (all, if None) of a split's shipped list.
+    """Return ``count`` episodes of a split's shipped list (all, if None), spread evenly over it.
 
+    A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
+    whose multiples of the golden section have the smallest fractional parts are spread for any
+    count, and fewer are always among more: rows of 40 episodes count towards 100.
     Raises ValueError for an unknown split and a count below 1.
     """
     from mitigate.envs.episodes import read_episodes
@@ -196,7 +199,9 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
         raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
     if split not in env.episodes:
         raise ValueError(cli.unknown("split", split, env.episodes))
-    return list(islice(read_episodes(env.episodes[split]), count))
+    listed = list(read_episodes(env.episodes[split]))
+    chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
+    return [listed[i] for i in sorted(chosen)]
 
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:

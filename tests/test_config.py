@@ -90,6 +90,19 @@ def test_an_unknown_condition_or_split_names_the_nearest():
         evaluate.episodes(cli.load_config("evaluate").env, "val_sen", 1)
 
 
+def test_a_few_episodes_come_from_many_layouts_and_count_towards_more():
+    env = cli.load_config("evaluate").env
+    chosen = {
+        count: [e.episode_id for e in evaluate.episodes(env, "val_unseen", count)]
+        for count in (1, 40, 100, 300, 999, None)
+    }
+    layouts = {name.partition("-")[0] for name in chosen[40]}
+    assert len(chosen[1]) == 1 and len(chosen[40]) == 40 and len(layouts) > 25
+    assert set(chosen[1]) < set(chosen[40]) < set(chosen[100]) < set(chosen[300])
+    assert chosen[300] == chosen[999] == chosen[None]
+    assert chosen[40] == [name for name in chosen[300] if name in set(chosen[40])]
+
+
 def test_the_experiment_harsh_is_the_papers_stronger_setting():
     cfg = cli.load_config("train", ["experiment=harsh"])
     assert (cfg.schedule.severity, cfg.schedule.severity_depth) == (0.9, 0.8)
