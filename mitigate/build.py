@@ -6,11 +6,12 @@ as data, because a ``_target_`` in it could run anything.
 
 from __future__ import annotations
 
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
 from hydra.errors import InstantiationException
-from hydra.utils import instantiate
+from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
@@ -36,11 +37,17 @@ def build(node: DictConfig, **given: Any) -> Any:
 
 
 def settings_of(node: DictConfig, weights: str) -> DictConfig:
-    """Return ``node`` with the settings of the agent that ``weights`` belong to.
+    """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too)."""
+    merged = OmegaConf.merge(node, carried(node, weights))
+    assert isinstance(merged, DictConfig)
+    return merged
 
-    They come, as data, from ``config.yaml`` beside the weights; without that file ``node`` is
-    returned as it is. Raises ValueError if the weights are those of another kind of agent, or if
-    the file names anything else to build.
+
+def carried(node: DictConfig, weights: str) -> dict[str, Any]:
+    """Return the settings of the agent that ``weights`` belong to, none if they do not say.
+
+    They come, as data, from ``config.yaml`` beside the weights. Raises ValueError if the weights
+    are those of another kind of agent than ``node``, or if the file names anything else to build.
     """
     from mitigate import hardened  # brings the reference agent with it
 
@@ -49,7 +56,7 @@ def settings_of(node: DictConfig, weights: str) -> DictConfig:
     else:
         file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
     if not file.is_file():
-        return node
+        return {}
     found = OmegaConf.select(OmegaConf.load(file), "agent", default={})
     target = found.get("_target_", node._target_)
     if target != node._target_:
@@ -63,9 +70,16 @@ def settings_of(node: DictConfig, weights: str) -> DictConfig:
             f"{file} names a class to build inside the agent's settings (_target_). Settings that "
             "come with weights are data; nothing in them is run. Do not use this folder."
         )
-    merged = OmegaConf.merge(node, settings)
-    assert isinstance(merged, DictConfig)
-    return merged
+    return settings
+
+
+def defaults(node: DictConfig) -> dict[str, Any]:
+    """Return the settings of ``node`` as its ``_target_`` has them by itself, None where it has
+    none of its own."""
+    own = signature(get_object(node._target_)).parameters
+    given = {str(n): own[str(n)].default for n in node if n != "_target_" and str(n) in own}
+    plain = {name: None if value is Parameter.empty else value for name, value in given.items()}
+    return {name: OmegaConf.create({"it": value}).it for name, value in plain.items()}
 
 
 def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Module:

@@ -6,7 +6,6 @@ command again only fills what is missing.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,10 +17,8 @@ from hydra.core.hydra_config import HydraConfig
 from omegaconf import MISSING, DictConfig
 from torch import nn
 
-from mitigate import cli
-from mitigate.build import build_agent, settings_of
+from mitigate import build, cli, columns
 from mitigate.files import atomic_text, sha256
-from mitigate.safeguard import adapter_folder
 
 ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
@@ -66,23 +63,17 @@ ConfigStore.instance().store(name="evaluate_schema", node=EvaluateConfig)
 def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
 
-    ``overrides``: those of the command line. Its agent's settings (``agent.blind=[rgb]``) count
-    more than the weights' own, and are named in the table's column, as is the size of a view.
+    ``overrides``: those of the command line. Its agent's settings (``agent.blind=[rgb]``, or a
+    config chosen by ``agent=mine``) count more than the weights' own. The table's column names
+    every setting in which the agent is not the one that the weights belong to, and a size of view
+    that is not the agent's.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.safeguard.guard import open_safeguard
 
-    node = settings_of(cfg.agent, cfg.checkpoint)
-    name = cfg.name or name_of(cfg.checkpoint)
-    for setting in _settings_named(overrides):
-        node[setting] = cfg.agent[setting]
-        name += "+" + re.sub(r"[^A-Za-z0-9.]+", "-", f"{setting}={node[setting]}").strip("-")
-    agent = build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
-    if cfg.safeguard != "none":
-        name += f"+{_safeguard_label(cfg.safeguard)}"
-    if any(override.startswith("env.size=") for override in overrides):
-        name += f"+size-{cfg.env.size}"
+    node, name = columns.agent_and_name(cfg, overrides)
+    agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
@@ -103,50 +94,29 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     return out
 
 
-def _safeguard_label(choice: str) -> str:
-    """Return a safeguard's part of a column's name: an adapter's folder with a hash of its weights,
-    an endpoint's host and model; the names of ours as they are."""
-    if choice.startswith(("http://", "https://")):
-        return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
-    weights = Path(choice) / adapter_folder.ADAPTER
-    if not weights.is_file():
-        return Path(choice).name
-    return f"{name_of(choice)}-{sha256(weights)[:6]}"
-
-
 def _check_list(note: Path, source: str) -> None:
-    """Keep the hash of the episode file beside the rows; raise ValueError if it is another one's.
+    """Keep the hash of the episode file beside the rows; raise ValueError if it was another.
 
-    A row names its episode by id alone, so another list's rows would count as done.
+    A row names its episode by id alone, so another list's rows would count as done. ``note`` has a
+    line for each list, as ``sha256sum`` writes it.
     """
+    known = note.read_text(encoding="utf-8").splitlines() if note.is_file() else []
+    held = {name: digest for digest, _, name in (line.partition("  ") for line in known)}
     found = sha256(source)
-    if note.is_file() and note.read_text(encoding="utf-8").split()[0] != found:
+    if held.get(source, found) != found:
         raise ValueError(
             f"{note.parent} holds rows of another {source} than there is now. Name another folder "
             "(out=...), or delete this one."
         )
     with atomic_text(note) as file:
-        file.write(f"{found}  {source}\n")
-
-
-def _settings_named(overrides: Sequence[str]) -> list[str]:
-    """Return which settings of the agent the command line names, each once."""
-    keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
-    return list(dict.fromkeys(key[1] for key in keys if key[0] == "agent" and len(key) > 1))
+        file.writelines(f"{d}  {name}\n" for name, d in {**held, source: found}.items())
 
 
 def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
     by ``node``. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
-    return build_agent(settings_of(node, weights), weights=weights, seed=seed).eval()
-
-
-def name_of(weights: str) -> str:
-    """Return the name of weights by their path: of the run, for a run's ``agent`` folder."""
-    path = Path(weights.removesuffix(".safetensors"))
-    while path.name in ("model", "agent", "run"):
-        path = path.parent
-    return path.name or "agent"
+    settings = build.settings_of(node, weights)
+    return build.build_agent(settings, weights=weights, seed=seed).eval()
 
 
 def report_before_after(

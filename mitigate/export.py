@@ -32,7 +32,6 @@ from mitigate.evaluation import rows as result_rows
 from mitigate.files import sha256
 
 HARDENED = Path("checkpoints/hardened")
-SIZE = 64  # pixels of a view where the run's config does not say
 # largest absolute difference of an output on the probe (ours; logits are of the order of 1 to 10)
 RELOADED = 1e-5  # the folder in a fresh process against the agent in this one
 EXPORTED = 1e-3  # program.pt2, and the ONNX files, against the agent
@@ -120,7 +119,7 @@ def _write(
     onnx: bool,
 ) -> None:
     """Fill ``draft`` and check it."""
-    size = (cfg.get("env") or {}).get("size", SIZE)
+    size = agent.rgb_encoder.size
     given = programs.probe(agent, size)
     config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)  # where it ran is no matter
     config = config.replace(f"{Path.cwd()}/", "")

@@ -9,7 +9,7 @@ import pytest
 from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 
-from mitigate import cli, evaluate, table2, train
+from mitigate import cli, columns, evaluate, table2, train
 from mitigate.corruptions import NAMES
 
 YAMLS = sorted(path.relative_to(cli.CONF) for path in cli.CONF.rglob("*.yaml"))
@@ -79,8 +79,8 @@ def test_weights_are_named_after_their_folder_or_run():
         "x/base/model.safetensors",
         "base.safetensors",
     ):
-        assert evaluate.name_of(path) == "base"
-    assert evaluate.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
+        assert columns.name_of(path) == "base"
+    assert columns.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
 
 
 def test_an_unknown_condition_or_split_names_the_nearest():
@@ -140,8 +140,33 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
         cli.main(evaluate.hydra_main, "evaluate")
     (plain, agent), (name, changed) = met.items()
     assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
-    assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3+size-32"
+    assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3+env.size-32"
     assert changed.blind == ("rgb",) and changed.planner.fusion == {"rate": 4, "cap": 3}
+
+
+@pytest.mark.parametrize(
+    ("settings", "overrides", "name"),
+    [
+        ({}, [], "base"),
+        ({}, ["agent=topological", "++env.size=64"], "base"),
+        ({"blind": ["depth"]}, ["agent=mine"], "base+blind-depth"),
+        ({"blind": []}, ["agent.blind=[]"], "base"),
+        ({"blind": ["depth"]}, [], "base+blind-depth"),  # an edited conf/agent/topological.yaml
+    ],
+)
+def test_a_columns_name_follows_the_settings_however_they_were_given(settings, overrides, name):
+    cfg = cli.load_config("evaluate")
+    cfg.agent.update(settings)
+    node, found = columns.agent_and_name(cfg, overrides)
+    assert found == name and node.blind == settings.get("blind", [])
+
+
+@pytest.mark.parametrize("sign", ["", "++"])
+def test_views_of_another_size_are_another_column(sign):
+    cfg = cli.load_config("evaluate", [f"{sign}env.size=32"])
+    assert columns.agent_and_name(cfg)[1] == "base+env.size-32"
+    own = cli.load_config("evaluate", ["env.size=32", "agent.size=32"])
+    assert columns.agent_and_name(own, ["agent.size=32"])[1] == "base+size-32"
 
 
 def test_columns_tell_safeguards_apart(tmp_path):
@@ -151,13 +176,13 @@ def test_columns_tell_safeguards_apart(tmp_path):
         folder.mkdir(parents=True)
         (folder / "adapter_model.safetensors").write_bytes(weights)
     first, second = (
-        evaluate._safeguard_label(str(tmp_path / x / "agent")) for x in ("first", "second")
+        columns.safeguard_label(str(tmp_path / x / "agent")) for x in ("first", "second")
     )
     assert first.startswith("first-") and second.startswith("second-")
     (tmp_path / "first" / "agent" / "adapter_model.safetensors").write_bytes(b"c")
-    assert evaluate._safeguard_label(str(tmp_path / "first" / "agent")) != first
-    assert evaluate._safeguard_label("http://one:80/v1@m") == "one-80-v1@m"
-    assert [evaluate._safeguard_label(x) for x in ("rules", "lora")] == ["rules", "lora"]
+    assert columns.safeguard_label(str(tmp_path / "first" / "agent")) != first
+    assert columns.safeguard_label("http://one:80/v1@m") == "one-80-v1@m"
+    assert [columns.safeguard_label(x) for x in ("rules", "lora")] == ["rules", "lora"]
 
 
 def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
@@ -170,6 +195,8 @@ def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
     shutil.copy(cfg.env.episodes.val_seen, mine)
     evaluate.run(cfg)
     evaluate.run(cfg)
+    seen = cli.load_config("evaluate", ["split=val_seen", f"out={tmp_path}"])
+    evaluate.run(seen)  # another list in one folder is no trouble: rows carry their split
     shutil.copy(cfg.env.episodes.val_unseen, mine)
     with pytest.raises(ValueError, match="rows of another"):
         evaluate.run(cfg)

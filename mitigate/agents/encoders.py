@@ -1,7 +1,8 @@
 """Per-view encoders: small residual CNNs with GroupNorm, one for RGB and one for depth.
 
 Their ``stages`` are the places where adapters go. Both take what the sensor gives (uint8 RGB,
-float32 metres) and normalise inside, so no caller can normalise wrongly.
+float32 metres, square views of any size), and resize and normalise inside, so no caller can do
+either wrongly.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.concepts import CONCEPTS
 
+SIZE = 64  # pixels of a view that the shipped agents are trained on
 DEPTH_RANGE = 5.0  # metres; beyond it nothing matters for steps of at most 3 m
 _GRID = 4  # rows and columns of the last feature map at 64 pixels
 
@@ -35,15 +37,30 @@ class Block(nn.Module):
 
 
 class Encoder(nn.Module):
-    """Stem and residual stages; any input size a multiple of 16, a 4x4 map out."""
+    """Stem and residual stages; views of ``size`` pixels in, a 4x4 map out.
 
-    def __init__(self, channels: int, stem: int, widths: tuple[int, ...]) -> None:
+    Frames of another size are resized by ``resize``, a mode of ``F.interpolate``.
+    """
+
+    def __init__(
+        self, channels: int, stem: int, widths: tuple[int, ...], size: int, resize: str
+    ) -> None:
         super().__init__()
+        if size < 16 or size % 16:
+            raise ValueError(f"size={size} must be a multiple of 16 pixels, such as {SIZE}.")
+        self.size, self.resize = size, resize
         self.stem = nn.Sequential(
             nn.Conv2d(channels, stem, 3, 2, 1, bias=False), nn.GroupNorm(8, stem), nn.ReLU()
         )
         blocks = [Block(a, b, 2) for a, b in zip((stem, *widths[:-1]), widths, strict=True)]
         self.stages = nn.ModuleList(blocks)
+
+    def sized(self, frames: Tensor) -> Tensor:
+        """Frames ``[n, H, W, c]`` to float ``[n, c, size, size]``."""
+        x = frames.permute(0, 3, 1, 2).float()
+        if x.shape[-2:] == (self.size, self.size):
+            return x
+        return F.interpolate(x, (self.size, self.size), mode=self.resize)
 
     def maps(self, x: Tensor) -> Tensor:
         """Normalised input ``[n, c, H, W]`` to features ``[n, widths[-1], 4, 4]``."""
@@ -57,15 +74,19 @@ class RGBEncoder(Encoder):
     """uint8 ``[n, H, W, 3]`` to features ``[n, width]`` and concept logits ``[n, C]``."""
 
     def __init__(
-        self, stem: int = 32, widths: tuple[int, ...] = (48, 96, 160), width: int = 128
+        self,
+        stem: int = 32,
+        widths: tuple[int, ...] = (48, 96, 160),
+        width: int = 128,
+        size: int = SIZE,
     ) -> None:
-        super().__init__(3, stem, tuple(widths))
+        super().__init__(3, stem, tuple(widths), size, "area")
         self.gather = nn.Conv2d(widths[-1], 2 * widths[-1], _GRID, groups=widths[-1])
         self.embed = nn.Linear(2 * widths[-1], width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
     def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
-        x = rgb.permute(0, 3, 1, 2).float() / 127.5 - 1
+        x = self.sized(rgb) / 127.5 - 1
         x = F.gelu(self.gather(self.maps(x)).flatten(1))
         features = F.gelu(self.embed(x))
         return features, self.concepts(features)
@@ -74,18 +95,23 @@ class RGBEncoder(Encoder):
 class DepthEncoder(Encoder):
     """float32 metres ``[n, H, W, 1]`` to features ``[n, width]`` of each view.
 
-    Invalid depth (0, NaN, infinite) enters as 0 with its own mask channel.
+    Invalid depth (0, NaN, infinite) enters as 0 with its own mask channel. Resizing takes the
+    nearest pixel: a mean across an edge or a hole would be a surface that is not there.
     """
 
     def __init__(
-        self, stem: int = 24, widths: tuple[int, ...] = (32, 64, 96), width: int = 128
+        self,
+        stem: int = 24,
+        widths: tuple[int, ...] = (32, 64, 96),
+        width: int = 128,
+        size: int = SIZE,
     ) -> None:
-        super().__init__(2, stem, tuple(widths))
+        super().__init__(2, stem, tuple(widths), size, "nearest-exact")
         self.rows = nn.Conv2d(widths[-1], widths[-1], (_GRID, 1))
         self.embed = nn.Linear(_GRID * widths[-1], width)
 
     def forward(self, depth: Tensor) -> Tensor:
-        z = depth.permute(0, 3, 1, 2).float()
+        z = self.sized(depth)
         valid = torch.isfinite(z) & (z > 0)
         z = torch.where(valid, z.clamp(max=DEPTH_RANGE) / DEPTH_RANGE, torch.zeros_like(z))
         x = self.maps(torch.cat([z * 2 - valid.float(), 1 - valid.float()], 1))

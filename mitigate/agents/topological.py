@@ -14,14 +14,15 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mitigate.agents import observation as checked
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.controller import Controller
-from mitigate.agents.encoders import DepthEncoder, RGBEncoder
+from mitigate.agents.encoders import SIZE, DepthEncoder, RGBEncoder
 from mitigate.agents.mapping import TopologicalMap
 from mitigate.agents.planner import Planner, collate
 from mitigate.agents.text import encode, pad
 from mitigate.agents.waypoints import WaypointHead, select
-from mitigate.keys import DEPTH, POSE, RGB, STOP, VIEWS
+from mitigate.keys import STOP, VIEWS
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 SENSORS = ("rgb", "depth", "instruction")
@@ -34,7 +35,8 @@ class TopologicalAgent(nn.Module):
         width: of view features of each sensor. planner: keyword arguments of ``Planner``.
         adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
         blind: sensors that are blanked before they enter (the ablations): of ``SENSORS``.
-    Raises ValueError for an unknown name in ``blind``.
+        size: pixels of a square view that it works on; frames of another size are resized.
+    Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
     """
 
     def __init__(
@@ -43,6 +45,7 @@ class TopologicalAgent(nn.Module):
         planner: dict[str, Any] | None = None,
         blind: tuple[str, ...] = (),
         adapters: dict[str, Any] | None = None,
+        size: int = SIZE,
     ) -> None:
         super().__init__()
         unknown = set(blind) - set(SENSORS)
@@ -51,8 +54,8 @@ class TopologicalAgent(nn.Module):
                 f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSORS)}."
             )
         self.blind = tuple(blind)
-        self.rgb_encoder = RGBEncoder(width=width)
-        self.depth_encoder = DepthEncoder(width=width)
+        self.rgb_encoder = RGBEncoder(width=width, size=size)
+        self.depth_encoder = DepthEncoder(width=width, size=size)
         self.waypoint_head = WaypointHead(width)
         self.planner = Planner(width, width, **(planner or {}))
         if adapters:
@@ -93,7 +96,9 @@ class TopologicalAgent(nn.Module):
     # closed loop ------------------------------------------------------------------------------
 
     def reset(self, instruction: str) -> None:
-        """Start an episode."""
+        """Start an episode. Raises TypeError if ``instruction`` is no string; warns if the agent
+        knows none of its words."""
+        checked.instruction(instruction)
         self.map, self.controller = TopologicalMap(), Controller()
         self.decisions = 0
         self._views: list[Tensor] = []
@@ -104,21 +109,28 @@ class TopologicalAgent(nn.Module):
 
     @torch.no_grad()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """One low-level action. Reads frames only when a decision is due."""
-        action = self.controller.action(observation[POSE])
+        """One low-level action. Reads frames only when a decision is due.
+
+        Raises RuntimeError before the first ``reset``, and what ``agents/observation.py`` refuses:
+        KeyError, TypeError or ValueError for a missing entry, a wrong dtype, shape or unit.
+        """
+        if not hasattr(self, "controller"):
+            raise RuntimeError("Start the episode first: agent.reset(instruction).")
+        action = self.controller.action(checked.pose(observation))
         while action is None:
             if self._final or not self._decide(observation):
                 return STOP
-            action = self.controller.action(observation[POSE])
+            action = self.controller.action(checked.pose(observation))
         return action
 
     def _decide(self, observation: Mapping[str, np.ndarray]) -> bool:
         """Take one decision: start a route and return True, or return False to stop."""
-        rgb = torch.from_numpy(observation[RGB])[None].to(self.device)
-        depth = torch.from_numpy(observation[DEPTH])[None].to(self.device)
+        rgb, depth = (
+            torch.from_numpy(frame)[None].to(self.device) for frame in checked.frames(observation)
+        )
         views, _, waypoints = self.perceive(rgb, depth)
         self._views.append(self.planner.look(views))
-        pose = np.asarray(observation[POSE], np.float64)
+        pose = checked.pose(observation).astype(np.float64)
         self.map.add(pose, select(waypoints[0].float().cpu().numpy()))
         decision = self.map.decision(pose)
         logits = self.planner(

@@ -23,12 +23,13 @@ from tqdm import tqdm
 from mitigate import cli
 from mitigate.agents.concepts import THINGS, view_labels
 from mitigate.agents.waypoints import free_target
+from mitigate.columns import name_of
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
 from mitigate.corruptions import RGB as RGB_NAMES
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import apartment_of
 from mitigate.envs.apartments.tasks import load_episodes
-from mitigate.evaluate import load, name_of
+from mitigate.evaluate import load
 from mitigate.evaluation.bootstrap import resampled_means
 from mitigate.evaluation.sections import label
 from mitigate.keys import DEPTH, POSE, RGB

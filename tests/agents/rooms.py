@@ -27,7 +27,8 @@ def wanderer(*blind: str, stop: float = -50.0) -> TopologicalAgent:
     """An untrained agent that sees free space everywhere. ``stop`` is the bias of its stop score:
     at -50 it stops only at the limit of decisions, near 0 it depends on what it sees."""
     seeding.seed_everything(0, "wanderer")
-    agent = TopologicalAgent(16, {"heads": 2, "text_layers": 1, "layers": 1}, blind).eval()
+    small = {"heads": 2, "text_layers": 1, "layers": 1}
+    agent = TopologicalAgent(16, small, blind, size=16).eval()
     with torch.no_grad():
         agent.waypoint_head.out.bias.fill_(8.0)
         agent.planner.stop[-1].bias.fill_(stop)

@@ -1,0 +1,97 @@
+"""The agent refuses or brings into shape what it would otherwise walk badly by."""
+
+import numpy as np
+import pytest
+import torch
+
+from mitigate.agents.topological import TopologicalAgent
+
+
+@pytest.fixture(scope="module")
+def agent():
+    torch.manual_seed(0)
+    agent = TopologicalAgent().eval()
+    agent.reset("walk to the red sofa")
+    return agent
+
+
+def seen(**changed):
+    rng = np.random.default_rng(0)
+    plain = {
+        "rgb": rng.integers(0, 256, (12, 64, 64, 3)).astype(np.uint8),
+        "depth": rng.uniform(0.5, 6.0, (12, 64, 64, 1)).astype(np.float32),
+        "pose": np.zeros(3, np.float32),
+    }
+    return {**plain, **changed}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "kind", "text"),
+    [
+        ("rgb", seen()["rgb"] / 255.0, TypeError, r"\* 255"),
+        ("rgb", seen()["rgb"][:4], ValueError, "12 square views"),
+        ("rgb", np.moveaxis(seen()["rgb"], -1, 1), ValueError, r"\[12, H, H, 3\]"),
+        ("rgb", np.zeros((12, 48, 64, 3), np.uint8), ValueError, "square"),
+        ("depth", (seen()["depth"] * 1000).astype(np.uint16), TypeError, "/ 1000"),
+        ("depth", seen()["depth"] * 1000, ValueError, "divide by 1000"),
+        ("depth", seen()["depth"][..., 0], ValueError, r"\[12, H, H, 1\]"),
+        ("pose", np.array([0, 0, np.nan]), ValueError, "three finite numbers"),
+        ("pose", np.zeros(2), ValueError, "three finite numbers"),
+    ],
+)
+def test_what_no_sensor_of_the_agents_gives_is_refused(agent, name, value, kind, text):
+    with pytest.raises(kind, match=text):
+        agent.act(seen(**{name: value}))
+
+
+def test_a_missing_entry_is_named(agent):
+    with pytest.raises(KeyError, match="no entry 'depth'; it holds rgb, pose"):
+        agent.act({k: v for k, v in seen().items() if k != "depth"})
+
+
+def test_normalised_depth_is_warned_of_and_real_depth_is_not(agent, recwarn):
+    agent.act(seen())
+    assert not recwarn.list
+    with pytest.warns(UserWarning, match="normalised"):
+        agent.act(seen(depth=seen()["depth"] / 10))
+
+
+def test_depth_without_any_reading_is_no_mistake(agent):
+    assert agent.act(seen(depth=np.full((12, 64, 64, 1), np.nan, np.float32))) is not None
+
+
+def test_an_episode_is_started_first_and_with_a_string():
+    agent = TopologicalAgent().eval()
+    with pytest.raises(RuntimeError, match="agent.reset"):
+        agent.act(seen())
+    with pytest.raises(TypeError, match="string, not bytes"):
+        agent.reset(b"walk to the sofa")
+    with pytest.warns(UserWarning, match="knows no word"):
+        agent.reset("走过红色沙发")
+
+
+def test_views_in_any_memory_layout_are_the_same_views(agent):
+    flipped = seen()["rgb"][..., ::-1]
+    locked = flipped.copy()
+    locked.flags.writeable = False
+    scores = []
+    for rgb in (flipped, locked):
+        agent.reset("walk to the red sofa")
+        agent.act(seen(rgb=rgb))
+        scores.append(agent._stop_scores)
+    assert scores[0] == scores[1]
+
+
+def test_views_of_any_size_are_brought_to_the_agents_own():
+    """Each pixel repeated 3 x 3 is the same picture, so it must give the same features."""
+    torch.manual_seed(0)
+    agent = TopologicalAgent(size=32).eval()
+    rgb = torch.randint(0, 256, (1, 12, 32, 32, 3), dtype=torch.uint8)
+    depth = torch.rand(1, 12, 32, 32, 1) * 5
+    depth[..., :4, :, :] = 0  # a hole keeps its edge
+    large = [x.repeat_interleave(3, 2).repeat_interleave(3, 3) for x in (rgb, depth)]
+    with torch.no_grad():
+        for own, other in zip(agent.perceive(rgb, depth), agent.perceive(*large), strict=True):
+            torch.testing.assert_close(own, other)
+    with pytest.raises(ValueError, match="multiple of 16"):
+        TopologicalAgent(size=50)
