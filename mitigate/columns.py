@@ -59,6 +59,13 @@ def name_of(weights: str) -> str:
     return path.name or "agent"
 
 
+def of_run(cfg: DictConfig, folder: Path) -> str:
+    """Return the column of a training (``conf/train.yaml``): the recipe, and the options that its
+    folder's name holds, so that other settings are no other seeds of it."""
+    options = folder.name.partition(f"-seed{cfg.seed}-")[2]
+    return f"{cfg.name}+{options}" if options else cfg.name
+
+
 def safeguard_label(choice: str) -> str:
     """Return a safeguard's part of a column's name: an adapter's folder with a hash of its weights,
     an endpoint's host and model; the names of ours as they are."""

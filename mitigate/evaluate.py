@@ -6,6 +6,7 @@ command again only fills what is missing.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -133,7 +134,7 @@ def report_before_after(
     quick = cfg.evaluation
     chosen = episodes(cfg.env, quick.split, quick.episodes)
     suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    agents: dict[str, Any] = {"before": base_agent, cfg.name: trained_agent}
+    agents: dict[str, Any] = {"before": base_agent, columns.of_run(cfg, folder): trained_agent}
     agents = {name: agent for name, agent in agents.items() if agent is not None}
     rows = []
     for name, agent in agents.items():
@@ -161,7 +162,8 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
     A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
     whose multiples of the golden section have the smallest fractional parts are spread for any
     count, and fewer are always among more: rows of 40 episodes count towards 100.
-    Raises ValueError for an unknown split and a count below 1.
+    Raises ValueError for an unknown split, a count below 1, and a list that is empty, names an
+    episode twice or has one without an instruction.
     """
     from mitigate.envs.episodes import read_episodes
 
@@ -170,8 +172,21 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
     if split not in env.episodes:
         raise ValueError(cli.unknown("split", split, env.episodes))
     listed = list(read_episodes(env.episodes[split]))
+    _check_episodes(env.episodes[split], listed)
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
+
+
+def _check_episodes(source: str, listed: list) -> None:
+    """Raise ValueError for a list that cannot be scored: rows name an episode by its id alone."""
+    twice = [name for name, n in Counter(e.episode_id for e in listed).items() if n > 1]
+    silent = [e.episode_id for e in listed if not e.instruction.text.strip()]
+    if not listed:
+        raise ValueError(f"{source} lists no episode.")
+    if twice:
+        raise ValueError(f"{source} has the episode {twice[0]} twice: give each an id of its own.")
+    if silent:
+        raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
 
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:

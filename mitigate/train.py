@@ -158,6 +158,7 @@ def check(cfg: DictConfig) -> None:
 def default_folder(cfg: DictConfig, variant: str = "") -> str:
     """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
     depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
+    variant = re.sub(r"=(True|False)\b", lambda found: found[0].lower(), variant)  # sweeps' case
     end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))  # Hydra splits at "="
     if len(end) > LONGEST:
         end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]

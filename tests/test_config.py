@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 
 import pytest
 from hydra.utils import get_object
@@ -11,6 +12,7 @@ from omegaconf import DictConfig, OmegaConf
 
 from mitigate import cli, columns, evaluate, table2, train
 from mitigate.corruptions import NAMES
+from mitigate.envs.episodes import Instruction, read_episodes, write_episodes
 
 YAMLS = sorted(path.relative_to(cli.CONF) for path in cli.CONF.rglob("*.yaml"))
 PRIMARY = tuple(module.__name__.split(".")[-1] for module in (train, evaluate, table2))
@@ -101,6 +103,22 @@ def test_a_few_episodes_come_from_many_layouts_and_count_towards_more():
     assert set(chosen[1]) < set(chosen[40]) < set(chosen[100]) < set(chosen[300])
     assert chosen[300] == chosen[999] == chosen[None]
     assert chosen[40] == [name for name in chosen[300] if name in set(chosen[40])]
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda listed: [], "lists no episode"),
+        (lambda listed: [*listed, listed[0]], "-0 twice"),
+        (lambda listed: [replace(listed[0], instruction=Instruction(" "))], "has no instruction"),
+    ],
+)
+def test_a_list_that_cannot_be_scored_is_refused(tmp_path, change, text):
+    cfg = cli.load_config("evaluate", [f"+env.episodes.mine={tmp_path / 'mine.json'}"])
+    listed = list(read_episodes(cfg.env.episodes.val_seen))[:2]
+    write_episodes(tmp_path / "mine.json", change(listed))
+    with pytest.raises(ValueError, match=text):
+        evaluate.episodes(cfg.env, "mine", None)
 
 
 def test_the_experiment_harsh_is_the_papers_stronger_setting():

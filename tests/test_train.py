@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
+import sys
+from pathlib import Path
 
 import pytest
 import torch
 from omegaconf import DictConfig, OmegaConf, open_dict
 from safetensors.torch import load_file
 
-from mitigate import checkpoint, cli, train
+from mitigate import checkpoint, cli, columns, train
 from mitigate.build import build
 from tests.tiny import TinyAgent
 
@@ -112,6 +114,27 @@ def test_the_folder_says_recipe_severity_seed_and_further_options():
     cfg.severity_depth = 0.8
     name = train.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
     assert name == "runs/da_success-s0.9-d0.8-seed3-init-checkpoints_mine_debug-smoke"
+    swept, single = (train.default_folder(cfg, f"a.b={value}") for value in ("False", "false"))
+    assert swept == single  # Hydra writes a sweep's values in Python's words
+
+
+def test_a_trainings_column_says_with_which_options_it_was_trained():
+    """Seeds are pooled by name, so another learning rate must not look like another seed."""
+    cfg = cli.load_config("train", ["recipe=da_success", "seed=3"])
+    plain, other = (Path(train.default_folder(cfg, options)) for options in ("", "trainer.lr=1e-5"))
+    assert columns.of_run(cfg, plain) == "da_success"
+    assert columns.of_run(cfg, other) == "da_success+trainer.lr-1e-5"
+
+
+@pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
+def test_what_does_not_change_the_training_does_not_change_the_folder(option, monkeypatch):
+    """More episodes to report on must not train again."""
+    met = []
+    monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))
+    for options in ([], [option]):
+        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *options])
+        cli.main(train.hydra_main, "train")
+    assert met == ["runs/da_success-s0.6-seed0"] * 2
 
 
 def test_build_hands_the_very_object_on_and_shows_a_users_error():

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import json
 import re
+import warnings
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+import torch
 import torch.nn.functional as F
 from safetensors import SafetensorError
 from safetensors.torch import load_file
@@ -27,6 +29,7 @@ from mitigate.keys import HFOV_DEGREES, VIEWS
 NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module gets
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
 _HOOK = "_adapter_hook"
+_STATISTICS = "_statistics_before_adapters"
 
 
 class ConvAdapter(nn.Module):
@@ -81,12 +84,18 @@ def insert_adapters(
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
             ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
             views), with ``ring_reduction`` as reduction. A module found by both gets this one.
+    Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
+    trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.
-    Raises ValueError for a target that matches nothing (with the names there are), a module whose
-    channels cannot be told or that has a child called "adapter", or a model that has adapters
-    already; the model is then as it was.
+    Raises TypeError for targets that are one string; ValueError for none at all, for one that
+    matches nothing (with the names there are) or is no regular expression, a module whose channels
+    cannot be told or that has a child called "adapter", or a model that has adapters already; the
+    model is then as it was.
     """
     _refuse_adapted(model)
+    target_modules, ring = _listed("target_modules", target_modules), _listed("ring", ring)
+    if not target_modules + ring:
+        raise ValueError("target_modules names no module: give at least one, such as 'layer[1-4]'.")
     plain, ringed = _find(model, target_modules), _find(model, ring)
     made: dict[str, nn.Module] = {}
     for name, module in model.named_modules():
@@ -128,10 +137,18 @@ def trainable_share(model: nn.Module) -> float:
 def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     """Write the adapters alone: ``adapters.safetensors`` and ``adapters.json`` (names, shapes of
     the bottlenecks, sha256 of the backbone). Returns the folder. Raises ValueError if there are
-    none."""
+    none; warns if the backbone's running statistics are not those of when they were inserted."""
     names, folder = adapted(model), Path(folder)
     if not names:
         raise ValueError("There are no adapters to save: call insert_adapters(model, ...) first.")
+    held = getattr(model, _STATISTICS, {})
+    if any(not value.equal(held.get(name, value)) for name, value in _statistics(model).items()):
+        warnings.warn(
+            "The backbone's running statistics (BatchNorm) have changed since the adapters were "
+            "inserted, so these adapters fit this backbone only: save it, too. To keep them, train "
+            "with the backbone in eval mode, model.eval().",
+            stacklevel=2,
+        )
     folder.mkdir(parents=True, exist_ok=True)
     modules = nn.ModuleDict({_key(n): getattr(model.get_submodule(n), NAME) for n in names})
     checkpoint.save_weights(modules, folder / WEIGHTS)
@@ -149,7 +166,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
     Each goes to its module's device and dtype. Raises FileNotFoundError if a file is missing;
     ValueError for a damaged file, for a model that has adapters already, for adapters trained on
-    another backbone, or for modules that ``model`` does not have.
+    another backbone (or this one in another dtype), or for modules that ``model`` does not have.
     """
     folder = Path(folder)
     _refuse_adapted(model)
@@ -167,7 +184,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if found != wanted:
         raise ValueError(
             f"The adapters in {folder} were trained on a backbone with sha256 {wanted}, but this "
-            f"one has {found}. Load the weights they were trained on first."
+            f"one has {found}. Load the weights they were trained on first; to run in another "
+            "dtype, convert the model afterwards."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
@@ -212,6 +230,19 @@ def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
     model.requires_grad_(False)
     for name, adapter in made.items():
         _attach(model.get_submodule(name), adapter)
+    setattr(model, _STATISTICS, _statistics(model))
+
+
+def _statistics(model: nn.Module) -> dict[str, Tensor]:
+    """Copies of the running means and variances of the backbone's normalisations."""
+    found = {n: b for n, b in model.named_buffers() if n.rpartition(".")[2].startswith("running_")}
+    return {name: torch.clone(buffer).float().cpu() for name, buffer in found.items()}
+
+
+def _listed(what: str, targets: Iterable[str]) -> list[str]:
+    if isinstance(targets, str):
+        raise TypeError(f"{what} is a list of names or regular expressions: [{targets!r}].")
+    return list(targets)
 
 
 def _attach(module: nn.Module, adapter: nn.Module) -> None:
@@ -225,7 +256,12 @@ def _find(model: nn.Module, targets: Iterable[str]) -> set[str]:
     names = [name for name, _ in model.named_modules() if name]
     found: set[str] = set()
     for target in targets:
-        pattern = re.compile(rf"(?:.*\.)?(?:{target})")
+        try:
+            pattern = re.compile(rf"(?:.*\.)?(?:{target})")
+        except re.error as error:
+            raise ValueError(
+                f"target module {target!r} is no regular expression: {error}."
+            ) from error
         hits = {name for name in names if pattern.fullmatch(name)}
         if not hits:
             raise ValueError(

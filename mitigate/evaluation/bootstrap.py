@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 RESAMPLES = 10_000
 LEVEL = 0.95
+Z = 1.959964  # of the normal distribution at LEVEL
 CHUNK = 1 << 20  # draws handled at a time (ours): 8 MiB of indices
 
 
@@ -63,10 +64,22 @@ def _times_drawn(episodes: int, resamples: int, seed: int) -> np.ndarray:
 
 
 def mean(values: ArrayLike, **options: int) -> Estimate:
-    """Return the mean of ``values`` [N] (SR from successes, SPL from SPLs) with its interval."""
+    """Return the mean of ``values`` [N] with its interval."""
     return _estimate(
         float(np.asarray(values, float).mean()), resampled_means(values, **options)[:, 0]
     )
+
+
+def share(values: ArrayLike, **options: int) -> Estimate:
+    """Return the mean of ``values`` [N] in 0..1 (successes, SPLs) with its interval.
+
+    If all are 0 or all 1, no resample differs; the bound is then that of Wilson's score interval.
+    """
+    found, known = mean(values, **options), np.asarray(values, float)
+    reach = Z * Z / (len(known) + Z * Z)
+    if (known == 0).all():
+        return Estimate(found.value, 0.0, reach)
+    return Estimate(found.value, 1 - reach, 1.0) if (known == 1).all() else found
 
 
 def prs(clean: ArrayLike, corrupted: ArrayLike, **options: int) -> Estimate:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,7 @@ BLOCKS = {"RGB": RGB, "Depth": DEPTH, "Instruction": INSTRUCTION}  # the paper's
 PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt: these have no row
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}
+_Run = dict[tuple[str, float, str], np.ndarray]  # (corruption, severity, metric): values [N]
 
 
 @dataclass(frozen=True)
@@ -49,8 +50,8 @@ class Grid:
     ``cells[label, corruption, severity, metric]`` is float64 [N], one value an episode, the mean
     over ``seeds[label, severity]``, NaN where a row is missing; a clean cell is there once for each
     severity, over that one's seeds. ``unfinished[label, severity]`` holds the seeds that are left
-    out, with the rows they have and the rows of a whole one. ``by_seed[label][seed]`` is the grid
-    of one seed alone, for columns with several.
+    out, with the rows they have and the rows of a whole one. ``runs[label][seed]`` are the cells of
+    one seed, by (corruption, severity, metric).
     """
 
     split: str
@@ -61,12 +62,31 @@ class Grid:
     unfinished: dict[tuple[str, float], dict[int, tuple[int, int]]]
     episodes: tuple[str, ...]
     cells: dict[tuple[str, str, float, str], np.ndarray]
-    by_seed: dict[str, dict[int, Grid]]
+    runs: dict[str, dict[int, _Run]]
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:
         """Return the values [N] of a cell; all NaN if nothing was measured."""
         empty = np.full(len(self.episodes), np.nan)
         return self.cells.get((label, corruption, severity, metric), empty)
+
+    def over(self, labels: Iterable[str], seeds: Iterable[int], severity: float) -> Grid:
+        """Return the grid of some columns at ``severity`` with ``seeds`` alone, which all have."""
+        seeds = tuple(seeds)
+        cells = {
+            (label, name, severity, metric): values
+            for label in labels
+            for (name, metric), values in _pooled(
+                [self.runs[label][seed] for seed in seeds], severity
+            ).items()
+        }
+        return replace(self, cells=cells)
+
+    def paired(self, labels: Iterable[str], severity: float) -> Grid:
+        """Return the grid to compare columns in: over the seeds that all have, if there are any,
+        so that they meet corruptions of the same keys."""
+        labels = tuple(labels)
+        common = set.intersection(*(set(self.seeds[label, severity]) for label in labels))
+        return self.over(labels, sorted(common), severity) if common else self
 
     @cached_property
     def severities(self) -> list[float]:
@@ -177,24 +197,16 @@ def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
     held: dict[str, dict[int, list[Row]]] = {label: defaultdict(list) for label in columns}
     for row in rows:
         held[labels[row["name"], row["agent"]]][row["seed"]].append(row)
-    seeds, unfinished = {}, {}
+    seeds, unfinished, runs = {}, {}, {}
     cells: dict[tuple[str, str, float, str], np.ndarray] = {}
-    for label, runs in held.items():
-        measured = {seed: _cells(run, place) for seed, run in runs.items()}
+    for label, found in held.items():
+        measured = runs[label] = {seed: _cells(run, place) for seed, run in found.items()}
         for severity in {at for run in measured.values() for _, at, _ in run}:
             spot = (label, severity)
             seeds[spot], unfinished[spot] = _whole(measured, severity)
             pooled = _pooled([measured[seed] for seed in seeds[spot]], severity)
             cells |= {(label, name, severity, metric): v for (name, metric), v in pooled.items()}
-    by_seed = {
-        label: {seed: _grid(key, run) for seed, run in sorted(runs.items())}
-        for label, runs in held.items()
-        if len(runs) > 1
-    }
-    return Grid(*key, columns, seeds, unfinished, episodes, cells, by_seed)
-
-
-_Run = dict[tuple[str, float, str], np.ndarray]  # (corruption, severity, metric): values [N]
+    return Grid(*key, columns, seeds, unfinished, episodes, cells, runs)
 
 
 def _cells(rows: list[Row], place: dict[str, int]) -> _Run:

@@ -109,7 +109,7 @@ def _curve(axis: Axes, grid: Grid, column: str, name: str, colour: tuple) -> Non
         cell = grid.cell(column, "clean" if severity == 0 else name, severity, "success")
         known = cell[~np.isnan(cell)]
         if len(known):
-            points.append((severity, bootstrap.mean(known, resamples=1000)))
+            points.append((severity, bootstrap.share(known, resamples=1000)))
     at = [severity for severity, _ in points]
     values = [100 * estimate.value for _, estimate in points]
     low = [100 * estimate.low for _, estimate in points]

@@ -165,8 +165,9 @@ def _notes(section: Section) -> str:
         notes.append("Differences in bold have intervals that exclude zero.")
     if section.by_seed:
         notes.append(
-            "Several seeds: an episode counts as their mean. Intervals are over episodes; how far "
-            "another training would lie apart is shown seed by seed."
+            "Several seeds: an episode counts as their mean, and two columns are compared over the "
+            "seeds that both have. Intervals are over episodes; how far another training would lie "
+            "apart is shown seed by seed."
         )
     for column in section.columns:
         for seed, (have, want) in section.grid.unfinished[column, section.severity].items():

@@ -44,7 +44,8 @@ class Section:
 
     ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
     the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
-    ``moved`` is the paired difference of clean SR, by column. ``corrupted`` is the mean SR over all
+    ``moved`` is the paired difference of clean SR, by column. Differences are over the seeds that
+    both columns have. ``corrupted`` is the mean SR over all
     corruptions and ``raised`` its paired difference, by column. ``by_seed`` holds each seed's own
     clean SR (key: column, "clean") and PRS-SR (column, block), for columns with several seeds.
     """
@@ -112,26 +113,26 @@ def _section(grid: Grid, severity: float) -> Section:
     blocks, reference = grid.blocks_at(severity), columns[0]
     clean, moved, retained, gained, corrupted, raised = {}, {}, {}, {}, {}, {}
     every = tuple(name for names in blocks.values() for name in names)
-    base = grid.cell(reference, "clean", severity, METRICS["SR"])
     for column in columns:
-        change = grid.cell(column, "clean", severity, METRICS["SR"]) - base
-        if column != reference and not np.isnan(change).all():
+        pair = () if column == reference else (column, reference)
+        both = grid.paired(pair, severity) if pair else grid
+        clean_sr = [both.cell(label, "clean", severity, METRICS["SR"]) for label in pair]
+        if pair and not np.isnan(change := clean_sr[0] - clean_sr[1]).all():
             moved[column] = bootstrap.mean(change[~np.isnan(change)])
         if parts := grid.retention([column], every, severity, METRICS["SR"]):
             corrupted[column] = _mean_sr(parts)
-        pair = () if column == reference else (column, reference)
-        if pair and (parts := grid.retention(pair, every, severity, METRICS["SR"])):
+        if pair and (parts := both.retention(pair, every, severity, METRICS["SR"])):
             raised[column] = _mean_sr(parts)
         for metric, key in METRICS.items():
             values = grid.cell(column, "clean", severity, key)
             values = values[grid.measured(column, severity, key)]
             if len(values):
-                clean[column, metric] = bootstrap.mean(values)
+                clean[column, metric] = bootstrap.share(values)
             for block, names in blocks.items():
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):
                     retained[place] = _retained(parts)
-                if pair and (parts := grid.retention(pair, names, severity, key)):
+                if pair and (parts := both.retention(pair, names, severity, key)):
                     gained[place] = _retained(parts)
     return Section(
         grid,
@@ -155,13 +156,13 @@ def _by_seed(
 ) -> dict[tuple[str, str], dict[int, float]]:
     """Return the clean SR and the PRS-SR of every block, of each seed that is pooled."""
     found: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
-    for column, runs in grid.by_seed.items():
+    several = [column for column, runs in grid.runs.items() if len(runs) > 1]
+    for column in several:
         for seed in grid.seeds.get((column, severity), ()):
-            run = runs[seed]
-            (alone,) = run.columns
-            found[column, "clean"][seed] = _mean(run.cell(alone, "clean", severity, METRICS["SR"]))
+            run = grid.over([column], [seed], severity)
+            found[column, "clean"][seed] = _mean(run.cell(column, "clean", severity, METRICS["SR"]))
             for block, names in blocks.items():
-                for part in run.retention([alone], names, severity, METRICS["SR"]) or ():
+                for part in run.retention([column], names, severity, METRICS["SR"]) or ():
                     value = float(part.corrupted.mean() / (part.clean.mean() or math.nan))
                     found[column, block][seed] = value
     return dict(found)
@@ -178,7 +179,8 @@ def _retained(parts: list[Retention]) -> Retained:
 def _mean_sr(parts: list[Retention]) -> Retained:
     """Return the mean SR under corruption of one part, or the first's minus the second's."""
     means = [part.corrupted.mean(axis=0) for part in parts]
-    estimate = bootstrap.mean(means[0] if len(means) == 1 else means[0] - means[1])
+    alone = len(means) == 1
+    estimate = bootstrap.share(means[0]) if alone else bootstrap.mean(means[0] - means[1])
     return Retained(estimate, parts[0].corruptions, len(parts[0].clean), False)
 
 

@@ -1,4 +1,4 @@
-"""Fit the rules' weights: ``python -m mitigate.safeguard.fit`` rewrites ``weights.py``.
+"""Fit the rules' weights: ``python -m mitigate.safeguard.fit`` prints what ``weights.py`` would be.
 
 Logistic regression: sentences of the train split's attacks against sentences of our routes, plain
 and restyled. The words that mark a style are those that restyled routes have and plain ones lack.
@@ -6,7 +6,11 @@ and restyled. The words that mark a style are those that restyled routes have an
 
 from __future__ import annotations
 
+import argparse
+import sys
+import textwrap
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,30 +25,40 @@ from mitigate.safeguard.rules import CLOSED, VERBS, features
 from mitigate.safeguard.text import sentences, words
 from mitigate.seeding import generator
 
+WEIGHTS = Path(__file__).parent / "weights.py"
 PAIRS, RIDGE, ITERATIONS = 6000, 3.0, 30
 RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text
 
 
-def main() -> None:
-    """Fit, and write the weights."""
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Fit, and print the module or write it. ``arguments``: of the command line."""
+    parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.fit", description=__doc__)
+    parser.add_argument("--write", action="store_true", help=f"replace {WEIGHTS.name}")
+    write = parser.parse_args(arguments).write
     marks = style_words()
-    bias, weights = fit_weights(frozenset(marks))
-    with atomic_text(Path(__file__).parent / "weights.py") as file:
-        file.write(
-            '"""Weights of the rules, written by ``python -m mitigate.safeguard.fit``."""\n\n'
-        )
-        file.write("from __future__ import annotations\n\n")
-        file.write("from mitigate.corruptions.language.words import bag\n\n")
-        file.write(f"BIAS = {bias:.3f}\nWEIGHTS: dict[str, float] = {{\n")
-        file.writelines(f'    "{name}": {value:.3f},\n' for name, value in weights.items())
-        file.write('}\nSTYLE = bag(\n    """\n')
-        line = "   "
-        for word in marks:
-            if len(line) + len(word) > 96:
-                file.write(line + "\n")
-                line = "   "
-            line += " " + word
-        file.write(f'{line}\n    """\n)\n')
+    text = module(*fit_weights(frozenset(marks)), marks)
+    if not write:
+        print(text, end="")
+        return
+    with atomic_text(WEIGHTS) as file:
+        file.write(text)
+    print(f"wrote {WEIGHTS}", file=sys.stderr)
+
+
+def module(bias: float, weights: dict[str, float], marks: list[str]) -> str:
+    """Return the text of ``weights.py``."""
+    lines = [
+        '"""Weights of the rules, written by ``python -m mitigate.safeguard.fit --write``."""\n',
+        "from __future__ import annotations\n",
+        "from mitigate.corruptions.language.words import bag\n",
+        f"BIAS = {bias:.3f}",
+        "WEIGHTS: dict[str, float] = {",
+        *(f'    "{name}": {value:.3f},' for name, value in weights.items()),
+        '}\nSTYLE = bag(\n    """',
+        *textwrap.wrap(" ".join(marks), 96, initial_indent="    ", subsequent_indent="    "),
+        '    """\n)\n',
+    ]
+    return "\n".join(lines)
 
 
 def fit_weights(marks: frozenset[str]) -> tuple[float, dict[str, float]]:

@@ -1,4 +1,4 @@
-"""Weights of the rules, written by ``python -m mitigate.safeguard.fit``."""
+"""Weights of the rules, written by ``python -m mitigate.safeguard.fit --write``."""
 
 from __future__ import annotations
 

@@ -230,6 +230,33 @@ def test_a_target_that_matches_nothing_is_told_with_the_names_there_are():
         insert_adapters(ResNet(), ["layer9"])
 
 
+@pytest.mark.parametrize(
+    ("targets", "kind", "text"),
+    [
+        ("layer1", TypeError, r"is a list.*\['layer1'\]"),
+        ([], ValueError, "names no module"),
+        (["layer[1"], ValueError, "no regular expression"),
+    ],
+)
+def test_targets_that_are_no_list_of_patterns_leave_the_model_as_it_was(targets, kind, text):
+    model = ResNet()
+    with pytest.raises(kind, match=text):
+        insert_adapters(model, targets)
+    assert all(p.requires_grad for p in model.parameters())
+
+
+def test_saving_warns_if_the_backbones_statistics_have_moved(tmp_path, recwarn):
+    """A BatchNorm in train mode follows the batches though its weights are frozen."""
+    model = ResNet()
+    insert_adapters(model, ["layer[1-4]"])
+    model.eval()(torch.randn(2, 3, 32, 32))
+    save_adapters(model, tmp_path / "kept")
+    assert not recwarn.list
+    model.train()(torch.randn(2, 3, 32, 32))
+    with pytest.warns(UserWarning, match=r"fit this backbone only.*model\.eval\(\)"):
+        save_adapters(model.eval(), tmp_path / "moved")
+
+
 def test_a_module_without_channels_is_refused():
     with pytest.raises(ValueError, match="channels of fc cannot be told"):
         insert_adapters(ResNet(), ["fc"])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.bootstrap import mean, prs, prs_difference, resampled_means
+from mitigate.evaluation.bootstrap import mean, prs, prs_difference, resampled_means, share
 
 
 @pytest.fixture
@@ -47,6 +47,14 @@ def test_the_interval_of_a_rate_is_the_binomial_one():
     assert found.value == 0.6
     assert found.low == pytest.approx(0.6 - half, abs=0.005)
     assert found.high == pytest.approx(0.6 + half, abs=0.005)
+
+
+@pytest.mark.parametrize(("value", "low", "high"), [(0.0, 0.0, 0.30), (1.0, 0.70, 1.0)])
+def test_nine_equal_outcomes_are_no_certainty(value, low, high):
+    found = share(np.full(9, value))  # Wilson: 3.84 / (9 + 3.84) = 0.30
+    assert (found.value, found.low, found.high) == pytest.approx((value, low, high), abs=0.001)
+    varied = np.repeat([1.0, 0.0], [240, 160])
+    assert share(varied) == mean(varied)
 
 
 def test_intervals_cover_the_truth_about_as_often_as_they_say():

@@ -171,6 +171,17 @@ def test_seeds_are_shown_one_by_one_where_there_are_several():
     assert "seed by seed" not in markdown(sections(column(8, ALL)))
 
 
+def test_columns_are_compared_over_the_seeds_that_both_have():
+    """Only these met corruptions of the same keys."""
+    base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
+    found = sections(base + column(6, ALL, **HARD))[0]
+    alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]
+    assert found.moved["da_per_episode"].value == pytest.approx(-0.2)
+    assert found.gained == alone.gained and found.raised == alone.raised
+    apart = sections(base + column(6, ALL, seed=7, **HARD))[0]  # none in common: over all
+    assert apart.moved["da_per_episode"].value == pytest.approx(0.6 - 0.5)
+
+
 def test_an_unfinished_seed_is_left_out_and_told():
     """What another seed has measured in full must not shrink to what a new one has so far."""
     part = [r for r in column(2, ALL, seed=1) if int(r["episode_id"]) < 2]

@@ -9,7 +9,7 @@ import numpy as np
 from mitigate.envs.apartments.apartment import apartment_of
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.tasks import from_vlnce, heading_of
-from mitigate.envs.episodes import Episode
+from mitigate.envs.episodes import Episode, Vector
 from mitigate.keys import (
     DEPTH,
     FORWARD,
@@ -22,6 +22,8 @@ from mitigate.keys import (
     STOP,
     TURN_DEGREES,
 )
+
+NEAR = 0.5  # metres from a free cell that a start or goal may lie (ours): furniture may be a goal
 
 
 @lru_cache(maxsize=30_000)
@@ -47,9 +49,15 @@ class Simulator:
         return self._renderer
 
     def reset(self, episode: Episode) -> None:
-        """Put the agent at the start of an episode."""
+        """Put the agent at the start of an episode.
+
+        Raises ValueError if start or goal lie farther than ``NEAR`` from where one can stand.
+        """
         self.episode, self.apartment = episode, apartment_of(episode.scene_id)
         self.space = self.apartment.space
+        self._check_place("starts", episode.start_position)
+        for goal in episode.goals:
+            self._check_place("has a goal", goal.position)
         self.field = goal_field(episode.scene_id, tuple(goal.position for goal in episode.goals))
         self.xy, self.heading = (
             from_vlnce(episode.start_position),
@@ -58,6 +66,16 @@ class Simulator:
         self.path = [self.xy.copy()]
         self.steps = self.collisions = 0
         self.stopped = False
+
+    def _check_place(self, what: str, position: Vector) -> None:
+        xy = from_vlnce(position)
+        away = float(np.hypot(*(self.space.centre(self.space.cell_of(xy)) - xy)))
+        if not away <= NEAR:
+            raise ValueError(
+                f"The episode {self.episode.episode_id} {what} at {list(position)}, {away:.1f} m "
+                f"from where one can stand in {self.episode.scene_id}. Positions are VLN-CE's: "
+                "(x, up, z) with z = -y of the plan."
+            )
 
     @property
     def done(self) -> bool:

@@ -134,6 +134,18 @@ def test_a_scene_that_is_not_there_is_explained(episodes, scene, words):
         Simulator(16).reset(replace(episodes[0], scene_id=scene))
 
 
+def test_an_episode_in_another_frame_is_refused_and_not_scored(episodes):
+    """A sign error in z, or positions of another scene, would look like a bad agent."""
+    first = episodes[0]
+    x, y, z = first.start_position
+    for wrong in (
+        replace(first, start_position=(x, y, -z)),
+        replace(first, goals=(replace(first.goals[0], position=(x + 500.0, y, z)),)),
+    ):
+        with pytest.raises(ValueError, match=rf"{first.episode_id}.*where one can stand.*z = -y"):
+            Simulator(16).reset(wrong)
+
+
 @pytest.mark.parametrize("seed", [0, 1, 100_000, 200_000])
 def test_every_room_and_door_can_be_reached(seed):
     apartment = Apartment(seed)
