@@ -249,6 +249,17 @@ def test_bad_depth_is_left_out_and_never_unpickled(run, tmp_path):
     assert np.isnan(read(tmp_path / "out/5.npy")).all()
 
 
+def test_depth_in_another_unit_is_left_out(run, tmp_path):
+    save(tmp_path / "in/0.png", COUNTS[0])
+    save(tmp_path / "in/1.npy", np.full((8, 8), 2500, np.float32))
+    save(tmp_path / "in/2.npy", np.full((8, 8), 2.5, np.float32))
+    status, out, err = run("corruption=missing_data", "severity=0.6", "unit=m")
+    assert status == 1 and "1 frames written" in out and "unit=mm" in err
+    reasons = {e["file"]: e["reason"] for e in summary(tmp_path / "out")["left_out"]}
+    assert list(reasons) == ["0.png", "1.npy"] and "nearest 2500" in reasons["1.npy"]
+    assert not (tmp_path / "out/0.png").exists()
+
+
 def test_a_run_that_is_cut_off_leaves_whole_files_only(run, walk, monkeypatch):
     real, calls = os.replace, []
 

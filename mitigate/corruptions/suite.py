@@ -136,8 +136,8 @@ def _rgb_views(frame: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(frame if frame.ndim == 4 else frame[None])
 
 
-def _depth_views(frame: np.ndarray) -> np.ndarray:
-    """The frame as contiguous float32 [V, H, W]; ValueError for anything else."""
+def _depth_views(frame: np.ndarray, sensor: DepthSensor) -> np.ndarray:
+    """The frame as contiguous float32 [V, H, W]; ValueError for anything else, millimetres too."""
     if frame.dtype != np.float32:
         raise ValueError(
             f"Depth must be float32 in metres, but this frame is {frame.dtype}. Convert it first: "
@@ -150,7 +150,9 @@ def _depth_views(frame: np.ndarray) -> np.ndarray:
             f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], but the shape is "
             f"{frame.shape}. Corrupt a batch one instant at a time: every instant has its own key."
         )
-    return np.ascontiguousarray(frame.reshape((1, *shape) if len(shape) == 2 else shape))
+    views = np.ascontiguousarray(frame.reshape((1, *shape) if len(shape) == 2 else shape))
+    depth.check_unit(views, sensor)
+    return views
 
 
 def corrupt(
@@ -175,13 +177,14 @@ def corrupt(
         sensor: depth range and sentinel.
 
     Returns a new array of the same shape and dtype; the input is not modified.
-    Raises ValueError for a wrong name, severity, dtype, shape, heading or key.
+    Raises ValueError for a wrong name, severity, dtype, shape, heading or key, and for depth whose
+    nearest valid pixel is over three times the sensor's z_max: it is in millimetres.
     """
     check_name(name)
     severity = check_severity(severity)
     key = as_key(key)
     frame = np.asarray(frame)
-    views = _rgb_views(frame) if name in _RGB else _depth_views(frame)
+    views = _rgb_views(frame) if name in _RGB else _depth_views(frame, sensor)
     if severity == 0.0:
         return frame.copy()
     if name in _RGB:
