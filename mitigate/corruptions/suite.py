@@ -44,6 +44,7 @@ INSTRUCTION = (
     *("capitalize", "mask", "black_box", "white_box"),
 )
 SENSOR = DepthSensor()
+MOST_VIEWS = 36  # of one instant: R2R's discrete panoramas (3 elevations of 12); VLN-CE has 12
 
 
 def check_name(name: str, allowed: tuple[str, ...] = NAMES) -> str:
@@ -133,7 +134,7 @@ def _rgb_views(frame: np.ndarray) -> np.ndarray:
             "Move the channels last, drop an alpha channel, and corrupt a batch one instant at a "
             "time: every instant has its own key."
         )
-    return np.ascontiguousarray(frame if frame.ndim == 4 else frame[None])
+    return _one_instant(np.ascontiguousarray(frame if frame.ndim == 4 else frame[None]))
 
 
 def _depth_views(frame: np.ndarray, sensor: DepthSensor) -> np.ndarray:
@@ -150,8 +151,20 @@ def _depth_views(frame: np.ndarray, sensor: DepthSensor) -> np.ndarray:
             f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], but the shape is "
             f"{frame.shape}. Corrupt a batch one instant at a time: every instant has its own key."
         )
-    views = np.ascontiguousarray(frame.reshape((1, *shape) if len(shape) == 2 else shape))
+    views = frame.reshape((1, *shape) if len(shape) == 2 else shape)
+    views = _one_instant(np.ascontiguousarray(views))
     depth.check_unit(views, sensor)
+    return views
+
+
+def _one_instant(views: np.ndarray) -> np.ndarray:
+    """``views`` [V, ...] as they are; ValueError for more of them than a panorama has."""
+    if len(views) > MOST_VIEWS:
+        raise ValueError(
+            f"There are {len(views)} views, but an instant has {MOST_VIEWS} at most. The leading "
+            "axis is the views of one panorama, which share one mask. Is it a batch? Corrupt it "
+            "one instant at a time: every instant has its own key."
+        )
     return views
 
 
@@ -168,7 +181,9 @@ def corrupt(
 
     Args:
         frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees.
+            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees. V
+            counts the views of one instant, 36 at most: they share one mask. It is no batch axis;
+            corrupt a batch one instant at a time, each with its own key.
         name: one of NAMES.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
         key: names the random draw; a whole number is a seed, a text an episode.
