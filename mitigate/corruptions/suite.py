@@ -214,7 +214,7 @@ def corrupt_observation(
 
     The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
     A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
-    Raises ValueError if the modality is missing, and as ``corrupt`` does.
+    Raises ValueError if the modality is missing or the pose is not [3], and as ``corrupt`` does.
     """
     if corruption.modality in ("none", "instruction"):
         return dict(obs)
@@ -226,6 +226,11 @@ def corrupt_observation(
             f"{corruption.name!r} out of its suite."
         )
     pose = obs.get(keys.POSE)
+    if pose is not None and np.shape(pose) != (3,):
+        raise ValueError(
+            f"{keys.POSE!r} must be [3] = (x, y, heading), but its shape is {np.shape(pose)}. "
+            "Leave it out if the heading is not known: a flare then keeps its place in view 0."
+        )
     heading = None if pose is None else float(pose[2])
     hurt = corrupt(
         obs[entry], corruption.name, corruption.severity, key=key, heading=heading, sensor=sensor

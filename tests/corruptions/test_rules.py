@@ -197,6 +197,13 @@ def test_an_observation_is_hurt_in_the_modality_concerned_only(panorama):
     assert clean is not obs and clean["rgb"] is rgb and CLEAN.modality == "none"
 
 
+@pytest.mark.parametrize("pose", [np.zeros(2), np.zeros(7), np.zeros((1, 3)), 0.5], ids=str)
+def test_a_pose_of_another_shape_is_refused(panorama, pose):
+    obs = {"rgb": panorama[0], "pose": pose}
+    with pytest.raises(ValueError, match=r"must be \[3\] = \(x, y, heading\)"):
+        corrupt_observation(obs, Corruption("flare", 0.6), KEY)
+
+
 def test_an_observation_without_the_modality_is_refused(panorama):
     with pytest.raises(ValueError, match="does not hold"):
         corrupt_observation({"rgb": panorama[0]}, Corruption("multipath", 0.5), KEY)
