@@ -7,6 +7,7 @@ import time
 
 import pytest
 
+import mitigate.evaluate  # noqa: F401  (registers the types of conf/evaluate.yaml)
 from mitigate import cli
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
