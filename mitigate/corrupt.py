@@ -1,7 +1,8 @@
 """Corrupt a folder of frames: python -m mitigate.corrupt IN OUT corruption=... severity=...
 
-  IN          folder of frames, with any folders inside: 8-bit RGB as PNG or JPEG; depth as 16-bit
-              PNG, or as NPY float metres, [H, W], [H, W, 1] or with views first
+  IN          folder of frames, with any folders inside and links to folders: 8-bit RGB as PNG or
+              JPEG; depth as 16-bit PNG, or as NPY float metres, [H, W], [H, W, 1] or with views
+              first
   OUT         folder for the corrupted frames; the tree and the names stay
 
   corruption  its name (see --list); frames of the other modality are passed by
@@ -19,7 +20,8 @@
   --help      this
 
 The same command goes on where it stopped. OUT/corrupt.json holds settings, counts and the files
-left out with the reason. Exit status: 0 done, 1 done but bad files were left out, 2 not done.
+left out with the reason; files of other kinds are left alone, and counted by suffix. Exit status:
+0 done, 1 done but bad files were left out, 2 not done.
 
 Example: python -m mitigate.corrupt recorded/ hurt/ corruption=spatter severity=0.5
 """
@@ -33,6 +35,7 @@ from dataclasses import MISSING, fields
 
 from mitigate.corruptions import catalogue, folders
 from mitigate.corruptions.folders import UNITS, Settings
+from mitigate.corruptions.plan import told
 from mitigate.corruptions.suite import check_name
 
 SHOWN = 5  # files left out that are named on the screen; all are in the summary
@@ -117,6 +120,8 @@ def _report(summary: dict, out: str) -> int:
     counts += [f"{summary['other_modality']} of the other modality passed by"] * (
         summary["other_modality"] > 0
     )
+    others = told(summary["other_files"])
+    counts += [f"other files left alone: {others}"] * bool(others)
     print("; ".join(counts))
     for entry in left_out[:SHOWN]:
         print(f"left out: {entry['file']} {entry['reason']}", file=sys.stderr)

@@ -192,12 +192,14 @@ def _check_episodes(source: str, listed: list) -> None:
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
     """Return one Corruption for each name; ``clean`` has severity 0."""
     from mitigate.corruptions import CLEAN, DEPTH, INSTRUCTION, RGB, Corruption
+    from mitigate.corruptions.suite import check_severity
 
     allowed = ("clean", *RGB, *DEPTH, *INSTRUCTION)
     for name in names:
         if name not in allowed:
             raise ValueError(cli.unknown("condition", name, allowed))
-    depth = severity if severity_depth is None else severity_depth
+    severity = check_severity(severity)  # also where all conditions are clean
+    depth = severity if severity_depth is None else check_severity(severity_depth)
     return [
         CLEAN if name == "clean" else Corruption(name, depth if name in DEPTH else severity)
         for name in names

@@ -34,7 +34,7 @@ def test_every_corruption_has_a_bar_and_the_depth_ones_a_plain_peer():
 @pytest.mark.parametrize("name", ["low_light", "quantization"])
 def test_a_cost_is_measured_on_the_frame(name):
     frame = np.full((1, 32, 32, 3), 90, np.uint8)
-    frame = frame if name not in DEPTH else frame[..., 0].astype(np.float32)
+    frame = frame if name not in DEPTH else frame[..., 0].astype(np.float32) / 30
     found = suite.cost(name, frame, 1e-3, {"slow": 9.0, "fast": 7.0}, bar=1e-9)
     assert found.over and found.best_peer == ("fast", 7.0)
     assert 0 < found.steady < 5 and 0 < found.copy < found.per_frame

@@ -194,6 +194,16 @@ def test_a_png_that_comes_later_does_not_take_a_jpegs_result_for_its_own(run, tm
     assert (tmp_path / "out/x.png").read_bytes() == before
 
 
+def test_files_that_are_left_alone_are_counted_by_suffix(run, walk):
+    for name in ("y.webp", "x.TIF", "x.tif", "LICENSE"):
+        (walk / "in/a" / name).write_bytes(b"x")
+    status, out, _ = run(*SPATTER)
+    assert status == 0 and "other files left alone: 2 .tif, 1 without suffix, 1 .webp" in out
+    save(walk / "scans/0.tif", RGB[0])
+    text = complaint(run(*SPATTER, source="scans", out="new"))
+    assert "no rgb frame" in text and "not read: 1 .tif" in text and "PNG or JPEG" in text
+
+
 def test_bad_files_are_left_out_with_the_reason_and_keep_their_number(run, tmp_path):
     folder = tmp_path / "in"
     save(folder / "0.png", RGB[0])
@@ -225,7 +235,7 @@ def test_bad_files_are_left_out_with_the_reason_and_keep_their_number(run, tmp_p
         "8.png": "cannot be read",
     }.items():
         assert part in reasons.pop(name)
-    assert not reasons and found["other_modality"] == 1 and found["other_files"] == 1
+    assert not reasons and found["other_modality"] == 1 and found["other_files"] == {".txt": 1}
     wanted = corrupt(RGB[7], "low_light_noise", 0.5, key=Key(0, ".", 7))
     assert np.array_equal(read(tmp_path / "out/7.png"), wanted)
     made = sorted(path.name for path in (tmp_path / "out").iterdir())
@@ -247,6 +257,17 @@ def test_bad_depth_is_left_out_and_never_unpickled(run, tmp_path):
     assert "allow_pickle" in reasons["1.npy"] and "must be floating-point" in reasons["2.npy"]
     assert "Depth must be [H, W]" in reasons["3.npy"] and "cannot be loaded" in reasons["4.npy"]
     assert np.isnan(read(tmp_path / "out/5.npy")).all()
+
+
+def test_depth_in_another_unit_is_left_out(run, tmp_path):
+    save(tmp_path / "in/0.png", COUNTS[0])
+    save(tmp_path / "in/1.npy", np.full((8, 8), 2500, np.float32))
+    save(tmp_path / "in/2.npy", np.full((8, 8), 2.5, np.float32))
+    status, out, err = run("corruption=missing_data", "severity=0.6", "unit=m")
+    assert status == 1 and "1 frames written" in out and "unit=mm" in err
+    reasons = {e["file"]: e["reason"] for e in summary(tmp_path / "out")["left_out"]}
+    assert list(reasons) == ["0.png", "1.npy"] and "nearest 2500" in reasons["1.npy"]
+    assert not (tmp_path / "out/0.png").exists()
 
 
 def test_a_run_that_is_cut_off_leaves_whole_files_only(run, walk, monkeypatch):

@@ -146,8 +146,8 @@ LIBRARIES = {
     "plain code": plain,
 }
 INSTALL = {
-    "albumentations": "`pip install -e .[bench]` brings it.",
-    "kornia": "`pip install -e .[bench]` brings it.",
+    "albumentations": "`pip install -e '.[bench]'` brings it.",
+    "kornia": "`pip install -e '.[bench]'` brings it.",
     "imagecorruptions": (
         "It asks for opencv-python, which would replace the headless one, and for pkg_resources: "
         "`pip install --no-deps imagecorruptions` and `pip install scikit-image 'setuptools<81'`."

@@ -106,7 +106,7 @@ def _miniworld_or_reason(scene: str, size: int) -> dict[str, Callable[[], int]]:
     except Exception as error:  # whatever pyglet, EGL or the driver raise
         print(
             f"MiniWorld's {scene} is not measured: {type(error).__name__}: {error}. Install it "
-            "with `pip install -e .[bench]`; it draws with libEGL, libGL and libGLU of the system "
-            "(Debian: libegl1 libgl1 libglu1-mesa libgl1-mesa-dri)."
+            "with `pip install -e '.[bench]'`; it draws with libEGL, libGL and libGLU of the "
+            "system (Debian: libegl1 libgl1 libglu1-mesa libgl1-mesa-dri)."
         )
         return {}

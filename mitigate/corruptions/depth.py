@@ -38,6 +38,7 @@ ECHO_HERTZ = 20e6
 LIGHT_SPEED = 299_792_458.0  # metres a second
 STEP = 0.5  # metres at s = 1
 STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32
+BEYOND = 3.0  # times z_max: a frame with nothing nearer is not in metres (ours)
 
 _U = np.uint64
 
@@ -98,6 +99,31 @@ def _add_noise(views, streams, base, square, z_max, table, out):
 
 def _flat(views: np.ndarray) -> np.ndarray:
     return views.reshape(views.shape[0], -1)
+
+
+@njit(cache=True)
+def _comes_near(pixels, limit):
+    """Whether a valid pixel is at most ``limit``; the first one ends the search."""
+    i = 0
+    while i < pixels.size and not (_valid(pixels[i]) and pixels[i] <= limit):
+        i += 1
+    return i < pixels.size
+
+
+def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
+    """Raise ValueError for depth [V, H, W] that cannot be metres: all of it is far beyond z_max.
+
+    Clipped to the sensor's range, it would be one flat wall.
+    """
+    if _comes_near(views.reshape(-1), np.float32(BEYOND * sensor.z_max)):
+        return
+    nearest = float(np.min(views, initial=np.inf, where=views > 0))
+    if nearest < math.inf:
+        raise ValueError(
+            f"Every valid pixel lies far beyond the sensor's z_max of {sensor.z_max:g} m (nearest "
+            f"{nearest:g}): is the depth in millimetres? Divide it by 1000, give unit=mm for a "
+            "folder of PNG, or a sensor with a greater z_max if these are metres."
+        )
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:

@@ -15,7 +15,7 @@ from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.frame_files import MOST, RGB
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import check_sensor
-from mitigate.corruptions.plan import Frame, Plan, make_plan
+from mitigate.corruptions.plan import Frame, Plan, make_plan, told
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
 from mitigate.files import write_bytes
 from mitigate.keys import Z_MAX
@@ -75,7 +75,7 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     source, out = Path(source), Path(out)
     _check_folders(source, out)
     wanted = Corruption(settings.corruption, settings.severity).modality
-    plan = make_plan(source, wanted, settings.episode)
+    plan = make_plan(source, out, wanted, settings.episode)
     if not plan.frames:
         raise FileNotFoundError(_nothing(source, wanted, settings, plan))
     if any(frame.path.suffix.lower() == ".png" for frame in plan.frames) and wanted != RGB:
@@ -239,6 +239,7 @@ def _nothing(source: Path, wanted: str, settings: Settings, plan: Plan) -> str:
     other = (
         f"; {plan.other_modality} frames are of the other modality" if plan.other_modality else ""
     )
+    other += f"; other files are not read: {told(plan.other_files)}" if plan.other_files else ""
     return (
         f"There is no {wanted} frame in {source}{other}. {settings.corruption} hurts {wanted}: "
         f"{takes} files, in the folder or in folders inside it."

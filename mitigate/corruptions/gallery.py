@@ -23,8 +23,9 @@ from mitigate.keys import DEPTH, Z_MAX
 from mitigate.keys import RGB as RGB_ENTRY
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
+SUFFIXES = (".png", ".jpg", ".jpeg")  # of a sheet
 GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
-JPEG_QUALITY = 88  # of a sheet that is written as .jpg
+JPEG_QUALITY = 88
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
 CURVE_VIEWS = slice(0, 12, 3)  # of its panorama, for the curves
@@ -69,11 +70,12 @@ def contact_sheet(
     Args:
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
         depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same instant and size.
-        path: where the picture goes (.png); parent folders are made.
+        path: where the picture goes (.png, .jpg, .jpeg); parent folders are made.
         key: the random draw; one draw for the whole sheet.
         views: which views of a panorama each cell shows, left to right.
 
-    Returns the picture, uint8 RGB. Raises ValueError if the frames do not match.
+    Returns the picture, uint8 RGB. Raises ValueError if the frames do not match or ``path`` ends
+    in another suffix.
     """
     rgb = rgb if rgb.ndim == 4 else rgb[None]
     depth = depth.reshape(*rgb.shape[:3], 1) if depth.size == rgb.size // 3 else depth
@@ -83,8 +85,8 @@ def contact_sheet(
             "[V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
         )
     path = Path(path)
-    if not cv2.haveImageWriter(path.name):
-        raise ValueError(f"Cannot write {path}: use a file name that ends in .png or .jpg.")
+    if path.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"Cannot write {path}: its name must end in {' or '.join(SUFFIXES)}.")
     path.parent.mkdir(parents=True, exist_ok=True)
     key = key or Key(0, "contact sheet")
     high, wide = rgb.shape[1] + GUTTER, rgb.shape[2] * len(views) + GUTTER
@@ -99,7 +101,9 @@ def contact_sheet(
             cell = _cell(rgb, depth, name, severity, key, views)
             left = LABEL + column * wide
             sheet[top : top + cell.shape[0], left : left + cell.shape[1]] = cell
-    if not cv2.imwrite(str(path), sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]):
+    png = path.suffix.lower() == ".png"
+    quality = [] if png else [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
+    if not cv2.imwrite(str(path), sheet[..., ::-1], quality):
         raise ValueError(f"Cannot write {path}: is there space, and permission?")
     return sheet
 
@@ -132,7 +136,10 @@ def varied_view(depth: np.ndarray) -> int:
 
 
 def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
-    """RGB from a picture file and depth (metres) from a .npy file. Raises FileNotFoundError."""
+    """RGB from a picture file and depth (metres) from a .npy file.
+
+    Raises FileNotFoundError, and ValueError for a file that holds something else.
+    """
     for path in (rgb, depth):
         if not path.is_file():
             raise FileNotFoundError(
@@ -142,20 +149,24 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
     picture = cv2.imread(str(rgb), cv2.IMREAD_COLOR)
     if picture is None:
         raise ValueError(f"{rgb} is not a picture that OpenCV can read: use PNG or JPEG.")
-    metres = np.load(depth, allow_pickle=False)
+    try:
+        metres = np.lib.format.open_memmap(depth, mode="r")
+    except ValueError as error:
+        raise ValueError(
+            f"{depth} is no whole .npy file ({error}): save depth in metres with np.save."
+        ) from error
     if metres.dtype.kind != "f":
         raise ValueError(
             f"{depth} holds {metres.dtype}, not metres as floating-point numbers. Divide counts by "
             "the sensor's counts a metre first (millimetres by 1000)."
         )
-    metres = metres.astype(np.float32)
-    return np.ascontiguousarray(picture[..., ::-1]), metres
+    return np.ascontiguousarray(picture[..., ::-1]), np.array(metres, np.float32)
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Command line: see the module's first lines."""
+    """Command line: see the module's first lines. Exits with status 2 and one line on a mistake."""
     parser = argparse.ArgumentParser(prog="mitigate.corruptions.gallery", description=__doc__)
-    parser.add_argument("--out", type=Path, help="picture file to write")
+    parser.add_argument("--out", type=Path, help="picture to write: .png, .jpg or .jpeg")
     parser.add_argument("--rgb", type=Path, help="picture of one view")
     parser.add_argument("--depth", type=Path, help=".npy with float32 metres, same size")
     parser.add_argument("--seed", type=int, default=7, help="apartment to render (default 7)")
@@ -171,6 +182,14 @@ def main(arguments: list[str] | None = None) -> None:
         parser.error("name the picture to write: --out sheet.png (or pass --page).")
     if (options.rgb is None) != (options.depth is None):
         parser.error("--rgb and --depth go together: pass both, or neither to render a frame.")
+    try:
+        _write_sheet(options)
+    except (OSError, ValueError) as error:
+        parser.exit(2, f"error: {error}\n")
+    print(f"Wrote {options.out}")
+
+
+def _write_sheet(options: argparse.Namespace) -> None:
     if options.rgb is None:
         rgb, depth = rendered_frame(options.seed, options.size)
         view = varied_view(depth) if options.view is None else options.view % len(rgb)
@@ -178,7 +197,6 @@ def main(arguments: list[str] | None = None) -> None:
     else:
         rgb, depth = read_frame(options.rgb, options.depth)
     contact_sheet(rgb, depth, options.out)
-    print(f"Wrote {options.out}")
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from hashlib import blake2b
+from operator import index
 from statistics import NormalDist
 
 import numpy as np
@@ -35,12 +36,22 @@ class Key:
     """Names one instant: ``seed``, the ``episode`` (any string) and the ``frame`` number in it.
 
     Lens dirt, flare position and the like follow (seed, episode); pixel noise follows the frame as
-    well. The per-frame regime is a new ``episode`` string for every frame, nothing else.
+    well. The per-frame regime is a new ``episode`` string for every frame, nothing else. Raises
+    ValueError for a seed or frame that is no whole number.
     """
 
     seed: int
     episode: str
     frame: int = 0
+
+    def __post_init__(self) -> None:
+        try:
+            index(self.seed), index(self.frame)
+        except TypeError:
+            raise ValueError(
+                f"The seed and the frame of a key must be whole numbers, but it has seed="
+                f"{self.seed!r}, frame={self.frame!r}. Write, for instance, Key(0, '17', frame=3)."
+            ) from None
 
 
 @lru_cache(maxsize=256)

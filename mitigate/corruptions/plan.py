@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -23,12 +24,12 @@ class Frame:
 
 @dataclass
 class Plan:
-    """What a folder holds: frames in order, files left out, and how many others there are."""
+    """What a folder holds: frames in order, what is left out, and the suffixes of other files."""
 
     frames: list[Frame] = field(default_factory=list)
-    left_out: dict[str, str] = field(default_factory=dict)  # file -> reason
+    left_out: dict[str, str] = field(default_factory=dict)  # file, or folder/ -> reason
     other_modality: int = 0
-    other_files: int = 0
+    other_files: Counter[str] = field(default_factory=Counter)  # suffix -> files
 
     def episodes(self) -> dict[str, list[str]]:
         """The names of the frames of each episode, in order."""
@@ -38,13 +39,16 @@ class Plan:
         return names
 
 
-def make_plan(source: Path, wanted: str, episode: str) -> Plan:
-    """Find the frames of a modality. A file that is neither takes part as a bad frame."""
+def make_plan(source: Path, out: Path, wanted: str, episode: str) -> Plan:
+    """Find the frames of a modality. A file that is neither takes part as a bad frame.
+
+    ``out``, where the results go, is no part of ``source``, even if a link leads there.
+    """
     plan = Plan()
     counts: dict[str, int] = {}
-    for path in _files(source, plan):
+    for path in _files(source, out.resolve(), plan):
         if path.suffix.lower() not in SUFFIXES:
-            plan.other_files += 1
+            plan.other_files[path.suffix.lower()] += 1
             continue
         try:
             if frame_files.modality(source / path) != wanted:
@@ -58,17 +62,39 @@ def make_plan(source: Path, wanted: str, episode: str) -> Plan:
     return plan
 
 
-def _files(source: Path, plan: Plan) -> Iterator[Path]:
-    """Relative paths, folder by folder in natural order; hidden files and folders are passed by."""
+def told(suffixes: Mapping[str, int]) -> str:
+    """Counts of files by suffix, the most frequent first: "3 .tif, 1 .webp"."""
+    most = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
+    return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in most)
+
+
+def _files(source: Path, out: Path, plan: Plan) -> Iterator[Path]:
+    """Relative paths, folder by folder in natural order; hidden files and folders are passed by.
+
+    Links to folders are followed, but not in a circle and not into the real path ``out``.
+    """
 
     def complain(error: OSError) -> None:
         folder = Path(error.filename).relative_to(source).as_posix()
         plan.left_out[f"{folder}/"] = f"cannot be read: {error.strerror}"
 
-    for folder, folders, files in os.walk(source, onerror=complain):
-        folders[:] = sorted((name for name in folders if name[0] != "."), key=_natural)
+    for folder, folders, files in os.walk(source, onerror=complain, followlinks=True):
+        here = Path(folder).relative_to(source)
         for name in sorted((name for name in files if name[0] != "."), key=_natural):
-            yield Path(folder, name).relative_to(source)
+            yield here / name
+        seen = sorted((name for name in folders if name[0] != "."), key=_natural)
+        barred = {name: _barred(source, here / name, out) for name in seen}
+        plan.left_out |= {f"{(here / n).as_posix()}/": why for n, why in barred.items() if why}
+        folders[:] = [name for name in seen if not barred[name]]
+
+
+def _barred(source: Path, folder: Path, out: Path) -> str:
+    """Why a folder must not be entered; empty if it may be."""
+    real = (source / folder).resolve()
+    if out in (real, *real.parents):
+        return "is where the results go"
+    around = {(source / parent).resolve() for parent in folder.parents}
+    return "leads back to a folder that it lies in" if real in around else ""
 
 
 def _natural(name: str) -> tuple:

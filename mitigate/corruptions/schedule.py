@@ -63,6 +63,11 @@ class Schedule:
         self.severity = _checked(self.severity)
         if self.severity_depth is not None:
             self.severity_depth = _checked(self.severity_depth)
+        if isinstance(self.names, str):
+            raise ValueError(
+                f"names is a list of corruptions, such as [{self.names!r}], but it is the text "
+                f"{self.names!r}."
+            )
         self.names = tuple(check_name(name) for name in self.names)
         if not self.names or len(set(self.names)) < len(self.names):
             raise ValueError(

@@ -44,6 +44,7 @@ INSTRUCTION = (
     *("capitalize", "mask", "black_box", "white_box"),
 )
 SENSOR = DepthSensor()
+MOST_VIEWS = 36  # of one instant: R2R's discrete panoramas (3 elevations of 12); VLN-CE has 12
 
 
 def check_name(name: str, allowed: tuple[str, ...] = NAMES) -> str:
@@ -133,11 +134,11 @@ def _rgb_views(frame: np.ndarray) -> np.ndarray:
             "Move the channels last, drop an alpha channel, and corrupt a batch one instant at a "
             "time: every instant has its own key."
         )
-    return np.ascontiguousarray(frame if frame.ndim == 4 else frame[None])
+    return _one_instant(np.ascontiguousarray(frame if frame.ndim == 4 else frame[None]))
 
 
-def _depth_views(frame: np.ndarray) -> np.ndarray:
-    """The frame as contiguous float32 [V, H, W]; ValueError for anything else."""
+def _depth_views(frame: np.ndarray, sensor: DepthSensor) -> np.ndarray:
+    """The frame as contiguous float32 [V, H, W]; ValueError for anything else, millimetres too."""
     if frame.dtype != np.float32:
         raise ValueError(
             f"Depth must be float32 in metres, but this frame is {frame.dtype}. Convert it first: "
@@ -150,7 +151,21 @@ def _depth_views(frame: np.ndarray) -> np.ndarray:
             f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], but the shape is "
             f"{frame.shape}. Corrupt a batch one instant at a time: every instant has its own key."
         )
-    return np.ascontiguousarray(frame.reshape((1, *shape) if len(shape) == 2 else shape))
+    views = frame.reshape((1, *shape) if len(shape) == 2 else shape)
+    views = _one_instant(np.ascontiguousarray(views))
+    depth.check_unit(views, sensor)
+    return views
+
+
+def _one_instant(views: np.ndarray) -> np.ndarray:
+    """``views`` [V, ...] as they are; ValueError for more of them than a panorama has."""
+    if len(views) > MOST_VIEWS:
+        raise ValueError(
+            f"There are {len(views)} views, but an instant has {MOST_VIEWS} at most. The leading "
+            "axis is the views of one panorama, which share one mask. Is it a batch? Corrupt it "
+            "one instant at a time: every instant has its own key."
+        )
+    return views
 
 
 def corrupt(
@@ -166,7 +181,9 @@ def corrupt(
 
     Args:
         frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees.
+            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees. V
+            counts the views of one instant, 36 at most: they share one mask. It is no batch axis;
+            corrupt a batch one instant at a time, each with its own key.
         name: one of NAMES.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
         key: names the random draw; a whole number is a seed, a text an episode.
@@ -175,13 +192,14 @@ def corrupt(
         sensor: depth range and sentinel.
 
     Returns a new array of the same shape and dtype; the input is not modified.
-    Raises ValueError for a wrong name, severity, dtype, shape, heading or key.
+    Raises ValueError for a wrong name, severity, dtype, shape, heading or key, and for depth whose
+    nearest valid pixel is over three times the sensor's z_max: it is in millimetres.
     """
     check_name(name)
     severity = check_severity(severity)
     key = as_key(key)
     frame = np.asarray(frame)
-    views = _rgb_views(frame) if name in _RGB else _depth_views(frame)
+    views = _rgb_views(frame) if name in _RGB else _depth_views(frame, sensor)
     if severity == 0.0:
         return frame.copy()
     if name in _RGB:
@@ -196,7 +214,7 @@ def corrupt_observation(
 
     The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
     A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
-    Raises ValueError if the modality is missing, and as ``corrupt`` does.
+    Raises ValueError if the modality is missing or the pose is not [3], and as ``corrupt`` does.
     """
     if corruption.modality in ("none", "instruction"):
         return dict(obs)
@@ -208,6 +226,11 @@ def corrupt_observation(
             f"{corruption.name!r} out of its suite."
         )
     pose = obs.get(keys.POSE)
+    if pose is not None and np.shape(pose) != (3,):
+        raise ValueError(
+            f"{keys.POSE!r} must be [3] = (x, y, heading), but its shape is {np.shape(pose)}. "
+            "Leave it out if the heading is not known: a flare then keeps its place in view 0."
+        )
     heading = None if pose is None else float(pose[2])
     hurt = corrupt(
         obs[entry], corruption.name, corruption.severity, key=key, heading=heading, sensor=sensor

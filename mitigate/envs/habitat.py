@@ -10,14 +10,16 @@ have it clockwise). View k of ``mitigate.keys`` turns right: ``rgb_30`` is view 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 import numpy as np
 
 from mitigate import keys
+from mitigate.corruptions import catalogue
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
-from mitigate.corruptions.suite import SENSOR, Corruption, corrupt_observation
+from mitigate.corruptions.suite import NAMES, SENSOR, Corruption, corrupt_observation
 
 TURNS = ("left", "right")
 _CAMERA = re.compile(r"(rgb|depth)(?:_(\d+(?:\.\d+)?))?")
@@ -50,12 +52,15 @@ def corrupt_habitat(
         turn: where ``rgb_30`` looks from ``rgb``: "left" (ETPNav) or "right".
         normalised: False for depth in metres.
 
-    Raises ValueError if a camera's number is no multiple of 30 degrees below 360, if the sizes of a
-    modality's cameras differ, and as ``corrupt_normalised`` does.
+    Raises ValueError if there is no camera of the modality, if a camera's number is no multiple of
+    30 degrees below 360, if the sizes of a modality's cameras differ, and as ``corrupt_normalised``
+    does.
     """
     if turn not in TURNS:
         raise ValueError(f"turn must be 'left' or 'right', where rgb_30 looks, but it is {turn!r}.")
     modality = corruption.modality
+    if modality in (keys.RGB, keys.DEPTH):
+        check_cameras(obs, [corruption.name])
     views = _views(obs, modality, turn)
     frames = {} if not views else {modality: _panorama(obs, views)}
     if heading is not None:
@@ -68,6 +73,22 @@ def corrupt_habitat(
 def is_camera(entry: str) -> bool:
     """Whether an entry of an observation is an RGB or depth camera by its name."""
     return _CAMERA.fullmatch(entry) is not None
+
+
+def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
+    """Raise ValueError if one of the corruptions ``names`` hurts what no camera gives."""
+    entries = list(entries)
+    given = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
+    for name in names:
+        hurt = catalogue.modality(name)
+        if hurt not in given:
+            fit = ", ".join(name for name in NAMES if catalogue.modality(name) in given)
+            raise ValueError(
+                f"{name!r} hurts {hurt}, but the observation does not hold a camera called {hurt}, "
+                f"{hurt}_30, ... (it holds {', '.join(entries) or 'nothing'}). "
+                f"{f'Draw only from names=[{fit}]' if fit else 'Rename the cameras'}, or give the "
+                f"robot a {hurt} camera of that name."
+            )
 
 
 def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:

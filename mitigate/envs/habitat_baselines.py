@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import copy
 import difflib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -22,7 +22,7 @@ import torch
 from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule
 from mitigate.corruptions.keying import digest
 from mitigate.corruptions.normalised import check_sensor
-from mitigate.envs.habitat import TURNS, corrupt_habitat, is_camera
+from mitigate.envs.habitat import TURNS, check_cameras, corrupt_habitat, is_camera
 
 try:
     from habitat_baselines.common.baseline_registry import baseline_registry
@@ -49,7 +49,8 @@ class CorruptObservation(ObservationTransformer):
         sensor: depth range and sentinel.
         turn: where ``rgb_30`` looks from ``rgb``: "left" (ETPNav) or "right".
 
-    ``forward`` raises ValueError without ``corruption_key`` and as ``corrupt_habitat`` does.
+    Raises ValueError if the space, or a batch, has no camera for a corruption of the schedule;
+    ``forward`` also without ``corruption_key``, and as ``corrupt_habitat`` does.
     """
 
     def __init__(
@@ -84,13 +85,12 @@ class CorruptObservation(ObservationTransformer):
                     "Pass the transformer's own part of the config, not the whole."
                 )
         options = CorruptObservationConfig(**given)
-        names = tuple(options.names) or NAMES
         schedule = Schedule(
             options.mode,
             options.severity,
             options.severity_depth,
             clean_share=options.clean_share,
-            names=names,
+            names=options.names or NAMES,
         )
         sensor = DepthSensor(options.depth_min, options.depth_max, options.depth_missing)
         return cls(schedule, options.seed, sensor=sensor, turn=options.turn)
@@ -99,12 +99,14 @@ class CorruptObservation(ObservationTransformer):
         """A copy of the space without ``corruption_key``; the rest does not change."""
         space = copy.deepcopy(observation_space)
         space.spaces.pop(KEY, None)
+        self._check(space.spaces)
         return space
 
     @torch.no_grad()
     def forward(self, observations: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
         """The batch with corrupted cameras and without ``corruption_key``; the input stays."""
         keys = _keys(observations)
+        self._check(observations)
         heading = next((observations[h] for h in _HEADINGS if h in observations), None)
         frames = {
             entry: tensor.cpu().numpy()
@@ -131,6 +133,10 @@ class CorruptObservation(ObservationTransformer):
         for entry, views in hurt.items():
             out[entry] = torch.from_numpy(views).to(observations[entry].device)
         return out
+
+    def _check(self, entries: Iterable[str]) -> None:
+        if self.schedule.mode != "clean":
+            check_cameras((entry for entry in entries if entry != KEY), self.schedule.names)
 
 
 @dataclass

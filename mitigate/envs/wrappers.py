@@ -14,7 +14,7 @@ try:
 except ImportError as error:
     raise ImportError(
         "The gymnasium wrapper needs gymnasium, which is not installed: "
-        "pip install 'mitigate[gymnasium]', or pip install gymnasium."
+        "pip install -e '.[gymnasium]', or pip install gymnasium."
     ) from error
 
 from mitigate.corruptions import (
@@ -40,7 +40,9 @@ class CorruptObservation(gymnasium.ObservationWrapper):
 
     Episodes are named by the seed of ``reset(seed=n)`` and the resets since then: "n-0", "n-1",
     ...; "unseeded-0" and so on before the first seed. ``frame`` counts the steps from the reset. So
-    the pixels are a function of (schedule, seed, reset seed, resets, steps) and of nothing else.
+    the pixels are a function of (schedule, seed, reset seed, resets, steps) and of nothing else. An
+    environment that resets itself, as inside ``gymnasium.wrappers.Autoreset``, has a reset in the
+    step that follows the end of an episode.
 
     Args:
         env: the environment.
@@ -74,7 +76,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         self.sensor = sensor or DepthSensor()
         self.corruption: Corruption | None = None
         self.key: Key | None = None
-        self._source, self._resets, self._frame = "unseeded", 0, 0
+        self._source, self._resets, self._frame, self._over = "unseeded", 0, 0, False
         self._corrupt = corrupt_normalised if normalised else corrupt_observation
         space = env.observation_space
         self._whole = _modality(space) if isinstance(space, gymnasium.spaces.Box) else None
@@ -87,15 +89,31 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         """Begin the next episode; a seed begins the count of episodes anew."""
         if seed is not None:
             self._source, self._resets = str(seed), 0
-        self._episode = f"{self._source}-{self._resets}"
-        self._resets += 1
-        self._frame = 0
+        self._begin()
         return super().reset(seed=seed, options=options)
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Step the environment; the observation is that of the next frame."""
-        self._frame += 1
-        return super().step(action)
+        """Step the environment; the observation is that of the next frame.
+
+        After the end of an episode it is the first of the next one: the environment reset itself.
+        Raises gymnasium's ResetNeeded before the first reset.
+        """
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        if self._resets == 0:
+            raise gymnasium.error.ResetNeeded(
+                "Call reset() before step(): every random draw is keyed by the episode it begins."
+            )
+        if self._over:
+            self._begin()
+        else:
+            self._frame += 1
+        self._over = bool(terminated or truncated)
+        return self.observation(observation), reward, terminated, truncated, info
+
+    def _begin(self) -> None:
+        self._episode = f"{self._source}-{self._resets}"
+        self._resets += 1
+        self._frame, self._over = 0, False
 
     def observation(self, observation: Any) -> Any:
         """The corrupted observation of the current frame; the given one is not modified."""

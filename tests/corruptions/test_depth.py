@@ -129,6 +129,24 @@ def test_valid_depth_is_clipped_to_the_range_of_the_sensor(name):
     assert out.max() <= 5.0 and out[out != 0].min() >= np.float32(1e-3)
 
 
+@pytest.mark.parametrize("severity", [0.0, 0.6])
+@pytest.mark.parametrize("name", ["gaussian_noise", "missing_data", "multipath", "quantization"])
+def test_millimetres_are_refused(name, severity):
+    depth = np.full((48, 64), 2500, np.float32)
+    depth[:3] = np.array([0.0, np.nan, np.inf, -1.0] * 16, np.float32)
+    with pytest.raises(ValueError, match=r"z_max of 10 m \(nearest 2500\).*millimetres") as error:
+        corrupt(depth, name, severity, key=1)
+    assert "\n" not in str(error.value)
+    corrupt(depth, name, severity, key=1, sensor=DepthSensor(z_max=3000.0))
+
+
+@pytest.mark.parametrize("depth", [12.0, 0.0, np.nan, np.inf])
+def test_a_far_wall_and_a_frame_without_readings_are_fine(depth):
+    out = corrupt(np.full((8, 8), depth, np.float32), "multipath", 0.6, key=1)
+    wanted = np.full((8, 8), 10.0 if depth == 12.0 else depth)
+    assert np.array_equal(out, wanted, equal_nan=True)
+
+
 @pytest.mark.parametrize(
     "ends", [(5.0, 0.5), (0.0, 0.0), (0.0, -5.0), (0.0, np.inf), (0.0, np.nan)]
 )

@@ -26,6 +26,36 @@ def test_the_command_reads_files(tmp_path, scene, capsys):
     assert "Wrote" in capsys.readouterr().out and (tmp_path / "sheet.png").is_file()
 
 
+@pytest.mark.parametrize("suffix", [".png", ".jpg", ".JPEG"])
+def test_a_sheet_is_written_without_a_warning(suffix, tmp_path, scene, capfd):
+    gallery.contact_sheet(*scene.draw(24, 32), tmp_path / f"sheet{suffix}", (0.0,))
+    assert (tmp_path / f"sheet{suffix}").is_file() and "key" not in capfd.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("depth", "out", "part"),
+    [
+        ("rgb.png", "sheet.png", "rgb.png is no whole .npy file"),
+        ("empty.npy", "sheet.png", "empty.npy is no whole .npy file"),
+        ("gone.npy", "sheet.png", "There is no file"),
+        ("mm.npy", "sheet.png", "is the depth in millimetres"),
+        ("depth.npy", "sheet.gif", "must end in .png"),
+    ],
+)
+def test_a_mistake_ends_the_command_in_one_line(depth, out, part, tmp_path, scene, capsys):
+    rgb, metres = scene.draw(24, 32)
+    cv2.imwrite(str(tmp_path / "rgb.png"), rgb)
+    np.save(tmp_path / "depth.npy", metres)
+    np.save(tmp_path / "mm.npy", 1000 * metres)
+    (tmp_path / "empty.npy").touch()
+    files = ["--rgb", str(tmp_path / "rgb.png"), "--depth", str(tmp_path / depth)]
+    with pytest.raises(SystemExit) as stop:
+        gallery.main(["--out", str(tmp_path / out), *files])
+    text = capsys.readouterr().err
+    assert stop.value.code == 2 and text.startswith("error: ") and text.count("\n") == 1
+    assert part in text and not (tmp_path / out).exists()
+
+
 def test_bad_files_are_named(tmp_path, scene):
     with pytest.raises(FileNotFoundError, match=r"no file .*rgb\.png"):
         gallery.read_frame(tmp_path / "rgb.png", tmp_path / "depth.npy")
@@ -34,8 +64,9 @@ def test_bad_files_are_named(tmp_path, scene):
         gallery.contact_sheet(rgb, depth[:-1], tmp_path / "sheet.png")
     with pytest.raises(SystemExit):
         gallery.main(["--out", "x.png", "--rgb", "only.png"])
-    with pytest.raises(ValueError, match=r"ends in \.png or \.jpg"):
-        gallery.contact_sheet(rgb, depth, tmp_path / "sheet")
+    for name in ("sheet", "sheet.gif", "sheet.bmp"):
+        with pytest.raises(ValueError, match=r"must end in \.png or \.jpg or \.jpeg"):
+            gallery.contact_sheet(rgb, depth, tmp_path / name)
     cv2.imwrite(str(tmp_path / "rgb.png"), rgb)
     np.save(tmp_path / "depth.npy", (1000 * depth).astype(np.uint16))
     with pytest.raises(ValueError, match="uint16, not metres"):

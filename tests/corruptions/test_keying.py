@@ -78,6 +78,12 @@ def test_any_string_and_integer_is_a_key():
     assert keying.digest(Key(np.int64(3), "a"), "x") == keying.digest(Key(3, "a"), "x")
 
 
+@pytest.mark.parametrize("parts", [(0, "17", None), ("a", "1"), (1.9, "x"), (0, "x", 2.0)])
+def test_a_seed_or_frame_that_is_no_whole_number_is_refused(parts):
+    with pytest.raises(ValueError, match="seed and the frame of a key must be whole numbers"):
+        Key(*parts)
+
+
 def test_the_digest_is_the_published_one():
     text = b"1:3" + b"1:e" + b"4:name" + b"1:7"
     expected = hashlib.blake2b(text, digest_size=8, person=b"mitigate").digest()

@@ -18,14 +18,17 @@ quick = settings(max_examples=40, deadline=None, derandomize=True)
 
 @st.composite
 def instants(draw, fewest=1):
-    """RGB uint8 [V, H, W, 3] and depth float32 [V, H, W] of any size, some readings invalid."""
+    """RGB uint8 [V, H, W, 3] and depth float32 [V, H, W, 1] of any size, some readings invalid.
+
+    (Depth [V, H, W] of width 1 would be read as one view [H, W, 1].)
+    """
     shape = draw(st.integers(fewest, 5)), draw(st.integers(1, 23)), draw(st.integers(1, 23))
     rng = np.random.default_rng(draw(st.integers(0, 2**32)))
     rgb = rng.integers(0, 256, (*shape, 3), dtype=np.uint8)
     depth = rng.uniform(0.01, 12.0, shape).astype(np.float32)
     for value in (0.0, -1.0, np.nan, np.inf, -np.inf):
         depth[rng.random(shape) < 0.05] = value
-    return rgb, depth
+    return rgb, depth[..., None]
 
 
 def frame_of(name, instant):

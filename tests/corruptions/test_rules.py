@@ -157,6 +157,16 @@ def test_wrong_depth_shapes_are_refused(shape):
         corrupt(np.ones(shape, np.float32), "multipath", 0.5, key=KEY)
 
 
+@pytest.mark.parametrize(
+    "frame", [np.zeros((37, 4, 5, 3), np.uint8), np.ones((64, 4, 5), np.float32)], ids=["rgb", "z"]
+)
+def test_a_batch_is_no_panorama(frame):
+    name = "spatter" if frame.dtype == np.uint8 else "missing_data"
+    with pytest.raises(ValueError, match="36 at most.*share one mask.*one instant at a time"):
+        corrupt(frame, name, 0.5, key=KEY)
+    assert corrupt(frame[:36], name, 0.5, key=KEY).shape == frame[:36].shape
+
+
 @pytest.mark.parametrize("key", [None, 1.5, True, (0, "a")])
 def test_a_key_that_is_no_key_is_refused(panorama, key):
     with pytest.raises(ValueError, match="key must be a Key.*whole number.*text"):
@@ -185,6 +195,13 @@ def test_an_observation_is_hurt_in_the_modality_concerned_only(panorama):
         assert not same(out[hurt], obs[hurt])
     clean = corrupt_observation(obs, CLEAN, KEY)
     assert clean is not obs and clean["rgb"] is rgb and CLEAN.modality == "none"
+
+
+@pytest.mark.parametrize("pose", [np.zeros(2), np.zeros(7), np.zeros((1, 3)), 0.5], ids=str)
+def test_a_pose_of_another_shape_is_refused(panorama, pose):
+    obs = {"rgb": panorama[0], "pose": pose}
+    with pytest.raises(ValueError, match=r"must be \[3\] = \(x, y, heading\)"):
+        corrupt_observation(obs, Corruption("flare", 0.6), KEY)
 
 
 def test_an_observation_without_the_modality_is_refused(panorama):

@@ -169,3 +169,8 @@ def test_wrong_settings_are_refused(arguments, message):
 def test_a_foreign_state_is_refused():
     with pytest.raises(ValueError, match="not the state of a Schedule"):
         Schedule("clean", 0.6).load_state_dict({"weights": [1]})
+
+
+def test_one_name_instead_of_a_list_is_refused():
+    with pytest.raises(ValueError, match=r"names is a list of corruptions, such as \['spatter'\]"):
+        Schedule("per_episode", 0.6, names="spatter")

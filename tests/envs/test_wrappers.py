@@ -16,7 +16,7 @@ from mitigate.envs.wrappers import CorruptObservation  # noqa: E402
 
 FRAME = spaces.Box(0, 255, (24, 32, 3), np.uint8)
 METRES = spaces.Box(0.0, 10.0, (24, 32, 1), np.float32)
-HURT = Schedule("per_episode", 0.8, clean_share=0.0)
+HURT_RGB = Schedule("per_episode", 0.8, clean_share=0.0, names=RGB)
 
 
 class Room(gymnasium.Env):
@@ -71,6 +71,28 @@ def test_the_key_is_the_seed_the_reset_and_the_step():
             key = Key(5, name, number)
             assert np.array_equal(seen, corrupt(given, "spatter", 0.7, key=key))
         assert env.key == Key(5, name, 3) and env.corruption.name == "spatter"
+
+
+def test_an_environment_that_resets_itself_begins_an_episode_as_a_reset_does():
+    inside = CorruptObservation(gymnasium.wrappers.Autoreset(Room(FRAME)), HURT_RGB)
+    outside = gymnasium.wrappers.Autoreset(CorruptObservation(Room(FRAME), HURT_RGB))
+    inside.reset(seed=4), outside.reset(seed=4)
+    for number in range(1, 10):  # the room ends after 3 steps, and the next step resets it
+        seen, wanted = inside.step(0)[0], outside.step(0)[0]
+        assert inside.key == outside.env.key == Key(0, f"4-{number // 4}", number % 4)
+        assert np.array_equal(seen, wanted)
+    inside.reset()
+    assert inside.key == Key(0, "4-3", 0) and inside.step(0) and inside.key == Key(0, "4-3", 1)
+
+
+def test_a_step_before_the_first_reset_is_explained():
+    room = Room(FRAME)
+    room.time = 0
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"reset\(\) before step\(\)"):
+        CorruptObservation(room, HURT_RGB).step(0)
+    ordered = gymnasium.wrappers.OrderEnforcing(Room(FRAME))
+    with pytest.raises(gymnasium.error.ResetNeeded, match="env.step"):  # the environment's own
+        CorruptObservation(ordered, HURT_RGB).step(0)
 
 
 def test_equal_seeds_give_equal_pixels_and_others_do_not():
@@ -150,5 +172,5 @@ def test_metres_in_a_normalised_wrapper_are_refused():
 def test_without_gymnasium_the_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "gymnasium", None)
     monkeypatch.delitem(sys.modules, "mitigate.envs.wrappers")
-    with pytest.raises(ImportError, match=r"pip install 'mitigate\[gymnasium\]'"):
+    with pytest.raises(ImportError, match=r"pip install -e '\.\[gymnasium\]'"):
         importlib.import_module("mitigate.envs.wrappers")

@@ -200,3 +200,11 @@ def test_rows_of_controls_belong_to_the_tasks_own_split(task, split, monkeypatch
     monkeypatch.setattr("sys.argv", ["controls", *given, str(tmp_path / "rows.jsonl")])
     controls.main()
     assert {row["split"] for row in rows.read(tmp_path / "rows.jsonl")} == {split}
+
+
+@pytest.mark.parametrize("count", ["0", "-5"])
+def test_controls_need_an_episode(count, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["controls", "--episodes", count])
+    with pytest.raises(SystemExit):
+        controls.main()
+    assert f"--episodes {count} is none: give 1 or more" in capsys.readouterr().err

@@ -7,6 +7,7 @@ import time
 
 import pytest
 
+import mitigate.evaluate  # noqa: F401  (registers the types of conf/evaluate.yaml)
 from mitigate import cli
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
@@ -249,3 +250,9 @@ def test_a_manner_never_costs_the_first_steps():
     told = [pair.source for i in range(400) if (pair := draw_pair(9, i)).kind == "style"]
     cut = [bool(check(d.original, d.text)) for d in Safeguard().canonicalise_all(told)]
     assert len(told) > 100 and sum(cut) <= 0.02 * len(told)
+
+
+@pytest.mark.parametrize("text", [None, 3, ["Turn left."], b"Turn left."])
+def test_an_instruction_that_is_no_text_is_refused(text):
+    with pytest.raises(TypeError, match="must be a text"):
+        open_safeguard("rules").canonicalise(text)

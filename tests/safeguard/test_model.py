@@ -189,7 +189,7 @@ def test_chats_of_the_user_are_learned_from(model, tmp_path):
 
 
 def test_eight_bits_train_save_and_reload(tiny_base, tmp_path):
-    pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e .[safeguard]")
+    pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e '.[safeguard]'")
     model = LanguageModel(tiny_base, "int8", LORA)
     recipe = train(model, tmp_path / "run", 2)
     model.save(tmp_path / "adapter")

@@ -73,6 +73,9 @@ def main() -> None:
                 f"{setting!r} is not a setting; write key=value with a key of {', '.join(values)}"
             )
         values[key] = value
+    for key in ("seed", "episode", "size"):
+        if not values[key].removeprefix("-").isdecimal():
+            parser.error(f"{key}={values[key]} has the wrong type: it must be a whole number")
     if values["task"] not in TASKS:
         parser.error(f"task={values['task']} is unknown; choose one of {', '.join(TASKS)}")
     out = Path(

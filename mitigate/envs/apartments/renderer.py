@@ -22,6 +22,7 @@ from mitigate.keys import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
 EYE = 1.25  # camera height, metres (VLN-CE)
 FARTHEST = 17.0  # metres; longer than any line through an apartment
+LEAST = 4  # pixels of a view (ours)
 _COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
 _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
 
@@ -46,9 +47,14 @@ def _panda(pipe: str) -> Any:
 
 
 class Renderer:
-    """Renders RGB and face ids of apartments; keeps the scenes of the ``scenes`` latest ones."""
+    """Renders RGB and face ids of apartments; keeps the scenes of the ``scenes`` latest ones.
+
+    Raises ValueError for a ``size`` in pixels below ``LEAST``.
+    """
 
     def __init__(self, size: int = 64, pipe: str = "p3tinydisplay", scenes: int = 48) -> None:
+        if size < LEAST:
+            raise ValueError(f"A view of size={size} shows nothing: give {LEAST} pixels or more.")
         self.size, self.core = size, _panda(pipe)
         core = self.core
         self.engine = core.GraphicsEngine.get_global_ptr()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mitigate.envs.apartments import __main__ as show
 from mitigate.envs.apartments.apartment import Apartment
 from mitigate.envs.apartments.furniture import CATEGORIES
 from mitigate.envs.apartments.renderer import EYE, FARTHEST, Renderer
@@ -186,3 +187,14 @@ def test_shapes_and_types(renderer):
     assert (rgb.shape, rgb.dtype) == ((VIEWS, SIZE, SIZE, 3), np.uint8)
     assert (depth.shape, depth.dtype) == ((VIEWS, SIZE, SIZE, 1), np.float32)
     assert (ids.shape, ids.dtype) == ((VIEWS, SIZE, SIZE), np.int32)
+
+
+@pytest.mark.parametrize(
+    ("setting", "part"),
+    [("size=0", "size=0 shows nothing"), ("size=-3", "4 pixels"), ("seed=x", "a whole number")],
+)
+def test_show_explains_a_wrong_setting(setting, part, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["apartments", "show", setting])
+    with pytest.raises(SystemExit):
+        show.main()
+    assert part in capsys.readouterr().err

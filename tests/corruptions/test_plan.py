@@ -1,0 +1,41 @@
+"""Which files of a folder are frames: links are followed, whatever they lead to."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mitigate.corruptions.folders import Settings, run
+
+
+@pytest.fixture
+def walk(tmp_path):
+    """A folder ``in`` with links to and from a folder ``elsewhere``, to itself and to ``out``."""
+    for number, path in enumerate(("in/a/0", "in/a/1", "in/b/0", "elsewhere/0", "elsewhere/c/0")):
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        frame = np.full((8, 8, 3), 20 * number, np.uint8)
+        Image.fromarray(frame).save(tmp_path / f"{path}.png")
+    (tmp_path / "out").mkdir()
+    for link, target in (
+        ("in/linked", "elsewhere"),
+        ("in/again", "in/a"),
+        ("in/b/up", "in"),
+        ("elsewhere/c/round", "elsewhere"),
+        ("in/results", "out"),
+    ):
+        (tmp_path / link).symlink_to(tmp_path / target, target_is_directory=True)
+    return tmp_path
+
+
+def test_links_to_folders_are_followed_but_not_in_a_circle_nor_into_the_results(walk):
+    for written in (7, 0):  # the second run meets the results of the first behind a link
+        found = run(walk / "in", walk / "out", Settings("spatter", 0.6))
+        assert found["written"] == written and found["there"] == 7 - written
+        assert {name: e["frames"] for name, e in found["episodes"].items()} == {
+            "a": 2, "again": 2, "b": 1, "linked": 1, "linked/c": 1,
+        }  # fmt: skip
+        assert {e["file"]: e["reason"] for e in found["left_out"]} == {
+            "b/up/": "leads back to a folder that it lies in",
+            "linked/c/round/": "leads back to a folder that it lies in",
+            "results/": "is where the results go",
+        }
+    assert (walk / "out/linked/c/0.png").is_file() and not (walk / "out/linked").is_symlink()

@@ -1,0 +1,24 @@
+"""A panorama as the suite and as Habitat have it."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture(scope="module")
+def panorama():
+    """RGB uint8 [12, 32, 32, 3], and depth of another size in [0, 1] with holes."""
+    rng = np.random.default_rng(0)
+    depth = rng.uniform(0.06, 0.4, (12, 40, 48, 1)).astype(np.float32)
+    depth[:, :3, :5] = 0.0
+    return rng.integers(20, 230, (12, 32, 32, 3), dtype=np.uint8), depth
+
+
+@pytest.fixture
+def obs(panorama):
+    """As ETPNav has it: rgb_A looks A degrees to the left, so at view 12 - A / 30."""
+    rgb, depth = panorama
+    entries = {"instruction": "go", "rgb": rgb[0], "depth": depth[0]}
+    for step in range(1, 12):
+        entries[f"rgb_{30 * step}"] = rgb[-step]
+        entries[f"depth_{30 * step}"] = depth[-step]
+    return entries | {"rgb_features": np.ones(3), "depth_scale": 2}
