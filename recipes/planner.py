@@ -52,7 +52,9 @@ class PlannerRecipe(ImitationRecipe):
         encoders = torch.nn.ModuleList(
             [agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head]
         )
-        self.folder = Path(folder) / f"{weights_sha(encoders)}-{self.size}"
+        own = agent.rgb_encoder.size
+        resized = "" if own == self.size else f"-to-{own}"
+        self.folder = Path(folder) / f"{weights_sha(encoders)}-{self.size}{resized}"
         self.steps = steps
         agent.eval()
         cache.build(agent, self.folder, range(cached), self.size)

@@ -12,9 +12,9 @@ from recipes.planner import PlannerRecipe
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 
 
-def recipe(folder, blind: tuple[str, ...] = (), size: int = 64) -> PlannerRecipe:
+def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -> PlannerRecipe:
     seeding.seed_everything(0, "agent")
-    agent = TopologicalAgent(16, SMALL, blind=blind)
+    agent = TopologicalAgent(16, SMALL, blind=blind, size=own)
     return PlannerRecipe(agent, str(folder), steps=2, cached=1, episodes=2, size=size)
 
 
@@ -39,7 +39,8 @@ def test_a_blind_run_leaves_whole_features_to_the_next(folder):
 
 
 def test_views_of_another_size_are_stored_apart(folder):
-    assert recipe(folder, size=32).folder != recipe(folder).folder
+    made = [recipe(folder, size=n, own=own) for n, own in ((64, 64), (32, 64), (32, 32))]
+    assert len({recipe.folder for recipe in made}) == 3
 
 
 def test_a_batch_trains_the_planner_alone(folder):
