@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 import torch
 from tensordict import NestedKey, TensorDictBase
@@ -13,6 +15,7 @@ from mitigate.corruptions import (
     DepthSensor,
     Key,
     Schedule,
+    catalogue,
     corrupt_normalised,
     corrupt_observation,
 )
@@ -40,7 +43,8 @@ class CorruptObservation(Transform):
         sensor: depth range and sentinel.
         normalised: depth is in [0, 1] over the sensor's range instead of in metres.
 
-    Raises ValueError if the data name no episode or frame, and as ``corrupt_observation`` does.
+    Raises ValueError if the data name no episode or frame or lack what the schedule may hurt, and
+    as ``corrupt_observation`` does.
     """
 
     def __init__(
@@ -89,6 +93,7 @@ class CorruptObservation(Transform):
             for name, value in stored.items()
             if value is not None
         }
+        self._check_entries(frames)
         hurt: dict[str, np.ndarray] = {}
         for row in range(len(drawn)) if rows is None else rows:
             corruption, key = drawn[row]
@@ -104,6 +109,19 @@ class CorruptObservation(Transform):
                 self.entries[name], torch.from_numpy(views).reshape(value.shape).to(value.device)
             )
         return data
+
+    def _check_entries(self, frames: Collection[str]) -> None:
+        """Raise ValueError at the first data, not when the draw first asks for what they lack."""
+        lost = [name for name in self.schedule.names if catalogue.modality(name) not in frames]
+        if lost and self.schedule.mode != "clean":
+            modality = catalogue.modality(lost[0])
+            fit = ", ".join(name for name in self.schedule.names if name not in lost)
+            raise ValueError(
+                f"The schedule may draw {lost[0]!r}, which hurts {modality}, but the data have no "
+                f"entry {self.entries[modality]!r}. "
+                f"{f'Draw only from names=[{fit}]' if fit else 'Choose other names'}, or say what "
+                f"the entry is called: CorruptObservation(..., {modality}=...)."
+            )
 
     def _draw(self, data: TensorDictBase) -> list[tuple[Corruption, Key]]:
         """The corruption and key of every instant, in row-major order."""
