@@ -38,9 +38,14 @@ def build(node: DictConfig, **given: Any) -> Any:
 
 def settings_of(node: DictConfig, weights: str) -> DictConfig:
     """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too)."""
-    merged = OmegaConf.merge(node, carried(node, weights))
-    assert isinstance(merged, DictConfig)
-    return merged
+    return merged(node, carried(node, weights))
+
+
+def merged(node: DictConfig, settings: dict[str, Any]) -> DictConfig:
+    """Return a copy of ``node`` with ``settings`` in place of its own."""
+    found = OmegaConf.merge(node, settings)
+    assert isinstance(found, DictConfig)
+    return found
 
 
 def carried(node: DictConfig, weights: str) -> dict[str, Any]:

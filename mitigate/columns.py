@@ -44,7 +44,7 @@ def settings(
     plain, own = build.defaults(agent), build.carried(agent, weights)
     if ["agent"] in keys:
         named |= {name for name in plain if agent[name] != plain[name]}
-    node = build.settings_of(agent, weights)
+    node = build.merged(agent, own)
     for setting in named:
         node[setting] = agent[setting]
     known = plain | dict(OmegaConf.create(own).items())
