@@ -51,6 +51,13 @@ def checkpoints(folder: Path) -> list[Path]:
     return sorted(found)
 
 
+def steps_done(path: Path) -> int:
+    """Return the number of updates that a checkpoint's name states."""
+    found = _NAME.fullmatch(path.name)
+    assert found, f"{path} is no checkpoint's name"
+    return int(found[1])
+
+
 def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     """Write ``state`` as ``step-<state["step"]>.pt``, then delete all but the newest ``keep``."""
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"

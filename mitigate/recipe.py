@@ -17,14 +17,43 @@ class Recipe(nn.Module):
     Parameters with ``requires_grad`` False are never given to the optimiser.
     """
 
+    ahead = False  # whether jobs depend on no weights, so that workers may do them ahead of time
+
+    def start(self) -> None:
+        """Make what must be there before the first batch, such as a cache of features; called once,
+        under the trainer's precision."""
+
     def batch(self, step: int) -> dict[str, Any]:
         """Return the batch of ``step`` (from 0): a pure function of (seed, step, weights).
 
         Tensors are moved to the training device. ``episode_ids`` (list of str), if there, are
         named when the loss is not finite. Anything built up over steps (a buffer) must be rebuilt
         from the seed and the weights or saved as extra state, or a resumed run will differ.
+
+        A recipe defines this, or :meth:`jobs`, :meth:`work` and :meth:`collate`.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no batch(step)")
+
+    def jobs(self, step: int) -> list[Any]:
+        """Return the pieces of work that the batch of ``step`` is made from, for worker processes;
+        none if :meth:`batch` makes it alone.
+
+        How many there are must not depend on the number of workers. A job is all that
+        :meth:`work` needs beside the settings, the seed and the weights, such as the step, the
+        piece's number and the schedule's state; it is pickled, as is the recipe.
+        """
+        return []
+
+    def work(self, job: Any) -> Any:
+        """Return what ``job`` asks for, picklable: a pure function of job, seed and weights.
+
+        Called in eval mode without gradients, on a copy of the recipe in a worker process.
+        """
+        raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no work(job)")
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        """Return the batch of ``step`` from what its jobs gave, in their order."""
+        raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no collate")
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         """Return scalars: ``loss`` (differentiable) and whatever else is worth logging."""

@@ -84,6 +84,7 @@ class Cell:
                         f"seed={self.seed}",
                         f"folder={self.folder / 'run'}",
                         "evaluation.enabled=false",
+                        "workers=0",  # a cell has one core
                     ],
                 )
             )

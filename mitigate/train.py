@@ -8,6 +8,7 @@ the last one stopped. Afterwards the agent is evaluated before and after.
 from __future__ import annotations
 
 import json
+import math
 import re
 import sys
 from collections.abc import Iterator
@@ -23,13 +24,17 @@ from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
-from mitigate import checkpoint, cli, seeding
+from mitigate import checkpoint, cli, precision, seeding
 from mitigate.build import build, build_agent
 from mitigate.evaluate import EvaluationConfig, conditions, episodes, load
 from mitigate.files import atomic_text
+from mitigate.progress import duration, say
 from mitigate.trainer import Trainer
+from mitigate.workers import Workers, cores
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
+EPISODE_COST = 0.15  # seconds of one core for an episode, on the machine of precision.REFERENCE
+EPISODES = 300  # of a list, where the estimate need not open it
 IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
 NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
 
@@ -55,10 +60,12 @@ class TrainerConfig:
 
 @dataclass
 class StageConfig:
-    """One stage: what to train (a ``_target_`` node) and how."""
+    """One stage: what to train (a ``_target_`` node), how, and what a step costs: seconds on the
+    machine of ``precision.REFERENCE``, for the estimate at the start alone."""
 
     recipe: Any = MISSING
     trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    cost: float | None = None
 
 
 @dataclass
@@ -70,8 +77,10 @@ class TrainConfig:
     severity: float = 0.6
     severity_depth: float | None = None
     init: str | None = None
+    rollouts: int = 24
     runs: str = "runs"
     folder: str | None = None
+    workers: int | None = None
     report: str = "mitigate.evaluate.report_before_after"
     agent: Any = MISSING
     env: Any = MISSING
@@ -93,10 +102,14 @@ def run(cfg: DictConfig) -> Path:
     """
     check(cfg)
     folder = Path(cfg.folder or default_folder(cfg))
+    say(plan(cfg, folder))
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
-    for name, stage in cfg.stages.items():
-        if stage is not None:
-            train_stage(cfg, name, stage, agent, folder / name)
+    with Workers(cores() if cfg.workers is None else cfg.workers) as workers:
+        for name, stage in cfg.stages.items():
+            if stage is not None:
+                stage.trainer.precision = train_stage(
+                    cfg, name, stage, agent, folder / name, workers
+                )
     agent.cpu().eval()
     checkpoint.save_agent(agent, folder / "agent")
     OmegaConf.save(OmegaConf.create({"agent": _plain(cfg.agent)}), folder / "agent" / "config.yaml")
@@ -111,9 +124,15 @@ def run(cfg: DictConfig) -> Path:
 
 
 def train_stage(
-    cfg: DictConfig, name: str, stage: DictConfig, agent: nn.Module, folder: Path
-) -> None:
-    """Train ``agent`` in place through one stage; a finished stage is loaded from ``folder``."""
+    cfg: DictConfig,
+    name: str,
+    stage: DictConfig,
+    agent: nn.Module,
+    folder: Path,
+    workers: Workers | None = None,
+) -> str:
+    """Train ``agent`` in place through one stage, and return the precision it was trained in; a
+    finished stage is loaded from ``folder``."""
     seeding.seed_everything(cfg.seed, "stage", name)
     start = checkpoint.weights_sha(agent)
     agent.requires_grad_(True)
@@ -127,8 +146,35 @@ def train_stage(
     if not checkpoint.checkpoints(folder):  # else the trainer compares first, and may refuse
         with atomic_text(folder / IDENTITY) as file:
             json.dump(identity, file, indent=2)
-    settings = {**_set(stage.trainer), **_set(cfg.trainer)}
-    Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings).fit()
+    settings = {"name": name, "workers": workers, **_settings(cfg, stage)}
+    trainer = Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings)
+    trainer.fit()
+    return trainer.precision
+
+
+def plan(cfg: DictConfig, folder: Path) -> str:
+    """Return what a run is going to do and how long that will take here, for all of it."""
+    stages = {str(name): stage for name, stage in cfg.stages.items() if stage is not None}
+    steps = {name: _settings(cfg, stage).get("steps", 0) for name, stage in stages.items()}
+    seconds: list[float] = []
+    for name, stage in stages.items():
+        done = checkpoint.checkpoints(folder / name)
+        left = steps[name] - (checkpoint.steps_done(done[-1]) if done else 0)
+        seconds.append(math.nan if stage.cost is None else max(0, left) * stage.cost)
+    quick, agents = cfg.evaluation, 1 if cfg.init is None else 2
+    listed = "all" if quick.episodes is None else quick.episodes
+    parts = [f"{name} {count} steps" for name, count in steps.items()]
+    if quick.enabled and cfg.report == TrainConfig.report:
+        walked = agents * len(cfg.suite.conditions) * (quick.episodes or EPISODES)
+        seconds.append(walked * EPISODE_COST / (quick.workers or cores()))
+        parts.append(f"{agents} x {listed} episodes x {len(cfg.suite.conditions)} conditions")
+    total = sum(seconds) * precision.probe().fp32 / precision.REFERENCE
+    about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
+    return f"{cfg.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"
+
+
+def _settings(cfg: DictConfig, stage: DictConfig) -> dict[str, Any]:
+    return {**_set(stage.trainer), **_set(cfg.trainer)}
 
 
 def check(cfg: DictConfig) -> None:

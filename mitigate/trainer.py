@@ -19,10 +19,11 @@ from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate import checkpoint, seeding
 from mitigate.journal import Journal
+from mitigate.precision import choose, computing
 from mitigate.recipe import Recipe
+from mitigate.workers import Batches, Workers
 
 SCHEDULES = ("cosine", "constant", "linear")
-PRECISIONS = ("fp32", "bf16")
 
 
 class LossNotFinite(ValueError):
@@ -44,8 +45,13 @@ class Trainer:
             always written at the end).
         keep: how many checkpoints to keep.
         seed: of data order and noise.
-        precision: one of ``PRECISIONS``; bf16 is autocast, weights stay float32.
+        precision: one of ``precision.CHOICES``, of all that networks compute here; bf16 is
+            autocast, weights stay float32. A checkpoint keeps what "auto" was; a run that is
+            resumed goes on in that.
         device: "auto" (CUDA if there), or any torch device.
+        workers: processes that make batches (``Recipe.jobs``); None makes them in this one, to
+            the same bits.
+        name: of the stage in what is printed; None: of the recipe's class.
         config: JSON-able description of the run. A checkpoint made under another is refused.
 
     Raises:
@@ -69,12 +75,13 @@ class Trainer:
         figure_every: int = 0,
         keep: int = 2,
         seed: int = 0,
-        precision: str = "fp32",
+        precision: str = "auto",
         device: str = "auto",
+        workers: Workers | None = None,
+        name: str | None = None,
         config: dict[str, Any] | None = None,
     ) -> None:
         _check("trainer.schedule", schedule, SCHEDULES)
-        _check("trainer.precision", precision, PRECISIONS)
         if steps < 1 or keep < 1 or lr <= 0:
             raise ValueError(
                 f"trainer.steps ({steps}) and trainer.keep ({keep}) must be at least 1, "
@@ -88,11 +95,12 @@ class Trainer:
         self.log_every, self.save_every = log_every, save_every
         self.eval_every, self.figure_every = eval_every, figure_every
         self.grad_clip = grad_clip
-        self.bf16 = precision == "bf16"
         found = "cuda" if torch.cuda.is_available() else "cpu"
         self.device = torch.device(found if device == "auto" else device)
+        self.asked, self.precision = precision, choose(precision, self.device)
+        self.workers = workers
         self.recipe = recipe.to(self.device)
-        self.name = type(recipe).__name__
+        self.name = name or type(recipe).__name__
         self.config = {
             **(config or {}),
             "trainer": {
@@ -103,7 +111,7 @@ class Trainer:
                 "schedule": schedule,
                 "grad_clip": grad_clip,
                 "seed": seed,
-                "precision": precision,
+                "precision": self.precision,
             },
         }
         groups = _trainable(recipe.parameter_groups(), self.name)
@@ -129,9 +137,12 @@ class Trainer:
     def _train(self, start: int, journal: Journal) -> None:
         sums: dict[str, float] = defaultdict(float)
         counted, since = 0, time.monotonic()
+        with computing(self.precision, self.device):
+            self.recipe.start()
         self.recipe.train()
+        batches = Batches(self.recipe, self.workers, self.steps, self.precision, self.device)
         for step in range(start, self.steps):
-            for name, value in self._step(step).items():
+            for name, value in self._step(step, batches).items():
                 sums[name] += value
             counted, done = counted + 1, step + 1
             journal.advance()
@@ -151,10 +162,12 @@ class Trainer:
     def _due(self, every: int, done: int) -> bool:
         return bool(every) and (done % every == 0 or done == self.steps)
 
-    def _step(self, step: int) -> dict[str, float]:
+    def _step(self, step: int, batches: Batches) -> dict[str, float]:
+        began = time.monotonic()
         seeding.seed_everything(self.seed, "step", step)
-        batch = to_device(self.recipe.batch(step), self.device)
-        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.bf16):
+        batch = to_device(batches.batch(step), self.device)
+        waited = time.monotonic() - began
+        with computing(self.precision, self.device):
             values = self.recipe(batch)
         loss = values["loss"]
         self.optimizer.zero_grad(set_to_none=True)
@@ -165,7 +178,7 @@ class Trainer:
             raise LossNotFinite(self._diverged(step, loss, norm, batch))
         self.optimizer.step()
         self.scheduler.step()
-        values = {**values, "grad_norm": norm}
+        values = {**values, "grad_norm": norm, "batch_s": waited}
         return {name: float(torch.as_tensor(value).detach()) for name, value in values.items()}
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
@@ -203,12 +216,26 @@ class Trainer:
         }
         checkpoint.save(self.folder, state, keep=self.keep)
 
+    def _keep_precision(self, config: dict[str, Any]) -> None:
+        """Go on in the precision of the checkpoint, if none was asked for by name."""
+        kept = config.get("trainer", {}).get("precision")
+        if self.asked != "auto" or kept in (None, self.precision):
+            return
+        print(
+            f"{self.name}: goes on in {kept}, as it began, where this machine would choose "
+            f"{self.precision}: the same weights, but more slowly. To train in {self.precision}, "
+            "start anew in another folder (folder=...).",
+            flush=True,
+        )
+        self.precision = self.config["trainer"]["precision"] = kept
+
     def _resume(self) -> int:
         """Load the newest checkpoint, if any, and return the number of updates done."""
         kept = checkpoint.checkpoints(self.folder)
         if not kept:
             return 0
         state = checkpoint.load(kept[-1])
+        self._keep_precision(state["config"])
         different = differences(state["config"], self.config)
         if different:
             raise ValueError(

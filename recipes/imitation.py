@@ -25,8 +25,9 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import agreement, select, waypoint_loss
 from mitigate.corruptions import Schedule
 from mitigate.envs.apartments.drawing import strip
-from mitigate.envs.apartments.renderer import Renderer
-from mitigate.envs.apartments.tasks import draw_training_episode
+from mitigate.envs.apartments.renderer import shared_renderer
+from mitigate.envs.apartments.tasks import draw_training_episode, share_of
+from mitigate.envs.episodes import Episode
 from mitigate.evaluation.success import measure, prior_rates
 from mitigate.files import sha256
 from mitigate.keys import DEPTH, RGB
@@ -36,6 +37,7 @@ from recipes.perception import f1
 
 MODULES = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
 PARTS = (*MODULES, "adapters")
+PIECES = 4  # jobs that the episodes of a step are shared out to (ours)
 _STOP_WEIGHT = 1.5  # one decision in about six is a stop
 
 
@@ -96,47 +98,70 @@ class ImitationRecipe(Recipe):
             parameter.requires_grad_(True)
         if prior is not None:
             schedule.refresh(prior_rates(prior))
-        self._renderer: Renderer | None = None
 
     def identity(self) -> dict[str, str]:
         if self.prior is None:
             return {}
         return {"prior_sha256": sha256(self.prior)}
 
-    def batch(self, step: int) -> dict[str, Any]:
+    def jobs(self, step: int) -> list[tuple]:
+        """(step, piece, of how many, episodes, the schedule's state) of each piece."""
         if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):
             self.refresh(step)
-        rng = generator(self.seed, "imitation", step)
-        episodes = [
-            draw_training_episode(rng, self.apartments, self.ogn_share)
-            for _ in range(self.episodes)
-        ]
-        renderer = self._shared_renderer()
+        parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
+        state = self.schedule.state_dict()
+        return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
+
+    def work(self, job: tuple) -> tuple[list[Trace], dict[str, np.ndarray], np.ndarray]:
+        """Roll out the episodes of a piece with the current weights: what was decided, what was
+        seen at each decision, by entry, and a picture of the first panorama."""
+        step, piece, pieces, _, state = job
+        if state != self.schedule.state_dict():
+            self.schedule.load_state_dict(state)
+        episodes, rngs = self.draw(job)
+        renderer = shared_renderer(self.size)
         worlds = [
-            RenderedWorld(e, f"{step}-{i}", self.schedule, self.seed, renderer)
+            RenderedWorld(e, f"{step}-{piece}-{i}", self.schedule, self.seed, renderer)
             for i, e in enumerate(episodes)
         ]
-        self.agent.eval()
-        tokens = self.agent.tokens([e.instruction.text for e in episodes])
         traces = roll_out(
-            self.agent.planner, tokens, worlds, self.look, follow_oracle=self.follow_oracle, rng=rng
+            self.agent.planner,
+            self.agent.tokens([e.instruction.text for e in episodes]),
+            worlds,
+            self.look,
+            follow_oracle=self.follow_oracle,
+            rngs=rngs,
         )
-        self.agent.train()
         looks = [look for world in worlds for look in world.looks]
+        seen = {name: np.stack([look[name] for look in looks]) for name in self.entries()}
+        return traces, seen, strip(looks[0][RGB])
+
+    def draw(self, job: tuple) -> tuple[list[Episode], list[np.random.Generator]]:
+        """The episodes of a piece, and the generator of each one's rollout."""
+        step, piece, pieces, count, _ = job
+        rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
+        seeds = share_of(self.apartments, piece, pieces)
+        return [draw_training_episode(rng, seeds, self.ogn_share) for rng in rngs], rngs
+
+    def collate(self, step: int, pieces: list[tuple]) -> dict[str, Any]:
+        """All decisions of the pieces, padded, with what was seen."""
+        traces = [trace for found, *_ in pieces for trace in found]
         stacked = {
-            name: torch.from_numpy(np.stack([look[name] for look in looks]))
-            for name in self.entries()
+            name: torch.from_numpy(np.concatenate([seen[name] for _, seen, _ in pieces]))
+            for name in pieces[0][1]
         }
+        self._picture = pieces[0][2]
         if not self.trains_perception:
-            stacked["views"] = torch.stack([v for trace in traces for v in trace.views])
-        self._picture = strip(looks[0][RGB])
+            views = np.stack([view for trace in traces for view in trace.views])
+            stacked["views"] = torch.from_numpy(views)
+        tokens = self.agent.tokens([trace.episode.instruction.text for trace in traces])
         return {**decisions_of(traces), **stacked, "tokens": tokens}
 
     def entries(self) -> tuple[str, ...]:
         """What ``forward`` reads of the looks (``mitigate/agents/rendered.py``)."""
         return (RGB, DEPTH, "concepts", "free", "shows") if self.trains_perception else ("shows",)
 
-    def look(self, worlds: list[RenderedWorld]) -> list[tuple[Tensor, np.ndarray]]:
+    def look(self, worlds: list[RenderedWorld]) -> list[tuple[np.ndarray, np.ndarray]]:
         """What the agent makes of the (corrupted) panorama of each world."""
         for world in worlds:
             world.observe()
@@ -144,19 +169,14 @@ class ImitationRecipe(Recipe):
             torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])).to(self.agent.device)
             for name in (RGB, DEPTH)
         )
-        with torch.autocast(self.agent.device.type, torch.bfloat16):
-            views, _, waypoints = self.agent.perceive(rgb, depth)
+        views, _, waypoints = self.agent.perceive(rgb, depth)
         found = waypoints.float().cpu().numpy()
-        return [(v, select(w)) for v, w in zip(views.float(), found, strict=True)]
+        features = views.float().cpu().numpy()
+        return [(v, select(w)) for v, w in zip(features, found, strict=True)]
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
         """A panorama as the agent saw it in the last batch."""
         return {"panorama": self._picture}
-
-    def _shared_renderer(self) -> Renderer:
-        if self._renderer is None:
-            self._renderer = Renderer(self.size, scenes=self.apartments)
-        return self._renderer
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         views, values = self.perception(batch)
@@ -220,7 +240,7 @@ class ImitationRecipe(Recipe):
             measure(
                 self.agent,
                 self.schedule,
-                self._shared_renderer(),
+                shared_renderer(self.size),
                 episodes=self.refresh_episodes,
                 apartments=self.apartments,
                 seed=self.seed,

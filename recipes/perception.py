@@ -19,13 +19,17 @@ from mitigate.agents.concepts import THINGS, view_labels
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import agreement, free_target, waypoint_loss
 from mitigate.corruptions import Schedule, corrupt_observation
-from mitigate.envs.apartments.drawing import strip
-from mitigate.envs.apartments.renderer import Renderer
+from mitigate.envs.apartments.drawing import side_by_side
+from mitigate.envs.apartments.renderer import shared_renderer
 from mitigate.envs.apartments.simulator import apartment_of
+from mitigate.envs.apartments.tasks import share_of
 from mitigate.evaluation.success import measure
 from mitigate.keys import DEPTH, POSE, RGB, VIEWS
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
+
+
+PIECE = 6  # panoramas that one job renders (ours)
 
 
 class PerceptionRecipe(Recipe):
@@ -34,6 +38,8 @@ class PerceptionRecipe(Recipe):
     without rates starts from those of ``agent`` on ``refresh_episodes`` training episodes each.
     adapters_only: train the agent's adapters and nothing else.
     """
+
+    ahead = True
 
     def __init__(
         self,
@@ -51,7 +57,7 @@ class PerceptionRecipe(Recipe):
         if modality not in ("rgb", "depth"):
             raise ValueError(f"modality={modality!r} is unknown; choose 'rgb' or 'depth'.")
         self.agent, self.modality, self.seed = agent, modality, seed
-        self.apartments, self.panoramas = apartments, panoramas
+        self.apartments, self.panoramas, self.size = apartments, panoramas, size
         self.schedule = schedule or Schedule("clean", 0.0)
         self.refresh_episodes = refresh_episodes
         agent.requires_grad_(False)
@@ -64,47 +70,69 @@ class PerceptionRecipe(Recipe):
             for trained in adapter_parameters(part) if adapters_only else part.parameters():
                 trained.requires_grad_(True)
         self.ring = bool(adapted(agent))  # a ring adapter needs all views of a panorama
-        self.renderer = Renderer(size, scenes=apartments)
 
-    def batch(self, step: int) -> dict[str, Any]:
+    def jobs(self, step: int) -> list[tuple]:
+        """(step, piece, of how many, panoramas, the schedule's state) of each piece."""
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
             self.schedule.refresh(self._measure(step))
-        rng = generator(self.seed, "perception", self.modality, step)
-        rows = [self._panorama(rng, f"{step}-{i}") for i in range(self.panoramas)]
+        pieces = -(-self.panoramas // PIECE)
+        counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
+        state = self.schedule.state_dict()
+        return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]
+
+    def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
+        """(frames, the same before the corruption, labels) of each random pose of a piece."""
+        step, piece, pieces, count, state = job
+        if state != self.schedule.state_dict():
+            self.schedule.load_state_dict(state)
+        rng = generator(self.seed, "perception", self.modality, step, piece)
+        seeds = share_of(self.apartments, piece, pieces)
+        return [self._panorama(rng, seeds, f"{step}-{piece}-{i}") for i in range(count)]
+
+    def collate(self, step: int, pieces: list[list[tuple]]) -> dict[str, Any]:
+        """The pieces as tensors "frames", "clean" and "targets"."""
+        rows = [row for piece in pieces for row in piece]
         names = ("frames", "clean", "targets")
-        return {
+        batch = {
             name: torch.from_numpy(np.stack(column))
             for name, column in zip(names, zip(*rows, strict=True), strict=True)
         }
+        self._last = rows[-1][0]
+        return batch
 
-    def _panorama(self, rng: np.random.Generator, name: str) -> tuple[np.ndarray, ...]:
+    def _panorama(
+        self, rng: np.random.Generator, seeds: range, name: str
+    ) -> tuple[np.ndarray, ...]:
         """Frames, the same before the corruption, and labels of one random pose."""
-        apartment = apartment_of(f"apartments/train/{int(rng.integers(self.apartments)):06d}")
+        apartment = apartment_of(f"apartments/train/{seeds[int(rng.integers(len(seeds)))]:06d}")
         space = apartment.space
         xy = space.centre(int(rng.integers(len(space.cells)))) + rng.uniform(-0.05, 0.05, 2)
         heading = float(rng.uniform(-np.pi, np.pi))
-        self.renderer.load(apartment)
-        rgb, depth, ids = self.renderer.render(float(xy[0]), float(xy[1]), heading)
-        if self.modality == "rgb":
-            target, _ = view_labels(apartment, ids, depth)
-        else:
-            target = free_target(space, xy, heading)
+        views = self._views(rng)
+        renderer = shared_renderer(self.size)
+        renderer.load(apartment)
+        rgb, depth, ids = renderer.render(
+            float(xy[0]), float(xy[1]), heading, views=views, rgb=self.modality == "rgb"
+        )
         frames = {RGB: rgb, DEPTH: depth, POSE: np.array([*xy, heading], np.float32)}
         frames = corrupt_observation(frames, *self.schedule.draw(self.seed, name, 0))
-        self._last = frames
         if self.modality == "depth":
-            return frames[DEPTH], depth, target
-        if self.ring:
-            return frames[RGB], rgb, target
-        # neighbours overlap: half of them teach as much
-        views = np.arange(int(rng.integers(2)), VIEWS, 2)
+            return frames[DEPTH], depth, free_target(space, xy, heading)
+        target, _ = view_labels(apartment, ids, depth)
         return frames[RGB][views], rgb[views], target[views]
+
+    def _views(self, rng: np.random.Generator) -> np.ndarray:
+        """The views of a panorama that are learned from: for RGB every second one, since neighbours
+        overlap and half of them teach as much, but all where ring adapters need them."""
+        if self.modality == "rgb" and not self.ring:
+            return np.arange(int(rng.integers(2)), VIEWS, 2)
+        return np.arange(VIEWS)
 
     def _measure(self, step: int) -> dict[str, float]:
         rates = measure(
             self.agent,
             self.schedule,
-            self.renderer,
+            shared_renderer(self.size),
             episodes=self.refresh_episodes,
             apartments=self.apartments,
             seed=self.seed,
@@ -114,8 +142,8 @@ class PerceptionRecipe(Recipe):
         return rates
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
-        """The last panorama of the last batch."""
-        return {"panorama": strip(self._last[RGB])}
+        """The last views of the last batch: of RGB side by side, of depth in metres as grey."""
+        return {"views": side_by_side(self._last)}
 
     def get_extra_state(self) -> dict[str, Any]:
         return {"schedule": self.schedule.state_dict()}

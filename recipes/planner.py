@@ -14,13 +14,12 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mitigate import precision
 from mitigate.agents import cache
-from mitigate.agents.rollout import roll_out
+from mitigate.agents.rollout import Trace, roll_out
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
-from mitigate.envs.apartments.tasks import draw_training_episode
-from mitigate.seeding import generator
 from recipes.imitation import ImitationRecipe, decisions_of
 
 _DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions
@@ -49,47 +48,44 @@ class PlannerRecipe(ImitationRecipe):
             apartments=cached,
             **others,
         )
+        self.root, self.steps = Path(folder), steps
+        self._caches: dict[int, cache.ApartmentCache] = {}
+
+    def start(self) -> None:
+        """Make the feature caches, in the precision of the training."""
+        agent = self.agent
         encoders = torch.nn.ModuleList(
             [agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head]
         )
         own = agent.rgb_encoder.size
         resized = "" if own == self.size else f"-to-{own}"
-        self.folder = Path(folder) / f"{weights_sha(encoders)}-{self.size}{resized}"
-        self.steps = steps
+        kind = precision.current(agent.device)
+        self.folder = self.root / f"{weights_sha(encoders)}-{self.size}{resized}-{kind}"
         agent.eval()
-        cache.build(agent, self.folder, range(cached), self.size)
-        self.caches = [cache.load(self.folder, seed) for seed in range(cached)]
-        for stored in self.caches if agent.blind else ():
-            stored.blank(agent, self.size)
+        cache.build(agent, self.folder, range(self.apartments), self.size)
 
-    def batch(self, step: int) -> dict[str, Any]:
-        rng = generator(self.seed, "planner", step)
-        episodes = [
-            draw_training_episode(rng, self.apartments, self.ogn_share)
-            for _ in range(self.episodes)
-        ]
-        worlds = [cache.CachedWorld(e, self.caches[int(e.scene_id[-6:])]) for e in episodes]
+    def work(self, job: tuple) -> tuple[list[Trace], dict[str, np.ndarray], None]:
+        step = job[0]
+        episodes, rngs = self.draw(job)
+        worlds = [cache.CachedWorld(e, self.stored(int(e.scene_id[-6:]))) for e in episodes]
         share = max(0.0, 1 - step / (_DECAY * self.steps))
-        self.agent.eval()
-        tokens = self.agent.tokens([e.instruction.text for e in episodes])
-        with torch.autocast(self.agent.device.type, torch.bfloat16):
-            traces = roll_out(
-                self.agent.planner,
-                tokens,
-                worlds,
-                cache.look,
-                follow_oracle=self.follow_oracle + share * (1 - self.follow_oracle),
-                rng=rng,
-            )
-        self.agent.train()
-        views = torch.stack([v for trace in traces for v in trace.views])
-        shows = np.stack([s for world in worlds for s in world.shown])
-        return {
-            **decisions_of(traces),
-            "views": views,
-            "shows": torch.from_numpy(shows),
-            "tokens": tokens,
-        }
+        traces = roll_out(
+            self.agent.planner,
+            self.agent.tokens([e.instruction.text for e in episodes]),
+            worlds,
+            cache.look,
+            follow_oracle=self.follow_oracle + share * (1 - self.follow_oracle),
+            rngs=rngs,
+        )
+        return traces, {"shows": np.stack([s for world in worlds for s in world.shown])}, None
+
+    def stored(self, seed: int) -> cache.ApartmentCache:
+        """The features of a training apartment, as the agent sees them."""
+        if seed not in self._caches:
+            self._caches[seed] = cache.load(self.folder, seed)
+            if self.agent.blind:
+                self._caches[seed].blank(self.agent, self.size)
+        return self._caches[seed]
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
         return {}

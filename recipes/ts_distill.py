@@ -108,14 +108,13 @@ class TeacherStudent(Taught, ImitationRecipe):
         self.temperature = temperature
         self.match = tuple(name for name in match if name != "views" or self.trains_perception)
 
-    def look(self, worlds: list[RenderedWorld]) -> list[tuple[Tensor, np.ndarray]]:
+    def look(self, worlds: list[RenderedWorld]) -> list[tuple[np.ndarray, np.ndarray]]:
         found = super().look(worlds)
         rgb, depth = (
             torch.from_numpy(np.stack([w.looks[-1][name] for w in worlds])).to(self.teacher.device)
             for name in (CLEAN_RGB, CLEAN_DEPTH)
         )
-        with torch.autocast(self.teacher.device.type, torch.bfloat16):
-            views, _, _ = self.teacher.perceive(rgb, depth)
+        views, _, _ = self.teacher.perceive(rgb, depth)
         for world, clean in zip(worlds, views.float().cpu(), strict=True):
             world.looks[-1]["clean_views"] = clean.numpy()
         return found

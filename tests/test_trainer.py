@@ -185,7 +185,7 @@ def test_a_folder_with_another_run_is_refused_by_naming_the_difference(tmp_path)
     ("setting", "words"),
     [
         ({"schedule": "cosin"}, "cosine, constant, linear"),
-        ({"precision": "fp8"}, "fp32, bf16"),
+        ({"precision": "fp8"}, "auto, fp32, bf16"),
         ({"steps": 0}, "at least 1"),
         ({"grad_clip": -1.0}, "0 to clip nothing"),
     ],

@@ -35,7 +35,7 @@ class ApartmentCache:
     none), seen uint64 [n, 12] (bit i: furniture i shows in the middle of the view)."""
 
     def __init__(self, arrays: dict[str, np.ndarray]) -> None:
-        self.xy, self.views = arrays["xy"], torch.from_numpy(arrays["views"])
+        self.xy, self.views = arrays["xy"], arrays["views"]
         self.waypoints, self.seen = arrays["waypoints"], arrays["seen"]
         self.tree = cKDTree(self.xy)
 
@@ -44,12 +44,12 @@ class ApartmentCache:
         """Replace what a blind agent cannot see by what it gets from blanked frames."""
         rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
         views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
-        views, depth = views.cpu(), agent.planner.widths[-1]
+        blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
         if "rgb" in agent.blind:
-            self.views[..., :-depth] = views[0, :, :-depth].half()
+            self.views[..., :-depth] = blanked[:, :-depth]
         if "depth" in agent.blind:
-            self.views[..., -depth:] = views[0, :, -depth:].half()
-            found = select(logits[0].cpu().numpy())
+            self.views[..., -depth:] = blanked[:, -depth:]
+            found = select(logits[0].float().cpu().numpy())
             self.waypoints[:] = 0
             self.waypoints[:, : len(found)] = found
 
@@ -114,8 +114,7 @@ def _features(agent: TopologicalAgent, frames: list[tuple]) -> dict[str, np.ndar
             torch.from_numpy(np.stack([frame[i] for frame in part])).to(agent.device)
             for i in (0, 1)
         )
-        with torch.autocast(agent.device.type, torch.bfloat16):
-            features, _, logits = agent.encode(rgb, depth)
+        features, _, logits = agent.encode(rgb, depth)
         views.append(features.half().cpu().numpy())
         for row, grid in enumerate(logits.float().cpu().numpy(), first):
             found = select(grid)
@@ -147,7 +146,7 @@ class CachedWorld:
         self.landmarks = np.uint64(sum(1 << i for i in landmarks(episode)))
         self.shown: list[np.ndarray] = []
 
-    def look(self) -> tuple[torch.Tensor, np.ndarray]:
+    def look(self) -> tuple[np.ndarray, np.ndarray]:
         waypoints = self.cache.waypoints[self.index]
         waypoints = waypoints[waypoints[:, 1] > 0].copy()
         waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (
@@ -155,7 +154,8 @@ class CachedWorld:
         )
         shows = (self.cache.seen[self.index] & self.landmarks) > 0
         self.shown.append(np.roll(shows.astype(np.float32), self.turn))
-        return self.cache.views[self.index].float().roll(self.turn, 0), waypoints
+        views = self.cache.views[self.index].astype(np.float32)
+        return np.roll(views, self.turn, 0), waypoints
 
     def pose(self) -> np.ndarray:
         return np.array([*self.cache.xy[self.index], np.radians(VIEW_STEP_DEGREES) * self.turn])
@@ -170,7 +170,7 @@ class CachedWorld:
         return float(self.field[self.space.cell_of(xy)])
 
 
-def look(worlds: list[CachedWorld]) -> list[tuple[torch.Tensor, np.ndarray]]:
+def look(worlds: list[CachedWorld]) -> list[tuple[np.ndarray, np.ndarray]]:
     """Stored views and waypoints of where each world's agent is."""
     return [world.look() for world in worlds]
 

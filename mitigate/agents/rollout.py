@@ -33,8 +33,8 @@ class World(Protocol):
     def distance(self, xy: np.ndarray) -> float: ...
 
 
-# looks around in some worlds at once: views [12, F] (tensor) and waypoints [n, 2] of each
-Look = Callable[[list], list[tuple[torch.Tensor, np.ndarray]]]
+# looks around in some worlds at once: views float32 [12, F] and waypoints [n, 2] of each
+Look = Callable[[list], list[tuple[np.ndarray, np.ndarray]]]
 
 
 @dataclass
@@ -53,7 +53,7 @@ class Trace:
 
     episode: Episode
     steps: list[Step] = field(default_factory=list)
-    views: list[torch.Tensor] = field(default_factory=list)
+    views: list[np.ndarray] = field(default_factory=list)
 
 
 def oracle(world: World, graph: TopologicalMap, decision: Decision) -> Step:
@@ -80,14 +80,15 @@ def roll_out(
     look: Look,
     *,
     follow_oracle: float,
-    rng: np.random.Generator,
+    rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
     """Run all worlds to the oracle's stop or ``limit`` decisions.
 
     Each decision follows the oracle with probability ``follow_oracle``, else the planner's own
     distribution over ghosts (sampled). The planner's stop is never taken, so that every trace holds
-    the decisions after a wrong one.
+    the decisions after a wrong one. ``rngs``: one generator a world, so that a world's draws do not
+    depend on which others run beside it.
     """
     graphs = [TopologicalMap() for _ in worlds]
     traces = [Trace(world.episode) for world in worlds]
@@ -103,16 +104,16 @@ def roll_out(
                 oracle(worlds[i], graphs[i], graphs[i].decision(worlds[i].pose()))
             )
         running = [i for i in running if traces[i].steps[-1].target[0] < 1.0]
-        own = [i for i in running if rng.random() >= follow_oracle]
-        chosen = {i: _draw(traces[i].steps[-1].target[1:], rng) for i in running}
+        own = [i for i in running if rngs[i].random() >= follow_oracle]
+        chosen = {i: _draw(traces[i].steps[-1].target[1:], rngs[i]) for i in running}
         if follow_oracle < 1.0 and running:
-            seen_now = torch.stack([traces[i].views[-1] for i in running]).float()
+            seen_now = torch.from_numpy(np.stack([traces[i].views[-1] for i in running]))
             fresh = planner.look(seen_now.to(tokens.device))
             for row, i in enumerate(running):
                 tokens_of[i].append(fresh[row])
         if own:
             chosen.update(
-                zip(own, _planned(planner, text, own, traces, tokens_of, rng), strict=True)
+                zip(own, _planned(planner, text, own, traces, tokens_of, rngs), strict=True)
             )
         for i in running:
             ghost = traces[i].steps[-1].decision.ghosts[chosen[i]]
@@ -130,7 +131,7 @@ def _planned(
     own: list[int],
     traces: list[Trace],
     tokens_of: list[list[torch.Tensor]],
-    rng: np.random.Generator,
+    rngs: Sequence[np.random.Generator],
 ) -> list[int]:
     offsets = np.cumsum([0, *(len(tokens_of[i]) for i in own)])[:-1]
     views = torch.stack([t for i in own for t in tokens_of[i]])
@@ -140,7 +141,7 @@ def _planned(
     first = 1 + batch.nodes.shape[1]
     probabilities = logits[:, first:].softmax(-1).double().cpu().numpy()
     counts = [len(traces[i].steps[-1].decision.ghosts) for i in own]
-    return [_draw(p[:n], rng) for p, n in zip(probabilities, counts, strict=True)]
+    return [_draw(p[:n], rngs[i]) for i, p, n in zip(own, probabilities, counts, strict=True)]
 
 
 def _draw(probabilities: np.ndarray, rng: np.random.Generator) -> int:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 import torch
 
 from mitigate import seeding
 from mitigate.agents.topological import TopologicalAgent
+from mitigate.workers import Batches
 from recipes.planner import PlannerRecipe
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
@@ -15,7 +17,9 @@ SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -> PlannerRecipe:
     seeding.seed_everything(0, "agent")
     agent = TopologicalAgent(16, SMALL, blind=blind, size=own)
-    return PlannerRecipe(agent, str(folder), steps=2, cached=1, episodes=2, size=size)
+    made = PlannerRecipe(agent, str(folder), steps=2, cached=1, episodes=2, size=size)
+    made.start()
+    return made
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +29,7 @@ def folder(tmp_path_factory):
 
 def spread(made: PlannerRecipe) -> tuple[float, float]:
     """How much the RGB and the depth features of the stored poses differ."""
-    views, depth = made.caches[0].views.float(), made.agent.planner.widths[-1]
+    views, depth = made.stored(0).views.astype(np.float32), made.agent.planner.widths[-1]
     return float(views[..., :-depth].std(0).mean()), float(views[..., -depth:].std(0).mean())
 
 
@@ -34,7 +38,7 @@ def test_a_blind_run_leaves_whole_features_to_the_next(folder):
     assert spread(recipe(folder, ("rgb",)))[0] == 0.0
     seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
     assert seeing.folder == deaf.folder and min(spread(seeing)) > 0
-    assert torch.equal(seeing.caches[0].views, deaf.caches[0].views)
+    assert np.array_equal(seeing.stored(0).views, deaf.stored(0).views)
     assert spread(recipe(folder, ("depth",)))[1] == 0.0
 
 
@@ -45,7 +49,7 @@ def test_views_of_another_size_are_stored_apart(folder):
 
 def test_a_batch_trains_the_planner_alone(folder):
     made = recipe(folder)
-    losses = made(made.batch(0))
+    losses = made(Batches(made, None, 1, "fp32", torch.device("cpu")).batch(0))
     losses["loss"].backward()
     moved = {n.partition(".")[0] for n, p in made.agent.named_parameters() if p.grad is not None}
     assert moved == {"planner"} and torch.isfinite(losses["loss"])

@@ -100,6 +100,14 @@ def draw_path(
     axes.plot(*points[-1], "X", color=colour, ms=8, zorder=7)
 
 
+def side_by_side(views: np.ndarray) -> np.ndarray:
+    """Views [V, H, W, 3] uint8, or [V, H, W, 1] metres drawn as grey, as uint8 [H, V * W, 3]."""
+    if views.shape[-1] == 1:
+        grey = np.nan_to_num(views, posinf=0.0) / max(1e-6, float(np.nanmax(views)))
+        views = np.repeat((255 * grey.clip(0, 1)).astype(np.uint8), 3, axis=-1)
+    return np.concatenate(list(views), axis=1)
+
+
 def strip(
     views: np.ndarray, order: Sequence[int] = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
 ) -> np.ndarray:

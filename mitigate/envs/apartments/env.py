@@ -6,7 +6,6 @@ Only this file and ``mitigate/envs/transforms.py`` import torchrl (4 s); the sim
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import lru_cache
 from pathlib import Path
 
 import torch
@@ -14,7 +13,7 @@ from tensordict import TensorDict, TensorDictBase
 from torchrl.data import Bounded, Categorical, Composite, NonTensor, Unbounded
 from torchrl.envs import EnvBase
 
-from mitigate.envs.apartments.renderer import Renderer
+from mitigate.envs.apartments.renderer import shared_renderer
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import SUCCESS_METRES, draw_training_episode
 from mitigate.envs.episodes import Episode, read_episodes
@@ -23,12 +22,6 @@ from mitigate.keys import DEPTH, EPISODE, FRAME, INSTRUCTION, POSE, RGB, VIEWS
 from mitigate.seeding import generator
 
 ACTIONS = 4  # STOP, FORWARD, LEFT, RIGHT of mitigate.keys
-
-
-@lru_cache(maxsize=4)
-def _shared_renderer(size: int) -> Renderer:
-    """One renderer a process and size: Panda3D draws every open buffer at every frame."""
-    return Renderer(size)
 
 
 class ApartmentsEnv(EnvBase):
@@ -80,7 +73,7 @@ class ApartmentsEnv(EnvBase):
     def simulator(self) -> Simulator:
         """The simulator of the current episode; opened at first use, so specs cost no rendering."""
         if self._simulator is None:
-            self._simulator = Simulator(self.size, renderer=_shared_renderer(self.size))
+            self._simulator = Simulator(self.size, renderer=shared_renderer(self.size))
         return self._simulator
 
     def _make_specs(self) -> None:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import weakref
 from collections import OrderedDict
+from collections.abc import Iterable
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -23,6 +25,7 @@ from mitigate.keys import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 EYE = 1.25  # camera height, metres (VLN-CE)
 FARTHEST = 17.0  # metres; longer than any line through an apartment
 LEAST = 4  # pixels of a view (ours)
+SCENES = 512  # apartments whose geometry a shared renderer keeps, 0.2 MB each (ours)
 _COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
 _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
 
@@ -77,6 +80,7 @@ class Renderer:
         self.buffer.add_render_texture(self.image, core.GraphicsOutput.RTM_copy_ram)
         self.buffer.set_clear_color((0, 0, 0, 1))
         self.textures = [self._texture(pattern) for pattern in PATTERNS]
+        self.regions: list[list[Any]] = []  # of the RGB views, and of the id views
         self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
         self.scenes: OrderedDict[int, tuple[Any, Any, Faces]] = OrderedDict()
         self.capacity, self.current = scenes, -1
@@ -96,23 +100,39 @@ class Renderer:
         self.current = apartment.seed
 
     def render(
-        self, x: float, y: float, heading: float
+        self,
+        x: float,
+        y: float,
+        heading: float,
+        *,
+        views: Iterable[int] = range(VIEWS),
+        rgb: bool = True,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S]."""
+        """rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S].
+
+        ``views``: those that are wanted; the others stay 0, in ids -1. ``rgb`` False leaves the
+        colours out. Both save time and change no pixel of what is drawn.
+        """
         for rig in (self.rig_rgb, self.rig_ids):
             rig.set_pos(x, y, EYE)
             rig.set_h(np.degrees(heading))
+        wanted = np.zeros(VIEWS, np.bool_)
+        wanted[list(views)] = True
+        for layer, drawn in zip(self.regions, (wanted & rgb, wanted), strict=True):
+            for region, active in zip(layer, drawn, strict=True):
+                region.set_active(bool(active))
         self.buffer.set_active(True)
         self.engine.render_frame()
         self.buffer.set_active(False)
         raw = np.frombuffer(self.image.get_ram_image(), np.uint8)
         frame = raw.reshape(2 * _ROWS * self.size, _COLUMNS * self.size, 4)
-        rgb, depth, ids = _split(frame, self.size, self.faces.plane, x, y, EYE, heading, _NEAR)
-        return rgb, depth, ids
+        plane = self.faces.plane
+        return _split(frame, self.size, plane, x, y, EYE, heading, _NEAR, wanted, rgb)
 
     def _rig(self, layer: int) -> Any:
         core = self.core
         rig = core.NodePath(f"rig{layer}")
+        regions = []
         for k in range(VIEWS):
             lens = core.PerspectiveLens()
             lens.set_fov(HFOV_DEGREES, HFOV_DEGREES)
@@ -126,6 +146,8 @@ class Renderer:
             )
             region.set_camera(camera)
             region.set_clear_depth_active(True)
+            regions.append(region)
+        self.regions.append(regions)
         return rig
 
     def _texture(self, pattern: str) -> Any:
@@ -195,6 +217,13 @@ class Renderer:
         return node
 
 
+@lru_cache(maxsize=4)
+def shared_renderer(size: int) -> Renderer:
+    """The one renderer of this process for views of ``size`` pixels: whoever draws through it finds
+    the scenes that others have built. It keeps ``SCENES`` of them."""
+    return Renderer(size, scenes=SCENES)
+
+
 def _make_pipe(core: Any, name: str) -> Any:
     selection = core.GraphicsPipeSelection.get_global_ptr()
     kind = "TinyOffscreenGraphicsPipe" if name == "p3tinydisplay" else ""
@@ -213,12 +242,14 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def _split(frame, size, plane, x, y, z, heading, near):
+def _split(frame, size, plane, x, y, z, heading, near, wanted, colours):
     """Tiles (bottom-up BGRA) to views; ids from the upper half; depth by ray-plane meeting."""
-    rgb = np.empty((12, size, size, 3), np.uint8)
+    rgb = np.zeros((12, size, size, 3), np.uint8)
     depth = np.zeros((12, size, size, 1), np.float32)
-    ids = np.empty((12, size, size), np.int32)
+    ids = np.full((12, size, size), -1, np.int32)
     for k in range(12):
+        if not wanted[k]:
+            continue
         angle = heading - k * np.pi / 6
         fx, fy, rx, ry = -np.sin(angle), np.cos(angle), np.cos(angle), np.sin(angle)
         row0, column0 = (k // 4) * size, (k % 4) * size
@@ -227,8 +258,9 @@ def _split(frame, size, plane, x, y, z, heading, near):
             r1 = row0 + size - 1 - i
             for j in range(size):
                 right = (2 * j + 1) / size - 1
-                for c in range(3):
-                    rgb[k, i, j, c] = frame[r1, column0 + j, 2 - c]
+                if colours:
+                    for c in range(3):
+                        rgb[k, i, j, c] = frame[r1, column0 + j, 2 - c]
                 r2, c2 = r1 + 3 * size, column0 + j
                 code = (
                     (frame[r2, c2, 2] >> 3)

@@ -146,6 +146,12 @@ def _episode(
     )
 
 
+def share_of(apartments: int, piece: int, pieces: int) -> range:
+    """The training seeds, of the first ``apartments``, that piece ``piece`` of ``pieces`` of every
+    step draws from: a worker process then builds only the apartments of its pieces."""
+    return range(piece % apartments, apartments, pieces)
+
+
 def landmarks(episode: Episode) -> list[int]:
     """Furniture that marks the goal: the one an instruction ends at, or all of an OGN category."""
     if episode.info["task"] == "vln":
@@ -166,12 +172,16 @@ def _pooled(seed: int, task: str, index: int) -> Episode:
     return make_episode(apartment_of(f"apartments/train/{seed:06d}"), task, index, seed=1)
 
 
-def draw_training_episode(rng: np.random.Generator, apartments: int, ogn_share: float) -> Episode:
-    """A training episode among the first ``apartments`` training seeds, its instruction told anew.
+def draw_training_episode(
+    rng: np.random.Generator, apartments: int | range, ogn_share: float
+) -> Episode:
+    """A training episode in one of ``apartments``, training seeds or how many of the first, its
+    instruction told anew.
 
     A pure function of the generator's state and the arguments; ``_POOL`` paths an apartment.
     """
-    seed, index = int(rng.integers(apartments)), int(rng.integers(_POOL))
+    seeds = range(apartments) if isinstance(apartments, int) else apartments
+    seed, index = seeds[int(rng.integers(len(seeds)))], int(rng.integers(_POOL))
     task = "ogn" if rng.random() < ogn_share else "vln"
     episode = _pooled(seed, task, index)
     if task == "vln":
