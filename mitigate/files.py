@@ -63,8 +63,11 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
 
 def sha256(path: Path | str) -> str:
     """Return the sha256 of a file, as hex."""
+    digest = hashlib.sha256()
     with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+        while block := file.read(1 << 20):
+            digest.update(block)
+    return digest.hexdigest()
 
 
 def write_bytes(path: Path | str, data: bytes) -> None:

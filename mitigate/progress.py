@@ -8,6 +8,7 @@ interpreter lock for ten seconds in a single call; torch, numpy, sleeps and subp
 
 from __future__ import annotations
 
+import math
 import os
 import sys
 import threading
@@ -100,11 +101,16 @@ class Progress:
         """Return e.g. ``train: step 120/700, 3.1 steps/s, 3 min 10 s left, loss 0.31``."""
         elapsed, now = time.monotonic() - self._began, self.done - self.start
         if now > 0:
-            left = (self.total - self.done) * elapsed / now
-            pace = [_rate(now / max(elapsed, 1e-9), self.unit), f"{duration(left)} left"]
+            pace = [_rate(now / max(elapsed, 1e-9), self.unit), f"{duration(self.left())} left"]
         else:
             pace = [f"{duration(elapsed)} so far"]
         return ", ".join([self._place(), *pace, *self._notes()])
+
+    def left(self) -> float:
+        """Return the seconds that the rest takes at the mean pace so far; infinite before that."""
+        now = self.done - self.start
+        pace = (time.monotonic() - self._began) / now if now > 0 else math.inf
+        return (self.total - self.done) * pace if self.done < self.total else 0.0
 
     def _place(self) -> str:
         return f"{self.title}: {self.unit} {self.done}/{self.total}"
@@ -135,7 +141,9 @@ def say(text: str) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Return e.g. ``8 s``, ``3 min 10 s`` or ``1 h 05 min``."""
+    """Return e.g. ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or, if infinite, ``unknown time``."""
+    if math.isinf(seconds):
+        return "unknown time"
     whole = round(seconds)
     if whole < 60:
         return f"{whole} s"

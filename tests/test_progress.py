@@ -79,6 +79,7 @@ def test_a_line_says_pace_time_left_and_the_latest_note(monkeypatch):
     now = [100.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     bar = Progress("perception_rgb", 700, start=100)
+    assert bar.line() == "perception_rgb: step 100/700, 0 s so far" and bar.left() == float("inf")
     now[0] += 10
     bar.advance(20, note="loss 0.31")
     assert bar.line() == ("perception_rgb: step 120/700, 2 steps/s, 4 min 50 s left, loss 0.31")
@@ -222,7 +223,14 @@ def test_say_prints_with_and_without_a_job(capsys):
 
 @pytest.mark.parametrize(
     ("seconds", "words"),
-    [(0.4, "0 s"), (59.4, "59 s"), (59.6, "1 min 00 s"), (190, "3 min 10 s"), (3900, "1 h 05 min")],
+    [
+        (0.4, "0 s"),
+        (59.4, "59 s"),
+        (59.6, "1 min 00 s"),
+        (190, "3 min 10 s"),
+        (3900, "1 h 05 min"),
+        (float("inf"), "unknown time"),
+    ],
 )
 def test_durations_are_words(seconds, words):
     assert duration(seconds) == words

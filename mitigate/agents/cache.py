@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 import torch
 from scipy.spatial import cKDTree
-from tqdm import tqdm
 
 from mitigate.agents.concepts import view_labels
 from mitigate.agents.topological import TopologicalAgent
@@ -25,6 +24,7 @@ from mitigate.envs.apartments.simulator import goal_field
 from mitigate.envs.apartments.tasks import from_vlnce, heading_of, landmarks
 from mitigate.envs.episodes import Episode
 from mitigate.keys import VIEW_STEP_DEGREES, VIEWS
+from mitigate.progress import Progress
 
 SPACING = 0.5  # metres
 _BATCH = 16  # panoramas encoded at once
@@ -74,19 +74,27 @@ def build(agent: TopologicalAgent, folder: Path, apartments: range, size: int = 
 
     It holds what the encoders see, also those of a blind agent (``ApartmentCache.blank``).
     """
-    renderer = Renderer(size, scenes=2)
     folder.mkdir(parents=True, exist_ok=True)
-    for seed in tqdm(
-        [s for s in apartments if not path_of(folder, s).exists()],
-        desc="feature cache",
-        disable=None,
-    ):
-        apartment = apartment_of(f"apartments/train/{seed:06d}")
-        renderer.load(apartment)
-        xy_all = (apartment.space.cells[:, ::-1] + 0.5) * 0.1
-        xy = xy_all[lattice(apartment.space.cells, xy_all)]
-        arrays = _features(agent, [_frames(renderer, apartment, p) for p in xy]) | {"xy": xy}
-        write_atomically(path_of(folder, seed), partial(_save, arrays))
+    missing = [seed for seed in apartments if not path_of(folder, seed).exists()]
+    if not missing:
+        return
+    done = len(apartments) - len(missing)
+    with Progress("feature cache", len(apartments), unit="apartment", start=done) as progress:
+        renderer = Renderer(size, scenes=2)
+        for seed in missing:
+            arrays = _arrays(agent, renderer, apartment_of(f"apartments/train/{seed:06d}"))
+            write_atomically(path_of(folder, seed), partial(_save, arrays))
+            progress.advance()
+
+
+def _arrays(
+    agent: TopologicalAgent, renderer: Renderer, apartment: Apartment
+) -> dict[str, np.ndarray]:
+    """Arrays of an :class:`ApartmentCache` of ``apartment``."""
+    renderer.load(apartment)
+    xy_all = (apartment.space.cells[:, ::-1] + 0.5) * 0.1
+    xy = xy_all[lattice(apartment.space.cells, xy_all)]
+    return _features(agent, [_frames(renderer, apartment, p) for p in xy]) | {"xy": xy}
 
 
 def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
