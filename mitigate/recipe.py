@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import torch
 from torch import Tensor, nn
 
 
@@ -30,9 +31,13 @@ class Recipe(nn.Module):
         named when the loss is not finite. Anything built up over steps (a buffer) must be rebuilt
         from the seed and the weights or saved as extra state, or a resumed run will differ.
 
-        A recipe defines this, or :meth:`jobs`, :meth:`work` and :meth:`collate`.
+        A recipe defines this, or :meth:`jobs`, :meth:`work` and :meth:`collate`, of which this then
+        makes it without worker processes.
         """
-        raise NotImplementedError(f"{type(self).__name__} defines no batch(step)")
+        jobs = self.jobs(step)
+        if not jobs:
+            raise NotImplementedError(f"{type(self).__name__} defines no batch(step)")
+        return self.collate(step, [do(self, job) for job in jobs])
 
     def jobs(self, step: int) -> list[Any]:
         """Return the pieces of work that the batch of ``step`` is made from, for worker processes;
@@ -84,3 +89,15 @@ class Recipe(nn.Module):
     def figures(self, step: int) -> dict[str, np.ndarray]:
         """Return pictures to log, each uint8 ``[H, W, 3]``."""
         return {}
+
+
+@torch.no_grad()
+def do(recipe: Recipe, job: Any) -> Any:
+    """Return ``recipe.work(job)``, done in eval mode and, on a CPU, on one thread."""
+    threads, training = torch.get_num_threads(), recipe.training
+    try:
+        torch.set_num_threads(1)  # sums in the same order in any number of processes
+        return recipe.eval().work(job)
+    finally:
+        recipe.train(training)
+        torch.set_num_threads(threads)

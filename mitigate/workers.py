@@ -22,7 +22,7 @@ import torch
 
 from mitigate import precision
 from mitigate.progress import say
-from mitigate.recipe import Recipe
+from mitigate.recipe import Recipe, do
 
 AHEAD = 3  # steps whose pieces are ordered before they are needed (ours)
 DEATHS = 1  # times that a worker is started anew before the training stops
@@ -103,12 +103,10 @@ class Batches:
         """Return the batch of ``step``; steps are asked for in order."""
         recipe = self.recipe
         if not self._ordered:
-            jobs = recipe.jobs(step)
+            jobs = recipe.jobs(step) if self.workers is not None else []
             if not jobs:
                 with precision.computing(self.kind, self.device):
                     return recipe.batch(step)
-            if self.workers is None:
-                return recipe.collate(step, [do(recipe, job, self.kind) for job in jobs])
             self._order(step, jobs)
         while recipe.ahead and self._ordered[-1][0] < min(step + AHEAD, self.steps - 1):
             later = self._ordered[-1][0] + 1
@@ -129,21 +127,6 @@ class Batches:
         self._ordered.append((step, len(jobs)))
 
 
-@torch.no_grad()
-def do(recipe: Recipe, job: Any, kind: str) -> Any:
-    """Return ``recipe.work(job)``, done in eval mode and, on a CPU, on one thread."""
-    threads, training = torch.get_num_threads(), recipe.training
-    device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
-    try:
-        torch.set_num_threads(1)  # sums in the same order in any number of processes
-        recipe.eval()
-        with precision.computing(kind, device):
-            return recipe.work(job)
-    finally:
-        recipe.train(training)
-        torch.set_num_threads(threads)
-
-
 class _Worker:
     """One process and what it was given to do."""
 
@@ -154,6 +137,9 @@ class _Worker:
         self._start()
 
     def take(self, recipe: Recipe, kind: str) -> None:
+        if self.pending:  # of a recipe that was given up: nobody will ask for them
+            self._restart()
+            self.pending.clear()
         self.recipe = (recipe, kind)
         self.send(("recipe", _packed(recipe), kind))
 
@@ -196,15 +182,20 @@ class _Worker:
             raise WorkerDied(
                 f"The {what}, and not for the first time: it was killed, most likely because the "
                 "memory ran out. Checkpoints are kept. Run the same command again, with fewer "
-                "processes: trainer.workers=1, or 0 for none."
+                "processes: workers=1, or 0 for none."
             )
         self.deaths += 1
         say(f"{what}; a new one does its work again")
-        self.connection.close()
-        self._start()
-        self.take(*self.recipe)
+        self._restart()
+        recipe, kind = self.recipe
+        self.send(("recipe", _packed(recipe), kind))
         for job in self.pending:
             self.send(("job", job))
+
+    def _restart(self) -> None:
+        self.connection.close()
+        self.process.kill()
+        self._start()
 
 
 def _packed(recipe: Recipe) -> bytes:
@@ -219,14 +210,14 @@ def _packed(recipe: Recipe) -> bytes:
     except (pickle.PicklingError, TypeError, AttributeError) as error:
         raise ValueError(
             f"{type(recipe).__name__} cannot be sent to worker processes ({error}): keep what "
-            "cannot be pickled out of its attributes, or train with trainer.workers=0."
+            "cannot be pickled out of its attributes, or train with workers=0."
         ) from error
 
 
 def _serve(connection: Connection) -> None:
     """The life of a worker: messages in, the results of jobs out, until the connection ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the training ends it
-    recipe, kind, weights = None, "fp32", {}
+    recipe, kind, weights = Recipe(), "fp32", {}
     with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
             name, *given = connection.recv()
@@ -242,8 +233,10 @@ def _serve(connection: Connection) -> None:
 
 
 def _answer(recipe: Recipe, job: Any, kind: str) -> tuple[str, Any]:
+    device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
     try:
-        return "done", do(recipe, job, kind)
+        with precision.computing(kind, device):
+            return "done", do(recipe, job)
     except Exception as error:
         error.add_note(traceback.format_exc()) if hasattr(error, "add_note") else None
         try:

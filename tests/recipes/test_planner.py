@@ -8,7 +8,6 @@ import torch
 
 from mitigate import seeding
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.workers import Batches
 from recipes.planner import PlannerRecipe
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
@@ -49,7 +48,7 @@ def test_views_of_another_size_are_stored_apart(folder):
 
 def test_a_batch_trains_the_planner_alone(folder):
     made = recipe(folder)
-    losses = made(Batches(made, None, 1, "fp32", torch.device("cpu")).batch(0))
+    losses = made(made.batch(0))
     losses["loss"].backward()
     moved = {n.partition(".")[0] for n, p in made.agent.named_parameters() if p.grad is not None}
     assert moved == {"planner"} and torch.isfinite(losses["loss"])
