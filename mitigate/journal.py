@@ -12,7 +12,7 @@ import numpy as np
 from mitigate import progress
 
 if TYPE_CHECKING:
-    from typing_extensions import Self
+    from typing import Self
 
 
 class Journal:

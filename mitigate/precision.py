@@ -18,7 +18,14 @@ import torch.nn.functional as F
 
 CHOICES = ("auto", "fp32", "bf16")
 CAP = "ONEDNN_MAX_CPU_ISA"  # oneDNN's cap on the instructions that it uses
-_NATIVE = ("BF16", "FP16", "AMX", "AVX10", "DEFAULT", "ALL")  # caps that leave bf16 its instructions
+_NATIVE = (
+    "BF16",
+    "FP16",
+    "AMX",
+    "AVX10",
+    "DEFAULT",
+    "ALL",
+)  # caps that leave bf16 its instructions
 # Milliseconds of the probe in fp32 on the machine that the stages' costs were measured on (2 cores
 # of an AMD EPYC, capped to AVX2).
 REFERENCE = 12.0

@@ -67,7 +67,9 @@ class Workers:
 
     def send_weights(self, recipe: Recipe) -> None:
         """Bring the copies of the trained weights and of all buffers up to date."""
-        trained = {name: p.detach().cpu() for name, p in recipe.named_parameters() if p.requires_grad}
+        trained = {
+            name: p.detach().cpu() for name, p in recipe.named_parameters() if p.requires_grad
+        }
         buffers = {name: buffer.detach().cpu() for name, buffer in recipe.named_buffers()}
         for worker in self._all:
             worker.send(("weights", {**trained, **buffers}))

@@ -28,7 +28,6 @@ from mitigate.keys import DEPTH, POSE, RGB, VIEWS
 from mitigate.recipe import Recipe
 from mitigate.seeding import generator
 
-
 PIECE = 6  # panoramas that one job renders (ours)
 
 

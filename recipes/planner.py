@@ -20,7 +20,7 @@ from mitigate.agents.rollout import Trace, roll_out
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
-from recipes.imitation import ImitationRecipe, decisions_of
+from recipes.imitation import ImitationRecipe
 
 _DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions
 

@@ -51,14 +51,18 @@ def test_the_page_lists_what_is_over_the_bar():
     good = suite.Cost(0.1, 0.2, 0.3, 0.01, 0.05, {"peer 1": 0.4}, 0.2)
     missed = suite.Cost(0.5, 0.6, 0.7, 0.01, 0.05, {}, 0.2)
     rates = {OURS: (100.0, 100.0), "other": (50.0, 25.0)}
-    shares = {("per_frame", "imitation"): training.Share(2, 4.0, 0.2)}
+    parts = {"rendering": 900.0, "network": 2700.0}
+    stage = training.Stage("da_per_frame", "imitation", "fp32", 2000.0, 1600.0, 500.0, parts)
+    stages = {False: [stage], True: []}
     costs = {"224x224": {"low_light": good, "quantization": missed}}
-    text = report.page(costs, 3.9, shares, rates, 64, 0.2)
+    text = report.page(costs, 3.9, stages, rates, 64, 0.2)
     assert (
         "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
         in text
     )
-    over = text.split("### Over the bar")[1].split("## Share")[0]
+    over = text.split("### Over the bar")[1].split("## Training")[0]
     assert "`quantization` | 224x224 | 0.3000" in over and "low_light" not in over
-    assert "| per_frame | imitation | 2000 | 100.0 | 5.0% |" in text
+    assert (
+        "| `da_per_frame` | imitation | fp32 | 0.50 | 2000 | 80% | 20% | 4.00 | 20% | 900" in text
+    )
     assert "| other | 50 | 25 | 4 | 2.0 times |" in text

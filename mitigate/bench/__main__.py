@@ -1,9 +1,9 @@
-"""Measure the corruptions beside their peers, their share of training, and the renderer.
+"""Measure the corruptions beside their peers, the stages of training, and the renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 
-Everything runs in this process, on one thread. ``--write`` puts the tables into
-``docs/benchmarks.md``: do that on a quiet machine.
+Everything but the stages of training runs in this process, on one thread. ``--write`` puts the
+tables into ``docs/benchmarks.md``: do that on a quiet machine.
 """
 
 from __future__ import annotations
@@ -32,7 +32,10 @@ def main(arguments: list[str] | None = None) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--seconds", type=float, default=1.0, help="of each clock (default 1)")
-    parser.add_argument("--steps", type=int, default=4, help="training steps a stage (default 4)")
+    parser.add_argument("--steps", type=int, default=6, help="training steps a stage (default 6)")
+    parser.add_argument(
+        "--recipes", nargs="+", default=training.RECIPES, help="whose stages are timed"
+    )
     parser.add_argument("--size", type=int, default=64, help="of a rendered view (default 64)")
     parser.add_argument("--write", action="store_true", help="write docs/benchmarks.md")
     options = parser.parse_args(arguments)
@@ -43,7 +46,7 @@ def main(arguments: list[str] | None = None) -> None:
     text = report.page(
         suite.measure(options.seconds),
         suite.worst_pair(options.seconds),
-        training.shares(options.steps),
+        {caps: training.measured(options.recipes, options.steps, caps) for caps in (False, True)},
         renderers.compare(options.size, options.seconds),
         options.size,
         options.seconds,

@@ -1,32 +1,82 @@
-"""How much of a training step of the reference agent goes into corruption: both in one run."""
+"""Where the time of a training step goes, in every stage of the recipes.
+
+    python -m mitigate.bench.training da_per_episode ts_distill --steps 8
+
+Each stage runs as ``make train`` runs it, with a worker process a core: how long a step takes, how
+long of it the trainer waits for the batch, and how long forward, backward and update take. Then the
+same batches are made in this process, where clocks around the parts say what making them costs.
+``make bench`` calls this twice, once as the machine is and once capped to AVX2.
+"""
 
 from __future__ import annotations
 
+import argparse
 import contextlib
+import json
+import os
+import subprocess
+import sys
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
-from types import ModuleType
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
 from unittest import mock
 
 import torch
 
-from mitigate import cli, seeding, train  # noqa: F401 (train registers the config's types)
-from mitigate.agents import rendered
+from mitigate import cli, precision, seeding, train  # noqa: F401 (train registers config types)
 from mitigate.build import build, build_agent
-from recipes import perception
+from mitigate.recipe import Recipe
+from mitigate.workers import Batches, Workers, cores
 
-SCHEDULES = ("per_episode", "per_frame")
+RECIPES = ("da_per_episode", "ts_distill", "conv_adapter", "stacked", "base", "safeguard_lora")
+CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
 LAYOUTS = 8  # apartments, so that their making, which a long training pays once, does not count
+NETWORK = "network"
+PARTS = {  # what making a batch consists of: module, class or None, function
+    "rendering": (("mitigate.envs.apartments.renderer", "Renderer", "render"),),
+    "scenes": (("mitigate.envs.apartments.renderer", "Renderer", "load"),),
+    "geodesics": (
+        ("mitigate.envs.apartments.navigation", "FreeSpace", "distances"),
+        ("mitigate.envs.apartments.navigation", "FreeSpace", "rays"),
+    ),
+    "corruption": (
+        ("mitigate.agents.rendered", None, "corrupt_observation"),
+        ("recipes.perception", None, "corrupt_observation"),
+    ),
+    NETWORK: (
+        ("mitigate.agents.topological", "TopologicalAgent", "perceive"),
+        ("mitigate.agents.planner", "Planner", "forward"),
+        ("mitigate.agents.planner", "Planner", "look"),
+        ("mitigate.agents.planner", "Planner", "read"),
+    ),
+}
+OTHER = "other"
 
 
 @dataclass(frozen=True)
-class Share:
-    """Seconds of ``steps`` training steps, and those of them spent in corruption."""
+class Stage:
+    """One stage of a recipe: milliseconds a step, medians but for ``parts``.
 
-    steps: int
+    whole: all of it. waiting: of that, for the batch. alone: forward, backward and update with
+    nothing beside them. parts: what making a batch costs on one core, by name, means.
+    """
+
+    recipe: str
+    stage: str
+    precision: str
     whole: float
-    corrupting: float
+    waiting: float
+    alone: float
+    parts: dict[str, float]
+
+    @property
+    def elsewhere(self) -> float:
+        """Share of a step's time in which no network computes: what is waited for, less the
+        networks' part of it (in rollouts)."""
+        made = sum(self.parts.values())
+        network = self.parts.get(NETWORK, 0.0) / made if made else 0.0
+        return self.waiting * (1 - network) / self.whole
 
 
 class Clock:
@@ -35,8 +85,8 @@ class Clock:
     def __init__(self) -> None:
         self.seconds = 0.0
 
-    def around(self, function):
-        def timed(*args, **named):
+    def around(self, function: Callable) -> Callable:
+        def timed(*args: Any, **named: Any) -> Any:
             started = time.perf_counter()
             try:
                 return function(*args, **named)
@@ -47,44 +97,148 @@ class Clock:
 
 
 @contextlib.contextmanager
-def clocked(*modules: ModuleType) -> Iterator[Clock]:
-    """Within it, every ``corrupt_observation`` called by these modules is on the clock."""
-    clock = Clock()
+def clocked() -> Iterator[dict[str, Clock]]:
+    """Within it, the calls of every function of ``PARTS`` are on their part's clock."""
+    clocks = {part: Clock() for part in PARTS}
     with contextlib.ExitStack() as stack:
-        for module in modules:
-            timed = clock.around(module.corrupt_observation)
-            stack.enter_context(mock.patch.object(module, "corrupt_observation", timed))
-        yield clock
+        for part, places in PARTS.items():
+            for module, owner, name in places:
+                __import__(module)
+                holder = sys.modules[module]
+                holder = getattr(holder, owner) if owner else holder
+                timed = clocks[part].around(getattr(holder, name))
+                stack.enter_context(mock.patch.object(holder, name, timed))
+        yield clocks
 
 
-def shares(steps: int) -> dict[tuple[str, str], Share]:
-    """By (schedule, stage) of the recipes ``da_per_episode`` and ``da_per_frame``, as shipped."""
-    found = {}
-    for schedule in SCHEDULES:
-        cfg = cli.load_config("train", [f"recipe=da_{schedule}", f"env.layouts={LAYOUTS}"])
-        for name, stage in cfg.stages.items():
-            agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
-            agent.requires_grad_(True)
-            recipe = build(stage.recipe, agent=agent)
-            found[schedule, str(name)] = share(recipe, steps)
+def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
+    """Measure the stages of the recipe ``name``, ``steps`` steps each after two that warm up."""
+    cfg = cli.load_config(
+        "train", [f"recipe={name}", f"env.layouts={LAYOUTS}", "env.cached=2", *options]
+    )
+    found = []
+    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
+    with Workers(cores()) as workers:
+        for stage, node in cfg.stages.items():
+            if node is not None:
+                agent.requires_grad_(True)
+                recipe = build(node.recipe, agent=agent)
+                found.append(stage_of(recipe, name, str(stage), steps, workers))
     return found
 
 
-def share(recipe, steps: int) -> Share:
-    """Time ``steps`` steps (data, loss, gradient, update) after one that warms up."""
-    trained = [p for group in recipe.parameter_groups() for p in group["params"] if p.requires_grad]
-    optimizer = torch.optim.AdamW(trained)
+def stage_of(recipe: Recipe, name: str, stage: str, steps: int, workers: Workers) -> Stage:
+    """Time one stage; see the module's docstring."""
+    device = torch.device("cpu")
+    kind = precision.choose("auto", device)
+    with precision.computing(kind, device):
+        recipe.start()
     recipe.train()
-    started, before = 0.0, 0.0
-    with clocked(rendered, perception) as clock:
-        for number in range(steps + 1):
-            if number == 1:
-                started, before = time.perf_counter(), clock.seconds
-            seeding.seed_everything(0, "bench", number)
-            batch = recipe.batch(number)
-            with torch.autocast("cpu", torch.bfloat16):
-                loss = recipe(batch)["loss"]
-            optimizer.zero_grad(set_to_none=True)
-            loss.backward()
-            optimizer.step()
-        return Share(steps, time.perf_counter() - started, clock.seconds - before)
+    update = _update(recipe, kind, device)
+    batches = Batches(recipe, workers, steps + 2, kind, device)
+    waits, updates = [], []
+    for step in range(steps + 2):
+        seeding.seed_everything(0, "bench", step)
+        began = time.perf_counter()
+        batch = batches.batch(step)
+        arrived = time.perf_counter()
+        update(batch)
+        waits.append(arrived - began)
+        updates.append(time.perf_counter() - arrived)
+    alone = [_seconds(update, batch) for _ in range(steps)]
+    whole = [a + b for a, b in zip(waits, updates, strict=True)]
+    return Stage(
+        name,
+        stage,
+        kind,
+        *(1e3 * _median(values[-steps:]) for values in (whole, waits, alone)),
+        parts={part: 1e3 * seconds for part, seconds in _parts(recipe, kind, steps).items()},
+    )
+
+
+def _update(recipe: Recipe, kind: str, device: torch.device) -> Callable[[dict], None]:
+    trained = [p for group in recipe.parameter_groups() for p in group["params"] if p.requires_grad]
+    optimizer = torch.optim.AdamW(trained, lr=1e-6)
+
+    def update(batch: dict) -> None:
+        with precision.computing(kind, device):
+            loss = recipe(batch)["loss"]
+        optimizer.zero_grad(set_to_none=True)
+        loss.backward()
+        optimizer.step()
+
+    return update
+
+
+def _parts(recipe: Recipe, kind: str, steps: int) -> dict[str, float]:
+    """Seconds a step of each part of making batches, in this process."""
+    batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
+    batches.batch(0)
+    with clocked() as clocks:
+        began = time.perf_counter()
+        for step in range(steps):
+            batches.batch(step)
+        whole = time.perf_counter() - began
+    parts = {part: clock.seconds / steps for part, clock in clocks.items()}
+    return {**parts, OTHER: max(0.0, whole / steps - sum(parts.values()))}
+
+
+def _seconds(call: Callable[[Any], object], given: Any) -> float:
+    began = time.perf_counter()
+    call(given)
+    return time.perf_counter() - began
+
+
+def _median(values: Sequence[float]) -> float:
+    return sorted(values)[len(values) // 2]
+
+
+def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:
+    """Run this module in a process of its own, with all cores, capped to AVX2 or not."""
+    environment = {k: v for k, v in os.environ.items() if k not in ("OMP_NUM_THREADS", *CAPS)}
+    command = [sys.executable, "-m", __name__, *recipes, "--steps", str(steps), "--json"]
+    done = subprocess.run(
+        command,
+        env={**environment, **(CAPS if caps else {})},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return [Stage(**stage) for stage in json.loads(done.stdout.strip().splitlines()[-1])]
+
+
+def table(stages: Sequence[Stage]) -> list[str]:
+    """Markdown: a row a stage."""
+    names = [*PARTS, OTHER]
+    head = ["recipe", "stage", "precision", "steps/s", "ms a step", "waiting", "forward + backward"]
+    head += ["step / forward + backward alone", "no network computes", *names]
+    lines = [head, ["---"] * 3 + ["---:"] * (len(head) - 3)]
+    for s in stages:
+        cells = [f"`{s.recipe}`", s.stage, s.precision, f"{1e3 / s.whole:.2f}", f"{s.whole:.0f}"]
+        cells += [f"{s.waiting / s.whole:.0%}", f"{1 - s.waiting / s.whole:.0%}"]
+        cells += [f"{s.whole / s.alone:.2f}", f"{s.elsewhere:.0%}"]
+        lines.append([*cells, *(f"{s.parts.get(name, 0.0):.0f}" for name in names)])
+    return [f"| {' | '.join(line)} |" for line in lines]
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command line: see the module's first lines."""
+    parser = argparse.ArgumentParser(prog=__name__, description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("recipes", nargs="*", default=list(RECIPES), help="default: all")
+    parser.add_argument("--steps", type=int, default=8, help="timed, a stage (default 8)")
+    parser.add_argument("--json", action="store_true", help="print the figures as one JSON line")
+    options = parser.parse_args(arguments)
+    if options.steps < 1:
+        parser.error("--steps must be at least 1.")
+    found = []
+    for name in options.recipes:
+        print(f"timing {name}", file=sys.stderr, flush=True)
+        found += measure(name, options.steps)
+    if options.json:
+        print(json.dumps([asdict(stage) for stage in found]))
+    else:
+        print("\n".join(table(found)))
+
+
+if __name__ == "__main__":
+    main()

@@ -109,7 +109,10 @@ def test_a_world_turned_in_the_cache_is_the_one_rendered_at_that_heading(stored)
         with torch.no_grad():
             seen, _, _ = agent.perceive(*(torch.from_numpy(a)[None] for a in (rgb, depth)))
         views, _ = world.look()
-        errors = [float(np.abs(np.roll(views, k, 0) - seen[0].float().numpy()).mean()) for k in range(VIEWS)]
+        errors = [
+            float(np.abs(np.roll(views, k, 0) - seen[0].float().numpy()).mean())
+            for k in range(VIEWS)
+        ]
         assert int(np.argmin(errors)) == 0 and errors[0] < 0.2 * np.median(errors[1:])
 
 
