@@ -15,7 +15,7 @@ from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
-from mitigate import checkpoint, seeding
+from mitigate import checkpoint, seeding, settings
 
 
 def build(node: DictConfig, **given: Any) -> Any:
@@ -41,9 +41,9 @@ def settings_of(node: DictConfig, weights: str) -> DictConfig:
     return merged(node, carried(node, weights))
 
 
-def merged(node: DictConfig, settings: dict[str, Any]) -> DictConfig:
-    """Return a copy of ``node`` with ``settings`` in place of its own."""
-    found = OmegaConf.merge(node, settings)
+def merged(node: DictConfig, own: dict[str, Any]) -> DictConfig:
+    """Return a copy of ``node`` with the settings ``own`` in place of its own."""
+    found = OmegaConf.merge(node, own)
     assert isinstance(found, DictConfig)
     return found
 
@@ -52,7 +52,8 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     """Return the settings of the agent that ``weights`` belong to, none if they do not say.
 
     They come, as data, from ``config.yaml`` beside the weights. Raises ValueError if the weights
-    are those of another kind of agent than ``node``, or if the file names anything else to build.
+    are those of another kind of agent than ``node``, or if the file holds anything but plain data
+    that the agent takes (:func:`mitigate.settings.read_agent`).
     """
     from mitigate import hardened  # brings the reference agent with it
 
@@ -62,20 +63,10 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
         file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
     if not file.is_file():
         return {}
-    found = OmegaConf.select(OmegaConf.load(file), "agent", default={})
-    target = found.get("_target_", node._target_)
-    if target != node._target_:
-        raise ValueError(
-            f"{weights} holds a {target}, but agent is {node._target_}: choose the agent that the "
-            "weights belong to (agent=...)."
-        )
-    settings = {name: value for name, value in found.items() if name != "_target_"}
-    if "_target_" in str(OmegaConf.to_yaml(OmegaConf.create(settings))):
-        raise ValueError(
-            f"{file} names a class to build inside the agent's settings (_target_). Settings that "
-            "come with weights are data; nothing in them is run. Do not use this folder."
-        )
-    return settings
+    if node._target_ == hardened.TARGET:
+        return hardened.agent_settings(file)
+    names = {*signature(get_object(node._target_)).parameters, *map(str, node)} - {"_target_"}
+    return settings.read_agent(file, node._target_, names)
 
 
 def defaults(node: DictConfig) -> dict[str, Any]:

@@ -24,7 +24,7 @@ import yaml
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from mitigate import checkpoint, hardened, programs
+from mitigate import checkpoint, hardened, programs, settings
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.card import facts, metrics, readme
@@ -106,7 +106,7 @@ def _finished(run: Path) -> tuple[dict[str, Any], TopologicalAgent]:
     checkpoint.load_weights(agent, weights)
     if not all(torch.isfinite(value.half()).all() for value in agent.state_dict().values()):
         raise ValueError(f"{weights} holds numbers that are not finite in float16.")
-    return yaml.safe_load(config.read_text(encoding="utf-8")), agent.eval()
+    return settings.read(config), agent.eval()
 
 
 def _write(

@@ -153,6 +153,8 @@ class _JsonFile:
             except json.JSONDecodeError as error:
                 if len(self._text) - self._at > LARGEST_VALUE or not self._more():
                     self._fail(error.msg)
+            except RecursionError:
+                self._fail("too many levels")
 
     def _more(self) -> bool:
         """Append what comes next, as much as is held, and drop what is done."""

@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import Any
 
 import torch
-import yaml
 
-from mitigate import checkpoint
-from mitigate.agents import adapters
+from mitigate import checkpoint, settings
+from mitigate.agents import adapters, schema
 from mitigate.agents.text import vocabulary
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.files import sha256
@@ -57,26 +56,16 @@ def build(config: Path) -> TopologicalAgent:
 
     Raises ValueError if the file is damaged or names another kind of agent.
     """
-    settings = agent_settings(config)
+    given = agent_settings(config)
     try:
-        return TopologicalAgent(**settings)
+        return TopologicalAgent(**given)
     except (TypeError, RuntimeError) as error:
         raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
 
 
 def agent_settings(config: Path) -> dict[str, Any]:
     """Return the keyword arguments of the agent in ``config``. Errors as :func:`build`."""
-    try:
-        settings = dict(yaml.safe_load(config.read_text(encoding="utf-8"))["agent"])
-    except (yaml.YAMLError, ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"{config} has no settings of an agent ({error}).") from error
-    target = settings.pop("_target_", TARGET)
-    if target != TARGET:
-        raise ValueError(
-            f"{config} names the agent {target}; only {TARGET} can be exported and loaded from a "
-            "folder. Load the weights of an agent of your own with checkpoint.load_weights."
-        )
-    return settings
+    return schema.check(settings.read_agent(config, TARGET, schema.AGENT), config)
 
 
 def fill(

@@ -178,7 +178,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         tensors = load_file(folder / WEIGHTS)
         shapes = dict(settings["adapters"])
         wanted = settings["backbone_sha256"]
-    except (SafetensorError, OSError, ValueError, KeyError, TypeError) as error:
+    except (SafetensorError, OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"The adapters in {folder} are cut short or damaged ({error}).") from error
     found = backbone_sha(model)
     if found != wanted:
@@ -193,15 +193,26 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     made: dict[str, nn.Module] = {}
     try:
         for name, shape in shapes.items():
-            made[name] = (RingAdapter if "views" in shape else ConvAdapter)(**shape)
             prefix = f"{_key(name)}."
-            made[name].load_state_dict(
-                {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
-            )
+            own = {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
+            made[name] = _made(shape, own)
     except (RuntimeError, TypeError) as error:
         raise ValueError(f"The adapters in {folder} are damaged ({error}).") from error
     _attach_all(model, made)
     return list(shapes)
+
+
+def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> nn.Module:
+    """Return the adapter of ``settings`` with the weights ``tensors``. Raises TypeError or
+    RuntimeError if they do not fit; no memory is taken for what does not."""
+    kind = RingAdapter if "views" in settings else ConvAdapter
+    with torch.device("meta"):
+        wanted = {name: value.shape for name, value in kind(**settings).state_dict().items()}
+    if wanted != {name: value.shape for name, value in tensors.items()}:
+        raise TypeError(f"the tensors are not of the shapes that {SETTINGS} says")
+    adapter = kind(**settings)
+    adapter.load_state_dict(tensors)
+    return adapter
 
 
 def backbone_sha(model: nn.Module) -> str:

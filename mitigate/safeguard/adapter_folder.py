@@ -11,6 +11,17 @@ from typing import Any
 from torch import Tensor
 
 CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
+ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card and of PEFT's config
+    CARD: {"base": (str,), "base_sha256": (str,), "prompt": (str,)},
+    CONFIG: {
+        "r": (int,),
+        "lora_alpha": (int, float),
+        "lora_dropout": (int, float),
+        "target_modules": (list,),
+    },
+}
+HIGHEST_RANK = 1024  # above the width of the default base's layers (ours)
+_AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safeguard_lora`."
 
 
 def write_adapter(
@@ -30,12 +41,36 @@ def write_adapter(
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the card and PEFT's config of an adapter folder; raises FileNotFoundError."""
+    """Return the card and PEFT's config of an adapter folder, which are data: of the config, only
+    what ``ENTRIES`` names is used.
+
+    Raises FileNotFoundError for a missing file, ValueError for a damaged one.
+    """
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:
         raise FileNotFoundError(
             f"There is no adapter at {folder}: {', '.join(missing)} missing. Train one with `make "
             "train RECIPE=safeguard_lora`, or name checkpoints/safeguard."
         )
-    card, config = (json.loads((Path(folder) / name).read_text("utf-8")) for name in (CARD, CONFIG))
+    card, config = (_entries(Path(folder) / name, kinds) for name, kinds in ENTRIES.items())
+    named = all(isinstance(target, str) for target in config["target_modules"])
+    if not named or not 1 <= config["r"] <= HIGHEST_RANK:
+        raise ValueError(
+            f"{Path(folder) / CONFIG}: target_modules must be names, and r from 1 to "
+            f"{HIGHEST_RANK}. {_AGAIN}"
+        )
     return card, config
+
+
+def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
+    """Return the JSON object in ``file``, whose entries must be of ``kinds``."""
+    try:
+        found = json.loads(file.read_text("utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{file} is cut short or damaged ({error}). {_AGAIN}") from error
+    for name, kind in kinds.items():
+        value = found.get(name) if isinstance(found, dict) else None
+        if type(value) not in kind:
+            allowed = " or ".join(k.__name__ for k in kind)
+            raise ValueError(f"{file}: {name} must be {allowed}, not {value!r:.80}. {_AGAIN}")
+    return found

@@ -29,12 +29,16 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
         raise ValueError(f"transformers is not installed ({error}): run {INSTALL}.") from error
     place, gguf = _source(base)
     dtype = torch.bfloat16 if precision == "bf16" else torch.float32
-    given = {**gguf, "quantization_config": GgufConfig(dequantize=True)} if gguf else {}
+    # a folder or hub id may come from anybody: no code of its own, no pickled weights
+    given: dict[str, Any] = {"use_safetensors": True}
+    if gguf:
+        given = {**gguf, "quantization_config": GgufConfig(dequantize=True)}
+    given["trust_remote_code"] = False
     # on CPUs plain attention trains these short texts faster than the fused kernel
     how: dict[str, Any] = {} if torch.cuda.is_available() else {"attn_implementation": "eager"}
     with _explained(base, precision):
-        tokenizer = AutoTokenizer.from_pretrained(place, **gguf)
-        if precision == "int8" and given:  # bitsandbytes quantises a dense checkpoint, not GGUF
+        tokenizer = AutoTokenizer.from_pretrained(place, trust_remote_code=False, **gguf)
+        if precision == "int8" and gguf:  # bitsandbytes quantises a dense checkpoint, not GGUF
             with tempfile.TemporaryDirectory() as dense:
                 AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given).save_pretrained(
                     dense
@@ -44,8 +48,9 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
                     dense, dtype=dtype, quantization_config=eight, **how
                 )
         elif precision == "int8":
+            eight = BitsAndBytesConfig(load_in_8bit=True)
             network = AutoModelForCausalLM.from_pretrained(
-                place, dtype=dtype, quantization_config=BitsAndBytesConfig(load_in_8bit=True), **how
+                place, dtype=dtype, quantization_config=eight, **given, **how
             )
         else:
             network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given, **how)

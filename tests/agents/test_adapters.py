@@ -269,7 +269,9 @@ def test_a_second_set_is_refused(encoder):
         insert_adapters(model, targets)
 
 
-@pytest.mark.parametrize("spoil", ["missing", "cut", "settings", "shapes", "backbone"])
+@pytest.mark.parametrize(
+    "spoil", ["missing", "cut", "settings", "levels", "shapes", "memory", "backbone"]
+)
 def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
     torch.manual_seed(0)
     model = ResNet()
@@ -283,6 +285,11 @@ def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
         weights.write_bytes(weights.read_bytes()[:100])
     elif spoil == "settings":
         settings.write_text(json.dumps({"adapters": 3}), encoding="utf-8")
+    elif spoil == "levels":
+        settings.write_text("[" * 100_000, encoding="utf-8")
+    elif spoil == "memory":  # a kernel of a hundred gigabytes
+        text = settings.read_text(encoding="utf-8")
+        settings.write_text(text.replace('"kernel": 3', '"kernel": 30001'), encoding="utf-8")
     elif spoil == "shapes":
         text = settings.read_text(encoding="utf-8")
         settings.write_text(text.replace('"channels": 16', '"channels": 8'), encoding="utf-8")

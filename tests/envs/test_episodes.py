@@ -201,6 +201,7 @@ def test_broken_files_are_refused(tmp_path):
         "picture.json": bytes(range(128, 256)),
         "empty.json": b"",
         "comma.json": b'{"episodes": [{} {}]}',
+        "deep.json": b'{"episodes": [' + b"[" * 200_000,
     }
     for name, content in cases.items():
         (tmp_path / name).write_bytes(content)

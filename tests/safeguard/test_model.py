@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import shutil
+from pathlib import Path
 
 import pytest
 import torch
@@ -104,6 +106,64 @@ def test_an_adapter_of_another_base_or_shape_is_refused(model, tmp_path, tmp_pat
         LanguageModel(str(other), "fp32", LORA).load(tmp_path)
     with pytest.raises(FileNotFoundError, match="There is no adapter"):
         model.load(tmp_path / "nothing")
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("adapter_config.json", {"r": "8"}),
+        ("adapter_config.json", {"r": 10**9}),
+        ("adapter_config.json", {"lora_alpha": None}),
+        ("adapter_config.json", {"target_modules": "q_proj"}),
+        ("adapter_config.json", {"target_modules": [{"_target_": "os.system"}]}),
+        ("card.json", {"base": ["a", "b"]}),
+        ("card.json", {"base_sha256": None}),
+        ("card.json", "{"),
+        ("card.json", "[" * 100_000),
+        ("card.json", "[]"),
+    ],
+    ids=str,
+)
+def test_a_damaged_card_or_config_names_the_file(model, tmp_path, name, change):
+    model.save(tmp_path)
+    file = tmp_path / name
+    if isinstance(change, dict):
+        change = json.dumps({**json.loads(file.read_text("utf-8")), **change})
+    file.write_text(change, "utf-8")
+    with pytest.raises(ValueError, match=name.replace(".", "[.]")):
+        open_adapter(tmp_path)
+
+
+def test_only_rank_alpha_dropout_and_targets_of_an_adapters_config_are_read(model, tmp_path):
+    model.save(tmp_path)
+    file = tmp_path / "adapter_config.json"
+    named = {
+        "auto_mapping": {"base_model_class": "Trap", "parent_library": "trap"},
+        "megatron_config": {"a": 1},
+        "megatron_core": "trap",
+        "peft_type": "TRAP",
+    }
+    file.write_text(json.dumps({**json.loads(file.read_text("utf-8")), **named}), "utf-8")
+    assert open_adapter(tmp_path).rewrite(["Go."]) == model.rewrite(["Go."])
+
+
+def test_code_and_pickles_in_a_model_folder_are_not_run(tiny_base, tmp_path):
+    class Evil:
+        def __reduce__(self):
+            return (Path.touch, (tmp_path / "sentinel",))
+
+    coded, pickled = (shutil.copytree(tiny_base, tmp_path / name) for name in ("a", "b"))
+    (coded / "trap.py").write_text(f"open({str(tmp_path / 'sentinel')!r}, 'w')\nclass Trap: pass\n")
+    config = json.loads((coded / "config.json").read_text())
+    classes = {"AutoConfig": "trap.Trap", "AutoModelForCausalLM": "trap.Trap"}
+    config |= {"model_type": "trap", "auto_map": classes}
+    (coded / "config.json").write_text(json.dumps(config))
+    (pickled / "model.safetensors").unlink()
+    torch.save(Evil(), pickled / "pytorch_model.bin")
+    for folder in (coded, pickled):
+        with pytest.raises(ValueError, match="cannot be loaded"):
+            LanguageModel(str(folder))
+    assert not (tmp_path / "sentinel").exists()
 
 
 def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):

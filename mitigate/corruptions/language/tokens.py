@@ -49,7 +49,7 @@ class NamedTokenizer:
         from transformers import AutoTokenizer
 
         try:
-            self._tokenizer = AutoTokenizer.from_pretrained(name)
+            self._tokenizer = AutoTokenizer.from_pretrained(name, trust_remote_code=False)
         except (OSError, ValueError) as error:
             raise ValueError(
                 f"There is no tokenizer {name!r} ({' '.join(str(error).split())[:200]}): give "
