@@ -37,6 +37,7 @@ EXTRAS = {
     "onnx": ("onnx", "onnxruntime", "onnxscript"),
     "bench": ("miniworld", "albumentations", "kornia"),
 }
+OLDEST = (3, 10)  # Python, as pyproject.toml says
 ROOM = 5.0  # GB of disk for the environment, runs and caches (ours)
 
 
@@ -54,8 +55,8 @@ def _machine() -> list[str]:
     free = shutil.disk_usage(".").free / 1e9
     _line("disk", f"{free:.0f} GB free")
     problems = []
-    if sys.version_info < (3, 11):  # noqa: UP036 - it may be what is wrong
-        problems.append("Python 3.11 or newer is needed: make PYTHON=python3.11 ...")
+    if sys.version_info < OLDEST:
+        problems.append("Python 3.10 or newer is needed: make PYTHON=python3.10 ...")
     if free < ROOM:
         problems.append(f"Only {free:.1f} GB of disk are free; {ROOM:g} GB are advisable.")
     return problems

@@ -14,7 +14,7 @@ features of the views that the map's nodes and ghosts were seen in.
 from __future__ import annotations
 
 import copy
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
@@ -28,6 +28,9 @@ from mitigate.keys import CLEAN_DEPTH, CLEAN_RGB
 from mitigate.recipe import Recipe
 from recipes.imitation import ImitationRecipe
 from recipes.perception import PerceptionRecipe
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 FEATURES = ("views", "nodes")
 

