@@ -88,7 +88,7 @@ class Workers:
 
 
 class Batches:
-    """The batches of ``recipe``, for steps up to ``steps``, on ``device`` in the precision ``kind``.
+    """The batches of ``recipe`` up to ``steps``, made on ``device`` in the precision ``kind``.
 
     Pieces that do not depend on the weights (``recipe.ahead``) are ordered ``AHEAD`` steps early.
     """

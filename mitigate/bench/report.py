@@ -39,8 +39,8 @@ def page(
     head = [
         "# Benchmarks",
         "",
-        f"`make bench ARGS=--write` on {machine()}. One process and one thread but for training, seed {SEED}, about "
-        f"{seconds:g} s a clock.",
+        f"`make bench ARGS=--write` on {machine()}. One process and one thread "
+        f"but for training, seed {SEED}, about {seconds:g} s a clock.",
         "",
     ]
     parts = [
