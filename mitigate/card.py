@@ -33,6 +33,7 @@ def facts(cfg: dict[str, Any]) -> dict[str, Any]:
         "severity": trained_at["severity"],
         "severity_depth": trained_at["severity_depth"],
         "seed": cfg["seed"],
+        "precision": _precision(cfg.get("stages") or {}),
         "suite": SUITE_VERSION,
         "base": reference(cfg["init"]) if cfg.get("init") else None,
         "teachers": [reference(path) for path in teachers],
@@ -119,9 +120,10 @@ def _origin(card: dict[str, Any]) -> str:
         if card["adapters_only"]
         else "The weights are whole, in float16"
     )
+    computed = f", trained in {card['precision']}" if card.get("precision") else ""
     return (
         f"Recipe `{card['recipe']}`, severity {severities}, seed "
-        f"{card['seed']}, corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent "
+        f"{card['seed']}{computed}, corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent "
         f"`{card['agent']}`, licence {card['license']}, exported at commit `{card['commit']}`."
     )
 
@@ -167,6 +169,12 @@ def _use(card: dict[str, Any]) -> str:
         f"{checked['float16']:.2g}.\n\nMilliseconds, fastest of {times['calls']} "
         f"calls and median processor time, threads: {times['threads']}.\n\n{table}"
     )
+
+
+def _precision(stages: dict[str, Any]) -> str:
+    """In which precision the stages were trained, "fp32" or "bf16", both if they differ."""
+    settings = [(stage or {}).get("trainer") or {} for stage in stages.values()]
+    return " and ".join(sorted({s["precision"] for s in settings if s.get("precision")}))
 
 
 def _teachers(node: Any) -> list[str]:

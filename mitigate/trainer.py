@@ -20,6 +20,7 @@ from torch.optim.lr_scheduler import LambdaLR
 from mitigate import checkpoint, seeding
 from mitigate.journal import Journal
 from mitigate.precision import choose, computing
+from mitigate.progress import say
 from mitigate.recipe import Recipe
 from mitigate.workers import Batches, Workers
 
@@ -126,8 +127,12 @@ class Trainer:
         """
         start = self._resume()
         if start >= self.steps:
-            print(f"{self.name}: already trained for {start} steps in {self.folder}", flush=True)
+            say(f"{self.name}: already trained for {start} steps in {self.folder}")
             return self.recipe
+        count = len(self.workers) if self.workers is not None else 0
+        say(
+            f"{self.name}: in {self.precision} on {self.device}, batches by {count or 'no'} workers"
+        )
         with Journal(self.folder, total=self.steps, start=start, name=self.name) as journal:
             if start:
                 journal.say(f"resumed at step {start} from {self.folder}")
@@ -221,11 +226,14 @@ class Trainer:
         kept = config.get("trainer", {}).get("precision")
         if self.asked != "auto" or kept in (None, self.precision):
             return
-        print(
-            f"{self.name}: goes on in {kept}, as it began, where this machine would choose "
-            f"{self.precision}: the same weights, but more slowly. To train in {self.precision}, "
-            "start anew in another folder (folder=...).",
-            flush=True,
+        cost = (
+            "which is up to 2 times slower here"
+            if kept == "fp32"
+            else "which this machine emulates, 3 to 10 times slower"
+        )
+        say(
+            f"{self.name}: goes on in {kept}, as it began, {cost} than {self.precision}. To train "
+            f"in {self.precision}, start anew in another folder (folder=...)."
         )
         self.precision = self.config["trainer"]["precision"] = kept
 

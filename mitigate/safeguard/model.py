@@ -17,8 +17,8 @@ from typing import Any
 import torch
 from safetensors.torch import load_file
 from torch import Tensor, nn
-from tqdm import tqdm
 
+from mitigate.progress import Progress
 from mitigate.safeguard.adapter_folder import ADAPTER, read_adapter, write_adapter
 from mitigate.safeguard.base import PRECISIONS, SMOLLM2, base_sha256, load_base
 from mitigate.safeguard.data import PROMPTS, Pair, prompt_messages
@@ -107,14 +107,18 @@ class LanguageModel(nn.Module):
         answers: list[str | None] = [None] * len(texts)
         self.network.eval()
         starts = range(0, len(order), self.batch)
-        for start in tqdm(starts, desc="rewriting", disable=None if len(starts) > 2 else True):
-            rows = order[start : start + self.batch]
-            left = None if seconds is None else seconds - (time.monotonic() - began)
-            if left is not None and left <= 0:
-                break
-            found = self._generate([prompts[i] for i in rows], left)
-            for row, answer in zip(rows, found, strict=True):
-                answers[row] = answer
+        shown = Progress("rewriting", len(starts), unit="batch") if len(starts) > 2 else None
+        with shown or nullcontext():
+            for start in starts:
+                rows = order[start : start + self.batch]
+                left = None if seconds is None else seconds - (time.monotonic() - began)
+                if left is not None and left <= 0:
+                    break
+                found = self._generate([prompts[i] for i in rows], left)
+                for row, answer in zip(rows, found, strict=True):
+                    answers[row] = answer
+                if shown:
+                    shown.advance()
         return answers
 
     @contextmanager
