@@ -123,8 +123,8 @@ def _origin(card: dict[str, Any]) -> str:
     computed = f", trained in {card['precision']}" if card.get("precision") else ""
     return (
         f"Recipe `{card['recipe']}`, severity {severities}, seed "
-        f"{card['seed']}{computed}, corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent "
-        f"`{card['agent']}`, licence {card['license']}, exported at commit `{card['commit']}`."
+        f"{card['seed']}{computed}, corruption suite {card['suite']}{start}{taught}.\n{kind}. "
+        f"Agent `{card['agent']}`, licence {card['license']}, exported at commit `{card['commit']}`."
     )
 
 

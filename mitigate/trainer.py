@@ -22,7 +22,7 @@ from mitigate.journal import Journal
 from mitigate.precision import choose, computing
 from mitigate.progress import say
 from mitigate.recipe import Recipe
-from mitigate.workers import Batches, Workers
+from mitigate.batches import Batches, Workers
 
 SCHEDULES = ("cosine", "constant", "linear")
 

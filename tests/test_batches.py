@@ -11,7 +11,7 @@ import torch
 from mitigate import checkpoint, seeding
 from mitigate.seeding import torch_generator
 from mitigate.trainer import Trainer
-from mitigate.workers import WorkerDied, Workers
+from mitigate.batches import WorkerDied, Workers
 from tests.tiny import TinyRecipe
 
 
