@@ -124,7 +124,8 @@ def _origin(card: dict[str, Any]) -> str:
     return (
         f"Recipe `{card['recipe']}`, severity {severities}, seed "
         f"{card['seed']}{computed}, corruption suite {card['suite']}{start}{taught}.\n{kind}. "
-        f"Agent `{card['agent']}`, licence {card['license']}, exported at commit `{card['commit']}`."
+        f"Agent `{card['agent']}`, licence {card['license']}, exported at commit "
+        f"`{card['commit']}`."
     )
 
 

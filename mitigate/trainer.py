@@ -18,11 +18,11 @@ from torch import Tensor
 from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate import checkpoint, seeding
+from mitigate.batches import Batches, Workers
 from mitigate.journal import Journal
 from mitigate.precision import choose, computing
 from mitigate.progress import say
 from mitigate.recipe import Recipe
-from mitigate.batches import Batches, Workers
 
 SCHEDULES = ("cosine", "constant", "linear")
 

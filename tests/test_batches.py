@@ -9,9 +9,9 @@ import pytest
 import torch
 
 from mitigate import checkpoint, seeding
+from mitigate.batches import WorkerDied, Workers
 from mitigate.seeding import torch_generator
 from mitigate.trainer import Trainer
-from mitigate.batches import WorkerDied, Workers
 from tests.tiny import TinyRecipe
 
 
