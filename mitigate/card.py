@@ -122,10 +122,9 @@ def _origin(card: dict[str, Any]) -> str:
     )
     computed = f", trained in {card['precision']}" if card.get("precision") else ""
     return (
-        f"Recipe `{card['recipe']}`, severity {severities}, seed "
-        f"{card['seed']}{computed}, corruption suite {card['suite']}{start}{taught}.\n{kind}. "
-        f"Agent `{card['agent']}`, licence {card['license']}, exported at commit "
-        f"`{card['commit']}`."
+        f"Recipe `{card['recipe']}`, severity {severities}, seed {card['seed']}{computed}, "
+        f"corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent `{card['agent']}`, "
+        f"licence {card['license']}, exported at commit `{card['commit']}`."
     )
 
 
