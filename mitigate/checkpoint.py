@@ -1,16 +1,16 @@
 """Checkpoints that are whole or not there: atomic writes, rotation, loading that runs no code.
 
 Two kinds of file: ``step-00001000.pt`` holds everything a run needs to go on bit for bit;
-``model.safetensors`` holds weights alone, to evaluate, ship or start from.
+``model.safetensors`` holds weights alone, to evaluate, ship or start from. Beside each lies its
+sha256 (``checksums.py``), which is compared before the file is read; a weights file without one, of
+an older version or from elsewhere, is read all the same.
 """
 
 from __future__ import annotations
 
 import hashlib
-import os
-import pickle
 import re
-from collections.abc import Callable
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,8 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import nn
 
+from mitigate import checksums
+
 FORMAT = 1
 REQUIRED = ("format", "step", "model", "optimizer", "scheduler", "rng", "config")
 WEIGHTS = "model.safetensors"
@@ -26,23 +28,8 @@ ADAPTER = ".adapter."  # in the names of adapters' tensors, see mitigate/agents/
 _NAME = re.compile(r"step-(\d{8})\.pt")
 
 
-def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Call ``write`` on a temporary neighbour of ``path``, flush it to disk, then rename it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        write(temporary)
-        with open(temporary, "rb+") as file:
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
-    return path
+class Damaged(ValueError):
+    """A checkpoint is cut short, or not the bytes that were written."""
 
 
 def checkpoints(folder: Path) -> list[Path]:
@@ -59,28 +46,35 @@ def steps_done(path: Path) -> int:
 
 
 def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
-    """Write ``state`` as ``step-<state["step"]>.pt``, then delete all but the newest ``keep``."""
+    """Write ``state`` as ``step-<state["step"]>.pt``, then delete the older ones but the newest
+    ``keep - 1``. One of a later step, which was damaged when the run went on, stays."""
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"
-    write_atomically(path, lambda file: torch.save({"format": FORMAT, **state}, file))
-    for old in checkpoints(folder)[:-keep]:
-        old.unlink()
+    checksums.write(path, lambda file: torch.save({"format": FORMAT, **state}, file))
+    older = [other for other in checkpoints(folder) if other.name < path.name]
+    for old in older[: max(0, len(older) - keep + 1)]:
+        checksums.delete(old)
+    checksums.delete_sidecars(Path(folder), "step-*.pt", orphans=True)
     return path
 
 
 def load(path: Path) -> dict[str, Any]:
     """Return the state in ``path`` (tensors on the CPU).
 
-    Raises FileNotFoundError if it is missing, ValueError if it is cut short, damaged, or not a
-    checkpoint of this trainer.
+    Raises FileNotFoundError if it is missing, Damaged if it is cut short or not what was written,
+    ValueError if it is not a checkpoint of this trainer.
     """
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(f"There is no checkpoint {path}: check the path.")
+    noted = checksums.sidecar(path).is_file()
+    problem = checksums.problem(path) if noted else _zip_problem(path)
+    if problem:
+        raise Damaged(_broken(path, f"{problem}: it, or the sum, is cut short or damaged"))
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
-    except (RuntimeError, EOFError, pickle.UnpicklingError, ValueError, KeyError, OSError) as error:
-        raise ValueError(_broken(path, "is cut short, damaged or not a torch file")) from error
+    except Exception as error:  # of any kind, where the file was not written by torch
+        raise Damaged(_broken(path, "is cut short, damaged or not a torch file")) from error
     missing = [k for k in REQUIRED if k not in state] if isinstance(state, dict) else REQUIRED
     if missing:
         raise ValueError(_broken(path, f"lacks {', '.join(missing)}: another program wrote it"))
@@ -89,11 +83,49 @@ def load(path: Path) -> dict[str, Any]:
     return state
 
 
+def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
+    """Return the newest sound checkpoint in ``folder`` and its state, None if there is none at all.
+
+    Prints a line for each damaged one that is passed over. Raises Damaged if all are damaged (none
+    is deleted), and as :func:`load` does.
+    """
+    damaged: list[Path] = []
+    for path in reversed(checkpoints(folder)):
+        try:
+            state = load(path)
+        except Damaged:
+            damaged.append(path)
+            continue
+        for other in damaged:
+            print(f"{other} is damaged; going on from {path.name}", flush=True)
+        return path, state
+    if damaged:
+        raise Damaged(
+            f"Every checkpoint in {folder} is cut short or damaged ("
+            f"{', '.join(path.name for path in damaged)}); none was deleted. Copy them back if you "
+            f"have them elsewhere. If their {checksums.SUFFIX} files alone are damaged, delete "
+            "these; to train from the start, delete the folder. Then run the same command again."
+        )
+    return None
+
+
+def _zip_problem(path: Path) -> str:
+    """Return what is wrong with a file of ``torch.save`` by the checksums that zip files hold."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            packed = any(part.compress_type != zipfile.ZIP_STORED for part in archive.infolist())
+            wrong = None if packed else archive.testzip()
+    except Exception:  # zipfile meets a damaged file with errors of many kinds
+        return "is no whole zip file, as torch writes"
+    if packed:
+        return "is compressed, as torch's files are not"
+    return f"has other bytes in {wrong} than were written" if wrong else ""
+
+
 def _broken(path: Path, cause: str) -> str:
     older = [other.name for other in checkpoints(path.parent) if other.name < path.name]
     fix = (
-        f"An older checkpoint is kept: delete {path.name} and run the same command again to go on "
-        f"from {older[-1]}."
+        f"An older checkpoint is kept: run the same command again, which goes on from {older[-1]}."
         if older
         else f"No older checkpoint lies beside it: delete {path.name} to train from the start."
     )
@@ -127,7 +159,7 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
         for name, value in module.state_dict().items()
         if isinstance(value, torch.Tensor)
     }
-    return write_atomically(file, lambda temporary: save_file(tensors, temporary))
+    return checksums.write(file, lambda temporary: save_file(tensors, temporary))
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
@@ -139,13 +171,7 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
     Raises FileNotFoundError or ValueError, naming the file and the first differences.
     """
     file = weights_file(path)
-    try:
-        found = load_file(file)
-    except (SafetensorError, OSError) as error:
-        raise ValueError(
-            f"The weights {file} ({file.stat().st_size} bytes) are cut short or damaged ({error}). "
-            "Fetch or train them again."
-        ) from error
+    found = load_tensors(file)
     wanted = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
     if not any(ADAPTER in name for name in found):
         wanted = {name: value for name, value in wanted.items() if ADAPTER not in name}
@@ -161,6 +187,33 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
             "with the config that made them (config.yaml beside them) or choose other weights."
         )
     module.load_state_dict(found, strict=False)
+
+
+def load_tensors(file: Path) -> dict[str, torch.Tensor]:
+    """Return the tensors of a safetensors file; ValueError if it is damaged, by its sidecar (if it
+    has one) or by itself."""
+    problem = checksums.problem(file)
+    if not problem:
+        try:
+            return load_file(file)
+        except (SafetensorError, OSError) as error:
+            problem = f"cannot be read: {error}"
+    raise ValueError(
+        f"The weights {file} ({file.stat().st_size} bytes) are cut short or damaged: {file.name} "
+        f"{problem}. {_again(file)}"
+    )
+
+
+def _again(file: Path) -> str:
+    folder = file.resolve().parent
+    if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):  # as train.run writes it
+        return (
+            "They are those of a run: the same `make train` command writes them again from the "
+            "run's checkpoints."
+        )
+    note = checksums.sidecar(file)
+    alone = f" If you know that {note.name} alone is damaged, delete it." if note.is_file() else ""
+    return f"Fetch or train them again.{alone}"
 
 
 def save_agent(agent: nn.Module, folder: str | Path) -> None:

@@ -24,7 +24,7 @@ import yaml
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from mitigate import checkpoint, hardened, programs, settings
+from mitigate import checkpoint, checksums, hardened, programs, settings
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.card import facts, metrics, readme
@@ -132,6 +132,7 @@ def _write(
         shipped = copy.deepcopy(agent)
         checkpoint.save_weights(agent, draft, half=True)
         checkpoint.load_weights(shipped, draft)
+    checksums.delete_sidecars(draft, "*")  # the card has all sums
     known = facts(cfg)  # before the slow part: what is missing shows at once
     found = _metrics(run, rows, {checkpoint.weights_sha(a) for a in (agent, shipped)})
     print("exporting the programs", flush=True)

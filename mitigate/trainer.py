@@ -238,11 +238,11 @@ class Trainer:
         self.precision = self.config["trainer"]["precision"] = kept
 
     def _resume(self) -> int:
-        """Load the newest checkpoint, if any, and return the number of updates done."""
-        kept = checkpoint.checkpoints(self.folder)
-        if not kept:
+        """Load the newest sound checkpoint, if any, and return the number of updates done."""
+        found = checkpoint.load_newest(self.folder)
+        if found is None:
             return 0
-        state = checkpoint.load(kept[-1])
+        path, state = found
         self._keep_precision(state["config"])
         different = differences(state["config"], self.config)
         if different:
@@ -255,7 +255,7 @@ class Trainer:
             self.optimizer.load_state_dict(state["optimizer"])
         except (RuntimeError, ValueError, KeyError) as error:
             raise ValueError(
-                f"The checkpoint {kept[-1]} does not fit {self.name} as configured now: "
+                f"The checkpoint {path} does not fit {self.name} as configured now: "
                 f"{str(error).splitlines()[0]} Choose another folder or delete it."
             ) from error
         self.scheduler.load_state_dict(state["scheduler"])

@@ -11,7 +11,7 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate import checkpoint, seeding
+from mitigate import checkpoint, checksums, seeding
 
 STATE = {
     "step": 3,
@@ -27,7 +27,8 @@ def test_what_is_saved_is_loaded(tmp_path):
     path = checkpoint.save(tmp_path, STATE)
     loaded = checkpoint.load(path)
     assert loaded["step"] == 3 and torch.equal(loaded["model"]["w"], STATE["model"]["w"])
-    assert [p.name for p in tmp_path.iterdir()] == ["step-00000003.pt"]
+    names = sorted(p.name for p in tmp_path.iterdir())
+    assert names == ["step-00000003.pt", "step-00000003.pt.sha256"]
 
 
 def test_only_the_newest_are_kept(tmp_path):
@@ -35,6 +36,8 @@ def test_only_the_newest_are_kept(tmp_path):
         checkpoint.save(tmp_path, {**STATE, "step": step}, keep=2)
     names = [path.name for path in checkpoint.checkpoints(tmp_path)]
     assert names == ["step-00000010.pt", "step-00000100.pt"]
+    sums = sorted(path.name for path in tmp_path.glob("*.sha256"))
+    assert sums == [f"{name}.sha256" for name in names]
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path):
@@ -46,9 +49,9 @@ def test_a_failed_write_leaves_the_old_file(tmp_path):
         raise OSError("disk full")
 
     with pytest.raises(OSError, match="disk full"):
-        checkpoint.write_atomically(path, fail)
+        checksums.write(path, fail)
     assert path.read_bytes() == before
-    assert list(tmp_path.iterdir()) == [path]
+    assert sorted(tmp_path.iterdir()) == [path, checksums.sidecar(path)]
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.99])
@@ -58,7 +61,7 @@ def test_a_truncated_checkpoint_is_named_with_the_older_one(tmp_path, share):
     os.truncate(path, int(path.stat().st_size * share))
     with pytest.raises(ValueError, match="step-00000002.pt") as error:
         checkpoint.load(path)
-    assert "from step-00000001.pt" in str(error.value) and "\n" not in str(error.value)
+    assert "goes on from step-00000001.pt" in str(error.value) and "\n" not in str(error.value)
 
 
 def test_a_foreign_file_is_named_and_runs_no_code(tmp_path):

@@ -168,6 +168,7 @@ def test_a_folder_of_adapters_holds_no_backbone_and_needs_its_base(place, tmp_pa
     folder = place / "hardened/adapted"
     assert hardened.check(folder)["adapters_only"]
     assert not (folder / "model.safetensors").exists()
+    assert not list((place / "hardened").rglob("*.sha256"))  # the cards have the sums
     other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
     with pytest.raises(ValueError, match="another"):
         hardened.load_hardened(folder, base=other)

@@ -99,13 +99,15 @@ def test_weights_of_another_agent(evaluation, tmp_path):
         assert part in text
 
 
-def test_a_truncated_checkpoint(tmp_path):
+def test_a_run_without_a_sound_checkpoint(tmp_path):
     train.run(config(tmp_path))
-    newest = checkpoint.checkpoints(tmp_path / "second")[-1]
-    os.truncate(newest, newest.stat().st_size // 2)
+    kept = checkpoint.checkpoints(tmp_path / "second")
+    for path in kept:
+        os.truncate(path, path.stat().st_size // 2)
     text = complaint(lambda: train.run(config(tmp_path)))
-    for part in (str(newest), "cut short", f"delete {newest.name} and run the same command again"):
+    for part in (str(tmp_path / "second"), *(path.name for path in kept), "none was deleted"):
         assert part in text
+    assert checkpoint.checkpoints(tmp_path / "second") == kept
 
 
 def test_a_loss_that_is_not_a_number(tmp_path):

@@ -85,12 +85,26 @@ def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
     assert {p for p in before if after[p] != before[p]} == set()
 
 
-def test_a_truncated_checkpoint_stops_the_run_with_advice(tmp_path):
+def test_a_damaged_checkpoint_is_passed_over_and_the_run_ends_the_same(tmp_path, capsys):
     train.run(config(tmp_path))
+    wanted = weights(tmp_path)
     newest = checkpoint.checkpoints(tmp_path / "second")[-1]
     os.truncate(newest, newest.stat().st_size // 2)
-    with pytest.raises(ValueError, match="go on from step-00000004.pt"):
-        train.run(config(tmp_path))
+    train.run(config(tmp_path))
+    assert f"{newest} is damaged; going on from step-00000004.pt" in capsys.readouterr().out
+    assert same(wanted, weights(tmp_path)) and checkpoint.load(newest)["step"] == 6
+
+
+def test_the_same_command_writes_a_finished_runs_damaged_weights_again(tmp_path):
+    train.run(config(tmp_path))
+    file = tmp_path / "agent" / "model.safetensors"
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    with pytest.raises(ValueError, match="the same `make train` command writes them again"):
+        checkpoint.load_weights(TinyAgent(), tmp_path / "agent")
+    train.run(config(tmp_path))
+    assert file.read_bytes() == whole
+    checkpoint.load_weights(TinyAgent(), tmp_path / "agent")
 
 
 def test_trainer_options_go_before_a_stages_own(tmp_path):

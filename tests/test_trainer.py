@@ -14,6 +14,7 @@ import torch
 
 from mitigate import checkpoint, seeding
 from mitigate.trainer import LossNotFinite, Trainer, differences, to_device
+from tests.test_checksums import FLIPS, flipped
 from tests.tiny import TinyRecipe
 
 ROOT = Path(__file__).parent.parent
@@ -98,6 +99,28 @@ def test_a_finished_run_returns_at_once_and_says_so(tmp_path, capsys):
     capsys.readouterr()
     assert same(first, trained(tmp_path))
     assert "already trained for 20 steps" in capsys.readouterr().out
+
+
+def test_after_any_flipped_bit_the_older_checkpoint_is_used(tmp_path, capsys):
+    whole = trained(tmp_path)
+    newest = checkpoint.checkpoints(tmp_path)[-1]
+    sound = newest.read_bytes()
+    draw = seeding.generator(0, "flipped bits of a trainer's checkpoint")
+    for bit in draw.integers(0, 8 * len(sound), FLIPS):
+        newest.write_bytes(flipped(sound, int(bit)))
+        made = recipe()
+        assert Trainer(made, steps=20, save_every=5, folder=tmp_path)._resume() == 15
+        assert f"{newest} is damaged; going on from step-00000015.pt" in capsys.readouterr().out
+    assert same(whole, trained(tmp_path)) and checkpoint.load(newest)["step"] == 20
+
+
+def test_a_run_with_other_saves_keeps_what_it_writes_beside_a_damaged_later_step(tmp_path):
+    trained(tmp_path, keep=2)
+    newest = checkpoint.checkpoints(tmp_path)[-1]
+    newest.write_bytes(b"")
+    Trainer(recipe(), steps=20, save_every=2, keep=1, folder=tmp_path).fit()
+    assert [p.name for p in checkpoint.checkpoints(tmp_path)] == [newest.name]
+    assert checkpoint.load(newest)["step"] == 20
 
 
 def test_extra_state_is_resumed(tmp_path):

@@ -17,8 +17,6 @@ from typing import Any
 
 import torch
 import torch.nn.functional as F
-from safetensors import SafetensorError
-from safetensors.torch import load_file
 from torch import Tensor, nn
 
 from mitigate import checkpoint
@@ -175,10 +173,10 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
             raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
     try:
         settings = json.loads((folder / SETTINGS).read_text(encoding="utf-8"))
-        tensors = load_file(folder / WEIGHTS)
+        tensors = checkpoint.load_tensors(folder / WEIGHTS)
         shapes = dict(settings["adapters"])
         wanted = settings["backbone_sha256"]
-    except (SafetensorError, OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise ValueError(f"The adapters in {folder} are cut short or damaged ({error}).") from error
     found = backbone_sha(model)
     if found != wanted:

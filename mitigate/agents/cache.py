@@ -17,12 +17,12 @@ from scipy.spatial import cKDTree
 from mitigate.agents.concepts import view_labels
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.waypoints import COUNT, select
-from mitigate.checkpoint import write_atomically
 from mitigate.envs.apartments.apartment import Apartment, apartment_of
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import goal_field
 from mitigate.envs.apartments.tasks import from_vlnce, heading_of, landmarks
 from mitigate.envs.episodes import Episode
+from mitigate.files import write_atomically
 from mitigate.keys import VIEW_STEP_DEGREES, VIEWS
 from mitigate.progress import Progress
 

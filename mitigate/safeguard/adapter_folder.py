@@ -10,6 +10,8 @@ from typing import Any
 
 from torch import Tensor
 
+from mitigate import checksums
+
 CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
 ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card and of PEFT's config
     CARD: {"base": (str,), "base_sha256": (str,), "prompt": (str,)},
@@ -29,15 +31,17 @@ def write_adapter(
 ) -> None:
     """Write the adapter of a PEFT ``network``, its weights ``tensors``, and ``card``.
 
-    Files appear whole or not at all.
+    Files appear whole or not at all; beside the weights lies their sha256.
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=folder) as temporary:
         network.save_pretrained(temporary, state_dict=tensors, save_embedding_layers=False)
         (Path(temporary) / CARD).write_text(json.dumps(card, indent=1) + "\n", "utf-8")
+        digest = checksums.announce(folder / ADAPTER, Path(temporary) / ADAPTER)
         for name in (CONFIG, ADAPTER, CARD):
             os.replace(Path(temporary) / name, folder / name)
+    checksums.settle(folder / ADAPTER, digest)
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:

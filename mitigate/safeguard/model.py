@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from safetensors.torch import load_file
 from torch import Tensor, nn
 
+from mitigate.checkpoint import load_tensors
 from mitigate.progress import Progress
 from mitigate.safeguard.adapter_folder import ADAPTER, read_adapter, write_adapter
 from mitigate.safeguard.base import PRECISIONS, SMOLLM2, base_sha256, load_base
@@ -188,8 +188,8 @@ class LanguageModel(nn.Module):
     def load(self, folder: str | Path) -> None:
         """Fill the adapter from a folder that :meth:`save` wrote.
 
-        Raises FileNotFoundError if there is none, ValueError if it belongs to another base or
-        another shape of LoRA.
+        Raises FileNotFoundError if there is none, ValueError if it is damaged or belongs to another
+        base or another shape of LoRA.
         """
         from peft import set_peft_model_state_dict
 
@@ -201,7 +201,7 @@ class LanguageModel(nn.Module):
                 f"{base_sha256(self.base)[:12]}). Set agent.base to the adapter's base, or train "
                 "another adapter with `make train RECIPE=safeguard_lora`."
             )
-        tensors = load_file(Path(folder) / ADAPTER)
+        tensors = load_tensors(Path(folder) / ADAPTER)
         try:
             found: Any = set_peft_model_state_dict(self.network, tensors)
         except RuntimeError as error:

@@ -270,7 +270,7 @@ def test_a_second_set_is_refused(encoder):
 
 
 @pytest.mark.parametrize(
-    "spoil", ["missing", "cut", "settings", "levels", "shapes", "memory", "backbone"]
+    "spoil", ["missing", "cut", "bit", "settings", "levels", "shapes", "memory", "backbone"]
 )
 def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
     torch.manual_seed(0)
@@ -283,6 +283,9 @@ def test_a_damaged_or_foreign_folder_is_refused(tmp_path, spoil):
         weights.unlink()
     elif spoil == "cut":
         weights.write_bytes(weights.read_bytes()[:100])
+    elif spoil == "bit":
+        whole = weights.read_bytes()
+        weights.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
     elif spoil == "settings":
         settings.write_text(json.dumps({"adapters": 3}), encoding="utf-8")
     elif spoil == "levels":

@@ -90,7 +90,8 @@ def test_a_saved_adapter_says_the_same_after_a_reload(model, tmp_path):
     torch.testing.assert_close(first, second)
     assert model.rewrite(["TURN left."]) == again.rewrite(["TURN left."])
     names = {path.name for path in (tmp_path / "adapter").iterdir()}
-    assert names == {"adapter_config.json", "adapter_model.safetensors", "card.json"}
+    weights = "adapter_model.safetensors"
+    assert names == {"adapter_config.json", weights, f"{weights}.sha256", "card.json"}
     card = json.loads((tmp_path / "adapter" / "card.json").read_text())
     assert len(card["base_sha256"]) == 64 and card["base"] == model.base
 
@@ -164,6 +165,17 @@ def test_code_and_pickles_in_a_model_folder_are_not_run(tiny_base, tmp_path):
         with pytest.raises(ValueError, match="cannot be loaded"):
             LanguageModel(str(folder))
     assert not (tmp_path / "sentinel").exists()
+
+
+def test_a_changed_adapter_is_refused(model, tmp_path):
+    model.save(tmp_path)
+    file = tmp_path / "adapter_model.safetensors"
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    with pytest.raises(ValueError, match="adapter_model.safetensors.* damaged"):
+        open_adapter(tmp_path)
+    model.save(tmp_path)
+    assert file.read_bytes() == whole and open_adapter(tmp_path)
 
 
 def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):
