@@ -189,9 +189,11 @@ class Trainer:
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
         kept = checkpoint.checkpoints(self.folder)
+        own = type(self.recipe).__name__
+        kind = "" if own == self.name else f" ({own})"
         last = f"The last good checkpoint is {kept[-1]}" if kept else "No checkpoint was saved yet"
         return (
-            f"Training stopped at step {step} of {self.name}: the loss is {loss.item():g} and its "
+            f"Training stopped at step {step} of {self.name}{kind}: the loss is {loss.item():g} and its "
             f"gradient norm {norm.item():g}, which must be finite. Episodes of that batch: "
             f"{episodes}. {last}; the step was not applied. Lower trainer.lr, use "
             "trainer.precision=fp32, or look at those episodes."
