@@ -6,6 +6,7 @@ import os
 import platform
 import shutil
 import sys
+from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -37,6 +38,20 @@ EXTRAS = {
     "onnx": ("onnx", "onnxruntime", "onnxscript"),
     "bench": ("miniworld", "albumentations", "kornia"),
 }
+LEVELS = {  # of an x86 processor's vector units, each above the one before: flags that it takes
+    "AVX2": {"avx2"},
+    "AVX-512": {"avx512f", "avx512bw", "avx512dq", "avx512vl"},
+    "native bf16": {"avx512_bf16"},
+    "bf16 matrices (AMX)": {"amx_bf16", "amx_tile"},
+}
+CAPS = {  # how many of the levels a value of the variable leaves; one that is not here: all
+    "ONEDNN_MAX_CPU_ISA": {
+        "SSE41": 0, "AVX": 0, "AVX2": 1, "AVX2_VNNI": 1, "AVX2_VNNI_2": 1, "AVX512_CORE": 2,
+        "AVX512_CORE_VNNI": 2, "AVX512_CORE_BF16": 3, "AVX512_CORE_FP16": 3,
+    },
+    "ATEN_CPU_CAPABILITY": {"default": 0, "avx2": 1},
+}  # fmt: skip
+COMPILERS = ("c++", "g++", "clang++")
 OLDEST = (3, 10)  # Python, as pyproject.toml says
 ROOM = 5.0  # GB of disk for the environment, runs and caches (ours)
 
@@ -51,7 +66,9 @@ def main() -> int:
 def _machine() -> list[str]:
     _line("python", platform.python_version())
     _line("system", f"{platform.system()} {platform.machine()}")
-    _line("cores", str(len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count()))
+    _line("cores", _cores())
+    _line("processor", processor(_flags(), os.environ))
+    _line("C++ compiler", compiler() or "missing (torch.compile needs one, training does not)")
     free = shutil.disk_usage(".").free / 1e9
     _line("disk", f"{free:.0f} GB free")
     problems = []
@@ -60,6 +77,47 @@ def _machine() -> list[str]:
     if free < ROOM:
         problems.append(f"Only {free:.1f} GB of disk are free; {ROOM:g} GB are advisable.")
     return problems
+
+
+def _cores() -> str:
+    there = os.cpu_count() or 1
+    usable = len(os.sched_getaffinity(0)) if sys.platform == "linux" else there
+    return str(there) if usable == there else f"{usable} of {there}"
+
+
+def _flags() -> set[str]:
+    """Flags of the first processor in /proc/cpuinfo; empty where there are none."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return set()
+    return next((set(line.split(":")[1].split()) for line in lines if line[:5] == "flags"), set())
+
+
+def processor(flags: set[str], environment: Mapping[str, str]) -> str:
+    """Say which levels a processor with ``flags`` has, and which of them ``environment`` forbids.
+
+    Without native bf16, torch emulates bf16, which takes several times as long as fp32.
+    """
+    if not flags:
+        return "unknown (no flags in /proc/cpuinfo)"
+    has = [name for name, needed in LEVELS.items() if needed <= flags]
+    lacks = [name for name in list(LEVELS)[:3] if name not in has]
+    text = ", ".join([*has, *(f"no {name}" for name in lacks)])
+    for variable, values in CAPS.items():
+        value = environment.get(variable, "")
+        key = value.upper() if variable == "ONEDNN_MAX_CPU_ISA" else value
+        allowed = list(LEVELS)[: values.get(key, len(LEVELS))]
+        forbidden = [name for name in has if name not in allowed]
+        if forbidden:
+            text += f"; {variable}={value} forbids {', '.join(forbidden)}"
+    return text
+
+
+def compiler() -> str | None:
+    """Return the path of a C++ compiler, the one named by CXX if that is set, or None."""
+    named = os.environ.get("CXX", "").split()[:1]
+    return next((path for name in named or COMPILERS if (path := shutil.which(name))), None)
 
 
 def _packages() -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -13,6 +14,10 @@ from mitigate import progress
 
 if TYPE_CHECKING:
     from typing import Self
+
+CPU = (
+    "cpu_s_per_step"  # scalar: this process's CPU seconds, all threads, a step since the last line
+)
 
 
 class Journal:
@@ -28,6 +33,7 @@ class Journal:
         self._writer = SummaryWriter(str(folder), purge_step=start)
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
+        self._measured = start, time.process_time()
 
     def __enter__(self) -> Self:
         self._progress.__enter__()
@@ -52,11 +58,18 @@ class Journal:
             self._writer.add_scalar(name, value, step)
         if not line:
             return
+        self._log_cost(step)
         shown = [f"{name} {value:.4g}" for name, value in values.items()]
         self._progress.advance(0, note=shown[0])
         if not sys.stdout.isatty():
             left = progress.duration(self._progress.left())
             self.say("  ".join([f"step {step}/{self._progress.total}", *shown, f"{left} left"]))
+
+    def _log_cost(self, step: int) -> None:
+        before, then = self._measured
+        self._measured = self._progress.done, time.process_time()
+        steps = max(1, self._progress.done - before)
+        self._writer.add_scalar(CPU, (self._measured[1] - then) / steps, step)
 
     def figures(self, step: int, pictures: dict[str, np.ndarray]) -> None:
         """Log uint8 pictures ``[H, W, 3]``."""

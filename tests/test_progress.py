@@ -164,7 +164,7 @@ def test_a_terminal_gets_a_bar_with_the_time_left_and_no_plain_lines(capsys, qui
         bar.say("a line")
         bar.advance(1)
     out = capsys.readouterr().out
-    assert "4/4 [00:00<00:00" in out and " step/s, loss 1]" in out
+    assert "4/4 [00:00<00:00" in out and "step/s, loss 1]" in out
     assert "a line\n" in out and "maps: 4 steps" not in out
 
 

@@ -162,7 +162,7 @@ def test_a_terminal_gets_a_bar_with_the_time_left(tmp_path, capsys, monkeypatch)
     monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
     trained(tmp_path, log_every=10)
     out = capsys.readouterr().out
-    assert "20/20 [00:0" in out and " step/s, loss " in out and "left" not in out
+    assert "20/20 [00:0" in out and "step/s, loss " in out and "left" not in out
 
 
 def test_scalars_and_pictures_are_in_tensorboard(tmp_path):
