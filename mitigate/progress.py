@@ -1,0 +1,210 @@
+"""How far a long job is: a bar in a terminal, else plain lines that keep coming.
+
+While a :class:`Progress` is open, one daemon thread (the clock) tells how far the innermost one
+is whenever nothing was printed for ``EVERY`` seconds, whatever the code inside does meanwhile. So
+there is a line at once and then at least every 20 seconds, unless that code keeps Python's
+interpreter lock for ten seconds in a single call; torch, numpy, sleeps and subprocesses do not.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import sys
+import threading
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from tqdm import tqdm
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+EVERY = 10.0  # seconds without a line after which the clock prints one (ours)
+REDRAW = 1.0  # seconds between the clock's redraws of a bar (ours)
+
+_lock = threading.RLock()  # of what follows and of standard output
+_changed = threading.Condition(_lock)  # wakes the clock
+_open: list[Progress] = []  # outermost first
+_spoke = 0.0  # time.monotonic() of the last plain line
+_thread: threading.Thread | None = None  # the clock while it runs
+
+
+class Progress:
+    """Progress of a job of ``total`` units, of which ``start`` are done; a context manager.
+
+    Raises ValueError when ``start`` does not lie between 0 and ``total``.
+    """
+
+    def __init__(self, title: str, total: int, *, unit: str = "step", start: int = 0) -> None:
+        if not 0 <= start <= total:
+            raise ValueError(
+                f"Progress of {title!r}: start={start} must be at least 0 and at most "
+                f"total={total}. Pass the number of {unit}s in all and of those done before."
+            )
+        self.title, self.total, self.unit = title, total, unit
+        self.start = self.done = start
+        self.note = ""
+        self._began = time.monotonic()
+        self._bar: tqdm | None = None
+
+    def __enter__(self) -> Self:
+        self._began = time.monotonic()
+        with _lock:
+            if sys.stdout.isatty():
+                self._bar = tqdm(
+                    total=self.total,
+                    initial=self.start,
+                    desc=self.title,
+                    unit=f" {self.unit}",
+                    file=sys.stdout,
+                    dynamic_ncols=True,
+                    leave=None,  # nested ones vanish
+                )
+            else:
+                say(self._first())
+            _open.append(self)
+            _start_clock()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        with _lock:
+            if self in _open:  # it is not in a forked child
+                _open.remove(self)
+            _changed.notify_all()
+            if self._bar is not None:
+                self._bar.close()
+            else:
+                say(self._last(failed=kind is not None))
+
+    def advance(self, count: int = 1, note: str = "") -> None:
+        """Count ``count`` units as done (0 is allowed); an empty ``note`` keeps the latest one."""
+        with _lock:
+            self.done += count
+            self.note = note or self.note
+            if self._bar is not None:
+                if note:
+                    self._bar.set_postfix_str(note, refresh=False)
+                self._bar.update(count)
+
+    def say(self, text: str) -> None:
+        """Print one line without breaking the bar."""
+        say(text)
+
+    def line(self) -> str:
+        """Return e.g. ``train: step 120/700, 3.1 steps/s, 3 min 10 s left, loss 0.31``."""
+        elapsed, now = time.monotonic() - self._began, self.done - self.start
+        if now > 0:
+            pace = [_rate(now / max(elapsed, 1e-9), self.unit), f"{duration(self.left())} left"]
+        else:
+            pace = [f"{duration(elapsed)} so far"]
+        return ", ".join([self._place(), *pace, *self._notes()])
+
+    def left(self) -> float:
+        """Return the seconds that the rest takes at the mean pace so far; infinite before that."""
+        now = self.done - self.start
+        pace = (time.monotonic() - self._began) / now if now > 0 else math.inf
+        return (self.total - self.done) * pace if self.done < self.total else 0.0
+
+    def _place(self) -> str:
+        return f"{self.title}: {self.unit} {self.done}/{self.total}"
+
+    def _notes(self) -> list[str]:
+        return [self.note] if self.note else []
+
+    def _first(self) -> str:
+        before = f", {self.start} of them done before" if self.start else ""
+        return f"{self.title}: {self.total} {_plural(self.unit, self.total)}{before}"
+
+    def _last(self, failed: bool) -> str:
+        end = "stopped after" if failed else "done in"
+        elapsed = duration(time.monotonic() - self._began)
+        return ", ".join([self._place(), f"{end} {elapsed}", *self._notes()])
+
+
+def say(text: str) -> None:
+    """Print one line at once, above the bars if there are any."""
+    global _spoke
+    with _lock:
+        if any(progress._bar is not None for progress in _open):
+            tqdm.write(text, file=sys.stdout)
+            sys.stdout.flush()
+        else:
+            print(text, flush=True)
+        _spoke = time.monotonic()
+
+
+def duration(seconds: float) -> str:
+    """Return e.g. ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or, if infinite, ``unknown time``."""
+    if math.isinf(seconds):
+        return "unknown time"
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02d} s"
+    return f"{whole // 3600} h {whole % 3600 // 60:02d} min"
+
+
+def _rate(per_second: float, unit: str) -> str:
+    if per_second < 1:
+        return f"{1 / per_second:.3g} s a {unit}"
+    return f"{per_second:.3g} {unit}s/s"
+
+
+def _plural(unit: str, count: int) -> str:
+    return unit if count == 1 else f"{unit}s"
+
+
+def _start_clock() -> None:
+    global _thread
+    if _thread is None:
+        _thread = threading.Thread(target=_clock, name="progress", daemon=True)
+        _thread.start()
+
+
+def _clock() -> None:
+    """Keep lines or bars coming while anything is open."""
+    global _thread
+    with _changed:
+        try:
+            while _open:
+                _changed.wait(_tell())
+        except (OSError, ValueError):  # standard output is closed; the job itself may go on
+            pass
+        finally:
+            _thread = None
+
+
+def _tell() -> float:
+    """Redraw the bars, or print a line if it is time; return the seconds until the next look."""
+    bars = [progress._bar for progress in _open if progress._bar is not None]
+    if bars:
+        for bar in bars:
+            bar.refresh()
+        return REDRAW
+    left = _spoke + EVERY - time.monotonic()
+    if left > 0:
+        return left
+    say(_open[-1].line())
+    return EVERY
+
+
+def _after_fork_in_child() -> None:
+    """Forget what the parent tells: a child has no clock."""
+    global _thread
+    _open.clear()
+    _thread = None
+    _lock.release()
+
+
+# No fork while another thread holds the lock: the child could never take it.
+os.register_at_fork(
+    before=_lock.acquire, after_in_parent=_lock.release, after_in_child=_after_fork_in_child
+)
