@@ -18,7 +18,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
 from multiprocessing.connection import Connection, wait
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 from mitigate.progress import Progress, duration
 
@@ -30,7 +30,7 @@ DEATHS = 1  # workers that are replaced
 class Task(Protocol):
     """What workers do. Each gets a copy of it (by pickle), made in the process that asks."""
 
-    preload: str  # module that all workers need, imported once for all of them
+    preload: ClassVar[str]  # module that all workers need, imported once for all of them
 
     def ready(self) -> AbstractContextManager[None]:
         """Around all jobs of a process: what it sets up once, and puts back."""
@@ -50,7 +50,11 @@ class WorkersDied(ValueError):
 
 
 def cores() -> int:
-    """Processor cores that this process may use."""
+    """Processor cores that this process may use; the environment variable PYTHON_CPU_COUNT, which
+    Python itself reads from 3.13 on, says another number."""
+    told = os.environ.get("PYTHON_CPU_COUNT", "")
+    if told.isdigit() and int(told) > 0:
+        return int(told)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -167,7 +171,7 @@ class _Crew:
             while worker.pipe.poll():
                 result, error = worker.pipe.recv()
                 if error is not None:
-                    raise error
+                    raise error[0] from error[1]
                 worker.heard = worker.told = time.monotonic()
                 self.done += 1
                 yield worker.left.popleft()[0], result
@@ -235,12 +239,12 @@ def _next(pipe: Connection) -> list[Any]:
         return []  # the parent is gone
 
 
-def _portable(error: Exception) -> Exception:
-    """``error`` with its traceback as a note; as RuntimeError if it cannot travel."""
-    text = traceback.format_exc()
+def _portable(error: Exception) -> tuple[Exception, Exception]:
+    """``error`` and a cause that shows the worker's traceback; a RuntimeError with
+    its text in place of one that cannot be pickled."""
+    cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:
-        return RuntimeError(text)
-    error.add_note(f"In a worker process:\n{text}")
-    return error
+        return RuntimeError(str(error)), cause
+    return error, cause

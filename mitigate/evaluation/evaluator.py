@@ -49,7 +49,8 @@ Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says 
 class EpisodeTask:
     """Runs jobs (``mitigate/workers.py``): each one's result is its label with its measures.
 
-    repaired: what a safeguard makes of instructions. size: pixels of a view. A label holds "seed".
+    repaired: what a safeguard makes of instructions. size: pixels of a view. simulator: to use in
+    this process; others make their own. A label holds "seed".
     """
 
     agent: Any
@@ -57,6 +58,9 @@ class EpisodeTask:
     repaired: dict[str, str] = field(default_factory=dict)
     simulator: Simulator | None = None
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "simulator": None}
 
     @contextmanager
     def ready(self) -> Iterator[None]:
@@ -72,6 +76,7 @@ class EpisodeTask:
 
     def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
         """Rows of ``jobs``, which should be of one episode: frames and features are kept."""
+        assert self.simulator is not None, "work() is called while ready()"
         rendered = Memory(FRAMES)
         with getattr(self.agent, "remembering", nullcontext)():
             for episode, condition, label in jobs:
