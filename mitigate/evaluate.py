@@ -10,16 +10,18 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import MISSING, DictConfig
-from torch import nn
 
-from mitigate import build, cli, columns
+from mitigate import cli
 from mitigate.files import atomic_text, sha256
+
+if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
+    from torch import nn
 
 ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
@@ -34,7 +36,7 @@ class EvaluationConfig:
     enabled: bool = True
     split: str = "val_unseen"
     episodes: int | None = 40
-    workers: int = 1
+    workers: int | None = None
 
 
 @dataclass
@@ -51,7 +53,7 @@ class EvaluateConfig:
     severity: float = 0.6
     severity_depth: float | None = None
     seed: int = 0
-    workers: int = 1
+    workers: int | None = None
     out: str | None = None
     agent: Any = MISSING
     env: Any = MISSING
@@ -70,14 +72,20 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     that is not the agent's.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
+    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
+    chosen = episodes(cfg.env, cfg.split, cfg.episodes)
+    print(
+        f"evaluate: {cfg.checkpoint} on {cfg.split}, {len(chosen)} episodes x {len(names)} "
+        f"conditions at severity {cfg.severity:g}",
+        flush=True,
+    )
+    from mitigate import build, columns
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.safeguard.guard import open_safeguard
 
     node, name = columns.agent_and_name(cfg, overrides)
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
-    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
-    chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     _check_list(out / LIST, cfg.env.episodes[cfg.split])
     evaluate(
         agent,
@@ -116,6 +124,8 @@ def _check_list(note: Path, source: str) -> None:
 def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
     by ``node``. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
+    from mitigate import build
+
     settings = build.settings_of(node, weights)
     return build.build_agent(settings, weights=weights, seed=seed).eval()
 
@@ -128,6 +138,7 @@ def report_before_after(
     ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing. The
     pictures in ``folder/pictures`` show episodes that the training won back.
     """
+    from mitigate import columns
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.evaluation.trajectories import write_pictures
 

@@ -158,7 +158,7 @@ def cells(cfg: DictConfig) -> list[Cell]:
 def make(cell: Cell, cfg: DictConfig, bar: tqdm) -> str | None:
     """Train and evaluate one cell; return what went wrong, if anything did."""
     cell.folder.mkdir(parents=True, exist_ok=True)
-    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"}
     with open(cell.folder / LOG, "a", encoding="utf-8") as log:
         for kind, arguments in cell.commands(cfg):
             process = subprocess.Popen(

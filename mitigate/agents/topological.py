@@ -7,7 +7,9 @@ observation renders nothing in between.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from hashlib import blake2b
 from typing import Any
 
 import numpy as np
@@ -23,9 +25,11 @@ from mitigate.agents.planner import Planner, collate
 from mitigate.agents.text import encode, pad
 from mitigate.agents.waypoints import WaypointHead, select
 from mitigate.keys import STOP, VIEWS
+from mitigate.memory import Memory
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 SENSORS = ("rgb", "depth", "instruction")
+FEATURES = 1 << 25  # bytes of features kept while remembering (ours): about 900 panoramas
 
 
 class TopologicalAgent(nn.Module):
@@ -54,6 +58,7 @@ class TopologicalAgent(nn.Module):
                 f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSORS)}."
             )
         self.blind = tuple(blind)
+        self._memory: Memory | None = None
         self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
         self.waypoint_head = WaypointHead(width)
@@ -80,13 +85,19 @@ class TopologicalAgent(nn.Module):
 
     def encode(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """As :meth:`perceive`, whatever the agent is blind to."""
-        rgb_features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
-        depth_features = self.depth_encoder(depth.flatten(0, 1)).unflatten(0, (-1, VIEWS))
-        concepts = concepts.unflatten(0, (-1, VIEWS))
-        views = torch.cat(
-            [rgb_features.unflatten(0, (-1, VIEWS)), concepts.sigmoid(), depth_features], -1
-        )
-        return views, concepts, self.waypoint_head(depth_features)
+        features, concepts = self._encode_rgb(rgb)
+        depth_features, waypoints = self._encode_depth(depth)
+        return torch.cat([features, concepts.sigmoid(), depth_features], -1), concepts, waypoints
+
+    def _encode_rgb(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
+        """Features [P, 12, width] and concept logits [P, 12, C]."""
+        features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
+        return features.unflatten(0, (-1, VIEWS)), concepts.unflatten(0, (-1, VIEWS))
+
+    def _encode_depth(self, depth: Tensor) -> tuple[Tensor, Tensor]:
+        """Features [P, 12, width] and waypoint logits [P, 120, 12]."""
+        features = self.depth_encoder(depth.flatten(0, 1)).unflatten(0, (-1, VIEWS))
+        return features, self.waypoint_head(features)
 
     def tokens(self, instructions: list[str]) -> Tensor:
         """Instructions to padded token ids int64 [E, L]."""
@@ -94,6 +105,17 @@ class TopologicalAgent(nn.Module):
         return pad(rows).to(self.device)
 
     # closed loop ------------------------------------------------------------------------------
+
+    @contextmanager
+    def remembering(self) -> Iterator[None]:
+        """Within it, :meth:`act` encodes equal frames once: what the encoders made of the latest
+        ones is kept. The same frames give the same features, so no action depends on it, as long
+        as the weights stay as they are; in training mode nothing is kept."""
+        before, self._memory = self._memory, Memory(FEATURES)
+        try:
+            yield
+        finally:
+            self._memory = before
 
     def reset(self, instruction: str) -> None:
         """Start an episode. Raises TypeError if ``instruction`` is no string; warns if the agent
@@ -125,13 +147,10 @@ class TopologicalAgent(nn.Module):
 
     def _decide(self, observation: Mapping[str, np.ndarray]) -> bool:
         """Take one decision: start a route and return True, or return False to stop."""
-        rgb, depth = (
-            torch.from_numpy(frame)[None].to(self.device) for frame in checked.frames(observation)
-        )
-        views, _, waypoints = self.perceive(rgb, depth)
+        views, waypoints = self._see(*checked.frames(observation))
         self._views.append(self.planner.look(views))
         pose = checked.pose(observation).astype(np.float64)
-        self.map.add(pose, select(waypoints[0].float().cpu().numpy()))
+        self.map.add(pose, waypoints)
         decision = self.map.decision(pose)
         logits = self.planner(
             self._text, torch.cat(self._views), collate([decision], [0], [0]).to(self.device)
@@ -147,6 +166,34 @@ class TopologicalAgent(nn.Module):
         self.controller.follow(self.map.route(ghost))
         self.map.arrive(ghost)
         return True
+
+    def _see(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[Tensor, np.ndarray]:
+        """View features [1, 12, ...] and waypoints [n, 2] of one panorama, as :meth:`perceive`."""
+
+        def encode_rgb(frames: Tensor) -> tuple[Tensor, Tensor]:
+            features, concepts = self._encode_rgb(frames)
+            return features, concepts.sigmoid()
+
+        def encode_depth(frames: Tensor) -> tuple[Tensor, np.ndarray]:
+            features, waypoints = self._encode_depth(frames)
+            return features, select(waypoints[0].float().cpu().numpy())
+
+        features, concepts = self._once("rgb", rgb, encode_rgb)
+        depth_features, waypoints = self._once("depth", depth, encode_depth)
+        return torch.cat([features, concepts, depth_features], -1), waypoints
+
+    def _once(self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]) -> tuple:
+        """What ``encode`` makes of the frames [12, H, H, c] of a sensor, or made of equal ones
+        before, while :meth:`remembering`."""
+        frames = np.zeros_like(frames) if sensor in self.blind else frames
+
+        def made() -> tuple:
+            return encode(torch.from_numpy(frames)[None].to(self.device))
+
+        if self._memory is None or self.training:
+            return made()
+        digest = blake2b(frames.data, digest_size=16).digest()
+        return self._memory.recall((sensor, frames.shape, digest), made)
 
     def _give_up(self) -> bool:
         """At the limit: walk to the visited node with the best stop score (as ETPNav) and stop."""

@@ -1,152 +1,99 @@
 """Closed-loop evaluation: every agent meets the same episodes and the same random keys.
 
-An episode is run alone, so its result does not depend on how many run beside it; rows are appended
-as they come, and an interrupted evaluation continues where it stopped.
+An episode is run alone, so its result does not depend on how many run beside it; rows are written
+as they come, and an interrupted evaluation continues where it stopped. The conditions of an episode
+run one after the other in one process, which keeps what it rendered and what the agent encoded:
+equal frames give equal features, so no row depends on what was kept.
 """
 
 from __future__ import annotations
 
-import multiprocessing
+import time
 import warnings
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass, field
+from itertools import groupby
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, ClassVar
 
-import numpy as np
 import torch
-from tqdm import tqdm
 
+from mitigate import workers as processes
 from mitigate.checkpoint import weights_sha
-from mitigate.corruptions import (
-    SUITE_VERSION,
-    Corruption,
-    Key,
-    NotApplicable,
-    corrupt_instruction,
-    corrupt_observation,
-    inject_system_prompt,
-)
+from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import SUCCESS_METRES, from_vlnce
+from mitigate.envs.apartments.tasks import SUCCESS_METRES
 from mitigate.envs.episodes import Episode
 from mitigate.evaluation import metrics, rows
-from mitigate.keys import DEPTH, POSE, RGB
+from mitigate.evaluation.episode import (
+    FRAMES,
+    Agent,
+    LazyObservation,
+    instruction,
+    run_episode,
+)
+from mitigate.memory import Memory
+from mitigate.progress import Progress
 from mitigate.safeguard.guard import Safeguard
 
-_FLUSH = 20  # rows between two writes
+__all__ = ["Agent", "EpisodeTask", "LazyObservation", "evaluate", "instruction", "run_episode"]
+
+WORTH = 40  # episodes that make a process worth its start (ours): 4 s of 0.1 s each
+_PAUSE = 1.0  # seconds between two writes, at least
+
+Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says besides measures
 
 
-class Agent(Protocol):
-    """What can be evaluated: any object that turns observations into low-level actions.
+@dataclass
+class EpisodeTask:
+    """Runs jobs (``mitigate/workers.py``): each one's result is its label with its measures.
 
-    An agent that works with a prompt has it in an attribute ``system_prompt``, read at ``reset``.
+    repaired: what a safeguard makes of instructions. size: pixels of a view. simulator: to use in
+    this process; others make their own. A label holds "seed".
     """
 
-    def reset(self, instruction: str) -> None: ...
-    def act(self, observation: Mapping[str, np.ndarray]) -> int: ...
+    agent: Any
+    size: int
+    repaired: dict[str, str] = field(default_factory=dict)
+    simulator: Simulator | None = None
+    preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "simulator": None}
 
-class LazyObservation(Mapping[str, np.ndarray]):
-    """An observation whose frames are rendered and corrupted only if the agent reads them."""
+    @contextmanager
+    def ready(self) -> Iterator[None]:
+        """One thread for torch: sums are then in the same order in any number of processes."""
+        threads = torch.get_num_threads()
+        torch.set_num_threads(1)
+        self.agent.eval()
+        self.simulator = self.simulator or Simulator(self.size)
+        try:
+            yield
+        finally:
+            torch.set_num_threads(threads)
 
-    def __init__(self, pose: np.ndarray, frames: Callable[[], dict[str, np.ndarray]]) -> None:
-        self._values: dict[str, np.ndarray] = {POSE: pose}
-        self._frames = frames
+    def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
+        """Rows of ``jobs``, which should be of one episode: frames and features are kept."""
+        assert self.simulator is not None, "work() is called while ready()"
+        rendered = Memory(FRAMES)
+        with getattr(self.agent, "remembering", nullcontext)():
+            for episode, condition, label in jobs:
+                measures = run_episode(
+                    self.agent,
+                    self.simulator,
+                    episode,
+                    condition,
+                    label["seed"],
+                    self.repaired,
+                    rendered,
+                )
+                yield {**label, **measures}
 
-    def __getitem__(self, name: str) -> np.ndarray:
-        if name in (RGB, DEPTH) and name not in self._values:
-            self._values |= self._frames()
-        return self._values[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter((POSE, RGB, DEPTH))
-
-    def __len__(self) -> int:
-        return 3
-
-
-def run_episode(
-    agent: Agent,
-    simulator: Simulator,
-    episode: Episode,
-    corruption: Corruption,
-    seed: int,
-    repaired: Mapping[str, str] | None = None,
-) -> dict[str, Any]:
-    """Run one episode to STOP or the step limit and return its measures.
-
-    ``repaired``: what a safeguard makes of instructions; one that is not in it stays as it is.
-    """
-    simulator.reset(episode)
-    with _instructed(agent, episode, corruption, seed, repaired or {}):
-        return _walk(agent, simulator, episode, corruption, seed)
-
-
-def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
-    """Return the words of ``episode`` as ``corruption`` leaves them."""
-    text = episode.instruction.text
-    if corruption.modality != "instruction" or corruption.name == "white_box":
-        return text
-    key = Key(seed, episode.episode_id)
-    return corrupt_instruction(text, corruption.name, corruption.severity, key)
-
-
-@contextmanager
-def _instructed(
-    agent: Agent, episode: Episode, corruption: Corruption, seed: int, repaired: Mapping[str, str]
-) -> Iterator[None]:
-    """Reset the agent with the instruction, and the prompt, that the corruption leaves it."""
-    text, key = instruction(episode, corruption, seed), Key(seed, episode.episode_id)
-    prompt = getattr(agent, "system_prompt", None)
-    try:
-        if corruption.name == "white_box":
-            injected = inject_system_prompt(prompt, corruption.severity, key)
-            if isinstance(injected, NotApplicable):
-                raise ValueError(f"{corruption.name!r} is not applicable: {injected.reason}.")
-            agent.system_prompt = injected  # type: ignore[attr-defined]
-        agent.reset(repaired.get(text, text))
-        yield
-    finally:
-        if prompt is not None:
-            agent.system_prompt = prompt  # type: ignore[attr-defined]
-
-
-def _walk(
-    agent: Agent, simulator: Simulator, episode: Episode, corruption: Corruption, seed: int
-) -> dict[str, Any]:
-    looks = 0
-
-    def frames() -> dict[str, np.ndarray]:
-        nonlocal looks
-        looks += 1
-        return corrupt_observation(
-            simulator.observe(), corruption, Key(seed, episode.episode_id, looks - 1)
-        )
-
-    while not simulator.done:
-        simulator.step(agent.act(LazyObservation(simulator.odometry()[POSE], frames)))
-    return _measures(simulator, episode, looks)
-
-
-def _measures(simulator: Simulator, episode: Episode, decisions: int) -> dict[str, Any]:
-    walked = np.array(simulator.path)
-    length = metrics.path_length(walked)
-    left = simulator.distance_to_goal()
-    reference = np.stack([from_vlnce(p) for p in episode.reference_path])
-    geodesic = float(episode.geodesic_distance or simulator.distance_to_goal(reference[0]))
-    won = metrics.success(left, simulator.stopped, threshold=SUCCESS_METRES)
-    return {
-        "success": int(won),
-        "spl": round(metrics.spl(won, geodesic, length), 6),
-        "path_length": round(length, 4),
-        "geodesic_distance": geodesic,
-        "distance_to_goal": round(left, 4),
-        "ndtw": round(metrics.ndtw(walked, reference, threshold=SUCCESS_METRES), 6),
-        "collisions": int(simulator.collisions),
-        "decisions": decisions,
-        "steps": simulator.steps,
-    }
+    def name(self, job: Job) -> str:
+        """The episode and its condition."""
+        return f"episode {job[0].episode_id}, {job[1].name}"
 
 
 def evaluate(
@@ -158,7 +105,7 @@ def evaluate(
     out: Path,
     split: str,
     seed: int = 0,
-    workers: int = 1,
+    workers: int | None = 1,
     size: int = 64,
     safeguard: Safeguard | None = None,
 ) -> list[dict[str, Any]]:
@@ -166,12 +113,33 @@ def evaluate(
 
     Args: conditions: corruptions to meet, ``CLEAN`` among them for PRS; "white_box" is left out
     with a warning if the agent has no ``system_prompt``. name: the table's column.
-    split: what the rows say. seed: of the corruptions' keys. workers: processes; the rows do not
-    depend on it. size: pixels of a view. safeguard: repairs each instruction, once, before the
-    agent hears it; ``name`` should say so.
+    split: what the rows say. seed: of the corruptions' keys. workers: processes, None: one a core
+    if there is work for them; the rows do not depend on it. size: pixels of a view. safeguard:
+    repairs each instruction, once, before the agent hears it; ``name`` should say so.
+    Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
+    out = Path(out)
     conditions = _applicable(agent, conditions, name)
-    known = {rows.identity(row) for row in rows.read(out)} if Path(out).exists() else set()
+    known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
+    jobs = _jobs(agent, episodes, conditions, name, split, seed)
+    todo = [job for job in jobs if rows.identity(job[2]) not in known]
+    heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
+    decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
+    repaired = {decision.original: decision.text for decision in decided}
+    if todo:
+        _run(EpisodeTask(agent, size, repaired), todo, len(jobs), out, workers, f"{name}, {split}")
+    return _in_order(out, [rows.identity(label) for _, _, label in jobs])
+
+
+def _jobs(
+    agent: torch.nn.Module,
+    episodes: list[Episode],
+    conditions: list[Corruption],
+    name: str,
+    split: str,
+    seed: int,
+) -> list[Job]:
+    """All jobs, episode by episode, each with what its row says besides the measures."""
     label = {
         "agent": weights_sha(agent)[:12],
         "name": name,
@@ -180,7 +148,7 @@ def evaluate(
         "suite": SUITE_VERSION,
         "rule": metrics.rule(SUCCESS_METRES),
     }
-    jobs = [
+    return [
         (
             episode,
             condition,
@@ -194,13 +162,6 @@ def evaluate(
         for episode in episodes
         for condition in conditions
     ]
-    todo = [job for job in jobs if rows.identity(job[2]) not in known]
-    heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
-    decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
-    repaired = {decision.original: decision.text for decision in decided}
-    _run_all(agent, todo, repaired, Path(out), workers, size, f"{name} {split}")
-    wanted = {rows.identity(job[2]) for job in jobs}
-    return [row for row in rows.read(out) if rows.identity(row) in wanted]
 
 
 def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Corruption]:
@@ -217,50 +178,51 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
     return kept
 
 
-def _run_all(
-    agent: torch.nn.Module,
-    jobs: list[tuple],
-    repaired: dict[str, str],
-    out: Path,
-    workers: int,
-    size: int,
-    title: str,
+def _run(
+    task: EpisodeTask, jobs: list[Job], total: int, out: Path, workers: int | None, title: str
 ) -> None:
-    """Run the jobs in order of episode and append their rows to ``out`` as they come."""
-    if workers > 1 and len(jobs) > workers:
-        context = multiprocessing.get_context("spawn")
-        with context.Pool(workers, _start_worker, (agent, repaired, size)) as pool:
-            _collect(pool.imap(_work, jobs, chunksize=13), len(jobs), out, title)
-    elif jobs:
-        threads = torch.get_num_threads()
-        _start_worker(agent, repaired, size)
-        _collect(map(_work, jobs), len(jobs), out, title)
-        torch.set_num_threads(threads)
+    """Run the jobs, an episode's in one process, and append their rows to ``out`` as they come."""
+    groups = [list(group) for _, group in groupby(jobs, lambda job: job[0].episode_id)]
+    started = min(processes.count(workers, len(jobs), WORTH), len(groups))
+    with Progress(title, total, unit="episode", start=total - len(jobs)) as progress:
+        if started > 1:
+            progress.say(f"{title}: {started} worker processes")
+        try:
+            _write(processes.results(task, groups, started, progress), out, progress)
+        except processes.WorkersDied as error:
+            raise processes.WorkersDied(
+                f"{error} The finished rows are in {out}: the same command goes on from there."
+            ) from None
 
 
-def _collect(results: Any, total: int, out: Path, title: str) -> None:
+def _write(found: Iterable[tuple[int, Any] | None], out: Path, progress: Progress) -> None:
+    """Append rows to ``out`` every ``_PAUSE`` seconds, and whatever happens at the end."""
     fresh: list[dict[str, Any]] = []
-    with tqdm(total=total, desc=title, unit="episode", disable=None) as bar:
-        for row in results:
-            fresh.append(row)
-            bar.update()
-            if len(fresh) >= _FLUSH:
-                rows.append(out, fresh)
-                fresh = []
-    if fresh:
-        rows.append(out, fresh)
+    written = time.monotonic()
+    try:
+        for item in found:
+            if item is not None:
+                fresh.append(item[1])
+                progress.advance()
+            if fresh and time.monotonic() - written >= _PAUSE:
+                done, fresh, written = fresh, [], time.monotonic()
+                rows.append(out, done)
+    finally:
+        if fresh:
+            rows.append(out, fresh)
 
 
-_WORKER: dict[str, Any] = {}
-
-
-def _start_worker(agent: torch.nn.Module, repaired: dict[str, str], size: int) -> None:
-    torch.set_num_threads(1)  # sums in the same order in any number of processes
-    _WORKER.update(agent=agent.eval(), repaired=repaired, simulator=Simulator(size))
-
-
-def _work(job: tuple[Episode, Corruption, dict[str, Any]]) -> dict[str, Any]:
-    episode, condition, label = job
-    agent, simulator = _WORKER["agent"], _WORKER["simulator"]
-    measures = run_episode(agent, simulator, episode, condition, label["seed"], _WORKER["repaired"])
-    return {**label, **measures}
+def _in_order(out: Path, wanted: list[tuple]) -> list[dict[str, Any]]:
+    """Return the ``wanted`` rows of ``out`` in that order, and put them into it in the file, each
+    in the place of one of them: the file is then the same for any number of processes."""
+    if not wanted:
+        return []
+    order = {identity: number for number, identity in enumerate(wanted)}
+    held = rows.read(out)
+    places = [place for place, row in enumerate(held) if rows.identity(row) in order]
+    found = sorted((held[place] for place in places), key=lambda row: order[rows.identity(row)])
+    if found != [held[place] for place in places]:
+        for place, row in zip(places, found, strict=True):
+            held[place] = row
+        rows.write(out, held)
+    return found

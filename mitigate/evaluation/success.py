@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from mitigate import workers as processes
 from mitigate.corruptions import Schedule
 from mitigate.envs.apartments.renderer import Renderer
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import draw_training_episode
-from mitigate.evaluation.evaluator import run_episode
+from mitigate.evaluation.evaluator import WORTH, EpisodeTask
 from mitigate.evaluation.rows import read
+from mitigate.progress import Progress
 from mitigate.seeding import generator
 
 
@@ -25,24 +27,32 @@ def measure(
     apartments: int,
     seed: int,
     step: int,
+    workers: int | None = None,
 ) -> dict[str, float]:
     """Success of ``agent`` under every corruption of ``schedule``, in [0, 1] by name.
 
     ``episodes`` instruction-following episodes of the first ``apartments`` training layouts are
     drawn from (seed, step), the same ones under every corruption. ``agent`` is a module with reset
-    and act; it is left in eval mode.
+    and act; it is left in eval mode. ``workers``: processes, on which the rates do not depend;
+    None: one a core if there is work for them, and this one alone for an agent on a GPU.
     """
     rng = generator(seed, "refresh", step)
     drawn = [draw_training_episode(rng, apartments, 0.0) for _ in range(episodes)]
+    met = [schedule.corruption(name) for name in schedule.names]
+    groups = [[(e, c, {"corruption": c.name, "seed": seed}) for c in met] for e in drawn]
     simulator = Simulator(renderer.size, renderer=renderer)
-    agent.eval()
-    return success_rates(
-        [
-            {"corruption": c.name, **run_episode(agent, simulator, episode, c, seed)}
-            for c in map(schedule.corruption, schedule.names)
-            for episode in drawn
-        ]
-    )
+    task = EpisodeTask(agent, renderer.size, simulator=simulator)
+    if workers is None and any(p.device.type != "cpu" for p in agent.parameters()):
+        workers = 1
+    total = len(drawn) * len(met)
+    started = processes.count(workers, total, WORTH)
+    with Progress(f"success at step {step}", total, unit="episode") as progress:
+        found = []
+        for item in processes.results(task, groups, started, progress):
+            if item is not None:
+                found.append(item[1])
+                progress.advance()
+    return success_rates(found)
 
 
 def prior_rates(path: Path | str) -> dict[str, float]:

@@ -1,0 +1,138 @@
+"""What is rendered and encoded once for all conditions of an episode, and that no row sees it."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import numpy as np
+import pytest
+import torch
+
+from mitigate import workers
+from mitigate.corruptions import CLEAN, NAMES, Corruption
+from mitigate.envs.apartments.simulator import Simulator
+from mitigate.envs.apartments.tasks import load_episodes
+from mitigate.evaluation import rows
+from mitigate.evaluation.evaluator import evaluate, run_episode
+from mitigate.keys import DEPTH, RGB, STOP
+from mitigate.memory import Memory
+from tests.agents.rooms import wanderer
+
+CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]
+SIZE = 16
+
+
+def measured(agent, episode, rendered=None):
+    simulator = Simulator(SIZE)
+    return [run_episode(agent, simulator, episode, c, 0, None, rendered) for c in CONDITIONS]
+
+
+def test_measures_are_the_same_with_and_without_what_was_kept():
+    agent, episode, rendered = wanderer(stop=0.0), load_episodes("val_seen")[0], Memory(1 << 24)
+    alone = measured(agent, episode)
+    with agent.remembering():
+        assert measured(agent, episode, rendered) == alone
+        features = len(agent._memory)
+    looks = sum(row["decisions"] for row in alone)
+    assert len(rendered) < looks and features < 2 * looks
+
+
+class Scribbler:
+    """Looks, writes into what it saw, and keeps a copy of what it saw first."""
+
+    def reset(self, instruction):
+        self.seen = []
+
+    def act(self, observation):
+        for name in (RGB, DEPTH):
+            self.seen.append(observation[name].copy())
+            observation[name][:] = 0
+        return STOP
+
+
+def test_an_agent_cannot_write_into_the_frames_that_are_kept():
+    agent, episode, simulator = Scribbler(), load_episodes("val_seen")[0], Simulator(SIZE)
+    kept, looks = Memory(1 << 24), []
+    for _ in range(2):
+        run_episode(agent, simulator, episode, CLEAN, 0, None, kept)
+        looks.append(agent.seen)
+    assert len(kept) == 1 and all(np.array_equal(a, b) for a, b in zip(*looks, strict=True))
+
+
+def encoded(agent):
+    """Frames given to the RGB encoder from now on: a list that grows."""
+    calls = []
+    agent.rgb_encoder.register_forward_hook(lambda *_: calls.append(1))
+    return calls
+
+
+def test_equal_frames_are_encoded_once_while_remembering_and_never_in_training_mode():
+    agent, episode, simulator = wanderer(stop=50.0), load_episodes("val_seen")[0], Simulator(SIZE)
+    calls = encoded(agent)
+
+    def twice():
+        before = len(calls)
+        for _ in range(2):
+            run_episode(agent, simulator, episode, CLEAN, 0)
+        return len(calls) - before
+
+    assert twice() == 2
+    with agent.remembering():
+        assert twice() == 1
+        agent.train()
+        assert twice() == 2
+        agent.eval()
+    assert twice() == 2
+
+
+def test_changed_weights_meet_no_old_features():
+    agent, episode, simulator = wanderer(stop=50.0), load_episodes("val_seen")[0], Simulator(SIZE)
+    calls = encoded(agent)
+    for _ in range(2):
+        with agent.remembering():
+            run_episode(agent, simulator, episode, CLEAN, 0)
+        with torch.no_grad():
+            agent.rgb_encoder.embed.weight += 1
+    assert len(calls) == 2
+
+
+class Mortal(torch.nn.Module):
+    """Stops at once; kills its process in one episode, if another process has not done so."""
+
+    def __init__(self, folder, deaths=1):
+        super().__init__()
+        self.folder, self.deaths = folder, deaths
+        self.weight = torch.nn.Parameter(torch.zeros(1))
+        self.episodes = 0
+
+    def reset(self, instruction):
+        self.episodes += 1
+        died = len(list(self.folder.glob("died*")))
+        if self.episodes == 3 and died < self.deaths:
+            (self.folder / f"died{os.getpid()}").touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    def act(self, observation):
+        return STOP
+
+
+def run(agent, out, count):
+    given = {"name": "test", "out": out, "split": "val_seen", "workers": count, "size": SIZE}
+    return evaluate(agent, load_episodes("val_seen")[:3], CONDITIONS[:4], **given)
+
+
+def test_a_killed_worker_changes_neither_rows_nor_file(tmp_path, capsys):
+    alone = run(Mortal(tmp_path, deaths=0), tmp_path / "alone.jsonl", 1)
+    assert run(Mortal(tmp_path), tmp_path / "killed.jsonl", 2) == alone
+    assert (tmp_path / "killed.jsonl").read_bytes() == (tmp_path / "alone.jsonl").read_bytes()
+    assert "starts again in a fresh" in capsys.readouterr().out
+
+
+def test_a_second_death_keeps_the_rows_and_says_how_to_go_on(tmp_path):
+    out = tmp_path / "rows.jsonl"
+    with pytest.raises(workers.WorkersDied, match=r"finished rows are in .*rows.jsonl: the same"):
+        run(Mortal(tmp_path, deaths=9), out, 2)
+    kept = rows.read(out)
+    assert kept and len(kept) < 12
+    assert len(run(Mortal(tmp_path, deaths=0), out, 1)) == 12
