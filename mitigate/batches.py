@@ -7,12 +7,8 @@ each is done on one thread. So any number of workers, none included, gives the s
 
 from __future__ import annotations
 
-import multiprocessing
-import os
 import pickle
 import signal
-import sys
-import traceback
 from collections import deque
 from contextlib import suppress
 from multiprocessing.connection import Connection
@@ -23,18 +19,11 @@ import torch
 from mitigate import precision
 from mitigate.progress import say
 from mitigate.recipe import Recipe, do
+from mitigate.workers import WorkersDied, context, portable
 
 AHEAD = 3  # steps whose pieces are ordered before they are needed (ours)
+PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
 DEATHS = 1  # times that a worker is started anew before the training stops
-
-
-def cores() -> int:
-    """Return how many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
-
-
-class WorkerDied(RuntimeError):
-    """A worker process was killed more often than it is started anew."""
 
 
 class Workers:
@@ -82,7 +71,7 @@ class Workers:
     def receive(self, count: int) -> list[Any]:
         """Return what the next ``count`` jobs gave, in the order of one :meth:`order`.
 
-        Raises what a job raised, and WorkerDied.
+        Raises what a job raised, and WorkersDied.
         """
         return [self._all[index % len(self)].receive() for index in range(count)]
 
@@ -161,7 +150,8 @@ class _Worker:
             return self.receive()
         self.pending.popleft()
         if kind == "error":
-            raise value
+            error, cause = value
+            raise error from cause
         return value
 
     def close(self) -> None:
@@ -171,9 +161,9 @@ class _Worker:
             self.process.kill()
 
     def _start(self) -> None:
-        context = multiprocessing.get_context("spawn")
-        self.connection, other = context.Pipe()
-        self.process = context.Process(target=_serve, args=(other,), daemon=True)
+        made = context(PRELOAD)
+        self.connection, other = made.Pipe()
+        self.process = made.Process(target=_serve, args=(other,), daemon=True)
         self.process.start()
         other.close()  # so that the worker's death ends the connection
 
@@ -181,7 +171,7 @@ class _Worker:
         self.process.join(timeout=1)
         what = f"worker {self.number} ended with code {self.process.exitcode}"
         if self.deaths >= DEATHS or self.recipe is None:
-            raise WorkerDied(
+            raise WorkersDied(
                 f"The {what}, and not for the first time: it was killed, most likely because the "
                 "memory ran out. Checkpoints are kept. Run the same command again, with fewer "
                 "processes: workers=1, or 0 for none."
@@ -240,9 +230,4 @@ def _answer(recipe: Recipe, job: Any, kind: str) -> tuple[str, Any]:
         with precision.computing(kind, device):
             return "done", do(recipe, job)
     except Exception as error:
-        error.add_note(traceback.format_exc()) if hasattr(error, "add_note") else None
-        try:
-            pickle.loads(pickle.dumps(error))
-        except Exception:  # one that cannot be sent
-            error = RuntimeError(f"{type(error).__name__}: {error}")
-        return "error", error
+        return "error", portable(error)

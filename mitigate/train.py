@@ -25,12 +25,13 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate import checkpoint, cli, precision, seeding
-from mitigate.batches import Workers, cores
+from mitigate.batches import Workers
 from mitigate.build import build, build_agent
 from mitigate.evaluate import EvaluationConfig, conditions, episodes, load
 from mitigate.files import atomic_text
 from mitigate.progress import duration, say
 from mitigate.trainer import Trainer
+from mitigate.workers import cores
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
 EPISODE_COST = 0.15  # seconds of one core for an episode, on the machine of precision.REFERENCE

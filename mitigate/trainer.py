@@ -193,8 +193,8 @@ class Trainer:
         kind = "" if own == self.name else f" ({own})"
         last = f"The last good checkpoint is {kept[-1]}" if kept else "No checkpoint was saved yet"
         return (
-            f"Training stopped at step {step} of {self.name}{kind}: the loss is {loss.item():g} and its "
-            f"gradient norm {norm.item():g}, which must be finite. Episodes of that batch: "
+            f"Training stopped at step {step} of {self.name}{kind}: the loss is {loss.item():g} "
+            f"and its gradient norm {norm.item():g}, which must be finite. Episodes of that batch: "
             f"{episodes}. {last}; the step was not applied. Lower trainer.lr, use "
             "trainer.precision=fp32, or look at those episodes."
         )

@@ -135,7 +135,7 @@ class _Crew:
         self.task, self.progress = task, progress
         self.waiting = deque(groups)
         self.total, self.done, self.deaths = sum(map(len, groups)), 0, 0
-        self.context = _context(task.preload)
+        self.context = context(task.preload)
         self.copy = pickle.dumps(task)  # by value: tensors do not become shared memory
         self.crew: list[_Worker] = []
         self.size = workers
@@ -208,7 +208,7 @@ class _Crew:
                 )
 
 
-def _context(preload: str) -> Any:
+def context(preload: str) -> Any:
     """Where workers come from: a process that has imported ``preload`` and forks, if there can be
     one (the next crew then starts at once), else fresh interpreters."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
@@ -229,7 +229,7 @@ def _serve(pipe: Connection, copy: bytes) -> None:
                     pipe.send((result, None))
     except Exception as error:
         with suppress(OSError):  # the parent is gone
-            pipe.send((None, _portable(error)))
+            pipe.send((None, portable(error)))
 
 
 def _next(pipe: Connection) -> list[Any]:
@@ -239,7 +239,7 @@ def _next(pipe: Connection) -> list[Any]:
         return []  # the parent is gone
 
 
-def _portable(error: Exception) -> tuple[Exception, Exception]:
+def portable(error: Exception) -> tuple[Exception, Exception]:
     """``error`` and a cause that shows the worker's traceback; a RuntimeError with
     its text in place of one that cannot be pickled."""
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")

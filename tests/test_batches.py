@@ -9,9 +9,10 @@ import pytest
 import torch
 
 from mitigate import checkpoint, seeding
-from mitigate.batches import WorkerDied, Workers
+from mitigate.batches import Workers
 from mitigate.seeding import torch_generator
 from mitigate.trainer import Trainer
+from mitigate.workers import WorkersDied
 from tests.tiny import TinyRecipe
 
 
@@ -77,7 +78,7 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(ahead, tmp_path
 
 
 def test_a_worker_that_is_killed_again_ends_the_training_with_advice(tmp_path):
-    with Workers(1) as workers, pytest.raises(WorkerDied, match=r"memory ran out.* workers=1"):
+    with Workers(1) as workers, pytest.raises(WorkersDied, match=r"memory ran out.* workers=1"):
         trained(tmp_path, workers, fatal="always")
     assert checkpoint.checkpoints(tmp_path)
 

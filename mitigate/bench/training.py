@@ -25,9 +25,10 @@ from unittest import mock
 import torch
 
 from mitigate import cli, precision, seeding, train  # noqa: F401 (train registers config types)
-from mitigate.batches import Batches, Workers, cores
+from mitigate.batches import Batches, Workers
 from mitigate.build import build, build_agent
 from mitigate.recipe import Recipe
+from mitigate.workers import cores
 
 RECIPES = ("da_per_episode", "ts_distill", "conv_adapter", "stacked", "base", "safeguard_lora")
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
