@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 import torch
 
 from mitigate import doctor, seeding
@@ -78,3 +80,14 @@ def test_keyed_generators_depend_on_every_part_of_the_key_only():
     assert seeding.digest("a", "b") != seeding.digest("ab")
     one, two = (torch.rand(2, generator=seeding.torch_generator(3, "x")) for _ in range(2))
     assert torch.equal(one, two)
+
+
+@pytest.mark.parametrize(("told", "wanted"), [(None, "PASSIVE"), ("ACTIVE", "ACTIVE")])
+def test_waiting_threads_leave_their_core_to_others_unless_told(told, wanted):
+    """Set before torch is imported, or OpenMP does not read it."""
+    code = "import mitigate, os, sys; print(os.environ['OMP_WAIT_POLICY'], 'torch' in sys.modules)"
+    environment = {k: v for k, v in os.environ.items() if k != "OMP_WAIT_POLICY"}
+    environment |= {} if told is None else {"OMP_WAIT_POLICY": told}
+    command = [sys.executable, "-c", code]
+    done = subprocess.run(command, env=environment, cwd=ROOT, capture_output=True, text=True)
+    assert done.stdout.split() == [wanted, "False"]
