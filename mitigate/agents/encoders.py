@@ -32,8 +32,17 @@ class Block(nn.Module):
 
     def forward(self, x: Tensor) -> Tensor:
         y = self.norm2(self.second(F.relu(self.norm1(self.first(x)))))
-        x = F.avg_pool2d(x, self.stride) if self.stride > 1 else x
+        x = halved(x) if self.stride > 1 else x
         return F.relu(y + self.skip(x))
+
+
+def halved(x: Tensor) -> Tensor:
+    """``F.avg_pool2d(x, 2)``, bit for bit. Without gradients as a sum of four slices, which takes a
+    third of the time on a CPU (torch 2.13 pools one value at a time)."""
+    if torch.is_grad_enabled() or x.shape[-1] % 2 or x.shape[-2] % 2:
+        return F.avg_pool2d(x, 2)
+    top, bottom = x[..., ::2, :], x[..., 1::2, :]
+    return (top[..., ::2] + top[..., 1::2] + bottom[..., ::2] + bottom[..., 1::2]) / 4
 
 
 class Encoder(nn.Module):

@@ -84,6 +84,8 @@ def _entry(observation: Mapping[str, Any], name: str) -> np.ndarray:
 
 
 def _check_unit(depth: np.ndarray) -> None:
+    if ((depth > NEAREST) & (depth <= FARTHEST)).any():
+        return  # metres; the rest says what else they may be
     valid = depth[np.isfinite(depth) & (depth > 0)]
     if not len(valid):
         return

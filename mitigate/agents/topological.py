@@ -126,10 +126,9 @@ class TopologicalAgent(nn.Module):
         self._views: list[Tensor] = []
         self._stop_scores: list[tuple[float, int]] = []
         self._final = False
-        with torch.no_grad():
+        with torch.inference_mode():
             self._text = self.planner.read(self.tokens([instruction]))
 
-    @torch.no_grad()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """One low-level action. Reads frames only when a decision is due.
 
@@ -145,6 +144,7 @@ class TopologicalAgent(nn.Module):
             action = self.controller.action(checked.pose(observation))
         return action
 
+    @torch.inference_mode()
     def _decide(self, observation: Mapping[str, np.ndarray]) -> bool:
         """Take one decision: start a route and return True, or return False to stop."""
         views, waypoints = self._see(*checked.frames(observation))

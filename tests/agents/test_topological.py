@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import torch
+import torch.nn.functional as F
 
 from mitigate.agents import topological
+from mitigate.agents.encoders import halved
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.envs.apartments.simulator import Simulator
 from mitigate.envs.apartments.tasks import load_episodes
@@ -90,3 +93,12 @@ def test_a_deaf_agent_does_not_use_the_instruction():
 def test_an_unknown_sensor_names_the_known_ones():
     with pytest.raises(ValueError, match=r"\['sonar'\] is unknown; choose from rgb, depth, instr"):
         TopologicalAgent(blind=("sonar",))
+
+
+@pytest.mark.parametrize("side", [4, 7, 32])
+def test_halving_a_map_gives_the_bits_of_average_pooling_with_and_without_gradients(side):
+    x = torch.randn(12, 5, side, side)
+    wanted = F.avg_pool2d(x, 2)
+    with torch.no_grad():
+        assert halved(x).equal(wanted)
+    assert halved(x.requires_grad_()).equal(wanted) and halved(x).requires_grad
