@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from mitigate.bench import report, suite, timing, training
+from mitigate.bench import evaluation, report, suite, timing, training
 from mitigate.bench.peers import plain
 from mitigate.bench.renderers import OURS
 from mitigate.corruptions import DEPTH, NAMES
@@ -53,7 +53,8 @@ def test_the_page_lists_what_is_over_the_bar():
     rates = {OURS: (100.0, 100.0), "other": (50.0, 25.0)}
     shares = {("per_frame", "imitation"): training.Share(2, 4.0, 0.2)}
     costs = {"224x224": {"low_light": good, "quantization": missed}}
-    text = report.page(costs, 3.9, shares, rates, 64, 0.2)
+    paces = {"base": evaluation.Pace(26, 5.2, 2.6, True)}
+    text = report.page(costs, 3.9, shares, rates, 64, 0.2, paces, {1: 9.0, 2: 5.0})
     assert (
         "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
         in text
@@ -62,3 +63,11 @@ def test_the_page_lists_what_is_over_the_bar():
     assert "`quantization` | 224x224 | 0.3000" in over and "low_light" not in over
     assert "| per_frame | imitation | 2000 | 100.0 | 5.0% |" in text
     assert "| other | 50 | 25 | 4 | 2.0 times |" in text
+    assert "| `base` | 26 | 5.0 | 10.0 | 2.00 | the same |" in text
+    assert "9.0 s with 1, 5.0 s with 2 (1.80 times)." in text
+
+
+def test_both_ways_of_evaluating_are_timed_on_the_same_rows(monkeypatch):
+    monkeypatch.setattr(evaluation, "CHECKPOINTS", ("checkpoints/base",))
+    (pace,) = evaluation.paces(1).values()
+    assert pace.same and pace.count == 13 and pace.alone > 0 and pace.together > 0
