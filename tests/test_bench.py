@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from mitigate.bench import report, suite, timing, training
+from mitigate.bench import evaluation, report, suite, timing, training
 from mitigate.bench.peers import plain
 from mitigate.bench.renderers import OURS
 from mitigate.corruptions import DEPTH, NAMES
@@ -55,7 +55,8 @@ def test_the_page_lists_what_is_over_the_bar():
     stage = training.Stage("da_per_frame", "imitation", "fp32", 2000.0, 1600.0, 500.0, parts)
     stages = {False: [stage], True: []}
     costs = {"224x224": {"low_light": good, "quantization": missed}}
-    text = report.page(costs, 3.9, stages, rates, 64, 0.2)
+    paces = {"base": evaluation.Pace(26, 5.2, 2.6, True)}
+    text = report.page(costs, 3.9, stages, rates, 64, 0.2, paces, {1: 9.0, 2: 5.0})
     assert (
         "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
         in text
@@ -66,3 +67,11 @@ def test_the_page_lists_what_is_over_the_bar():
         "| `da_per_frame` | imitation | fp32 | 0.50 | 2000 | 80% | 20% | 4.00 | 20% | 900" in text
     )
     assert "| other | 50 | 25 | 4 | 2.0 times |" in text
+    assert "| `base` | 26 | 5.0 | 10.0 | 2.00 | the same |" in text
+    assert "9.0 s with 1, 5.0 s with 2 (1.80 times)." in text
+
+
+def test_both_ways_of_evaluating_are_timed_on_the_same_rows(monkeypatch):
+    monkeypatch.setattr(evaluation, "CHECKPOINTS", ("checkpoints/base",))
+    (pace,) = evaluation.paces(1).values()
+    assert pace.same and pace.count == 13 and pace.alone > 0 and pace.together > 0

@@ -1,9 +1,9 @@
-"""Measure the corruptions beside their peers, the stages of training, and the renderer.
+"""Measure the corruptions beside their peers, the stages of training, evaluation, the renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 
-Everything but the stages of training runs in this process, on one thread. ``--write`` puts the
-tables into ``docs/benchmarks.md``: do that on a quiet machine.
+Everything but the stages of training and one evaluation runs in this process, on one thread.
+``--write`` puts the tables into ``docs/benchmarks.md``: do that on a quiet machine.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "NO_ALBUMENTATIONS_UPDATE"
 import cv2  # noqa: E402
 import torch  # noqa: E402
 
-from mitigate.bench import renderers, report, suite, training  # noqa: E402
+from mitigate.bench import evaluation, renderers, report, suite, training  # noqa: E402
 from mitigate.files import write_bytes  # noqa: E402
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
@@ -37,10 +37,11 @@ def main(arguments: list[str] | None = None) -> None:
         "--recipes", nargs="+", default=training.RECIPES, help="whose stages are timed"
     )
     parser.add_argument("--size", type=int, default=64, help="of a rendered view (default 64)")
+    parser.add_argument("--episodes", type=int, default=8, help="evaluated (default 8)")
     parser.add_argument("--write", action="store_true", help="write docs/benchmarks.md")
     options = parser.parse_args(arguments)
-    if options.steps < 1 or options.seconds <= 0:
-        parser.error("--steps must be at least 1 and --seconds above 0.")
+    if min(options.steps, options.episodes) < 1 or options.seconds <= 0:
+        parser.error("--steps and --episodes must be at least 1 and --seconds above 0.")
     torch.set_num_threads(1)
     cv2.setNumThreads(1)
     text = report.page(
@@ -50,6 +51,8 @@ def main(arguments: list[str] | None = None) -> None:
         renderers.compare(options.size, options.seconds),
         options.size,
         options.seconds,
+        evaluation.paces(options.episodes),
+        evaluation.seconds_by_workers(options.episodes),
     )
     print(text)
     if options.write:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mitigate.bench.evaluation import Pace
 from mitigate.bench.renderers import OURS
 from mitigate.bench.suite import PANORAMA_BAR, SEED, SEVERITY, TINY, Cost
 from mitigate.bench.timing import machine
@@ -34,6 +35,8 @@ def page(
     rates: dict[str, tuple[float, float]],
     size: int,
     seconds: float,
+    paces: dict[str, Pace],
+    by_workers: dict[int, float],
 ) -> str:
     """All parts as Markdown."""
     head = [
@@ -49,6 +52,7 @@ def page(
         _panorama(pair),
         _over(costs),
         _training(stages),
+        _evaluation(paces, by_workers),
         _rendering(rates, size),
     ]
     return "\n".join(line for part in parts for line in part).rstrip() + "\n"
@@ -147,6 +151,30 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
             *table(found),
         ]
     return [*lines, ""]
+
+
+def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[str]:
+    times = ", ".join(f"{seconds:.1f} s with {n}" for n, seconds in by_workers.items())
+    gain = f" ({by_workers[1] / by_workers[2]:.2f} times)" if 2 in by_workers else ""
+    return [
+        "## Evaluation",
+        "",
+        "Episodes, each under one condition of the suite, in one run and in turns, CPU time of one "
+        "process. **Alone**: every episode by itself. **Together**: the conditions of an episode "
+        "one after the other, with frames and features kept, as an evaluation runs them.",
+        "",
+        "| agent | episodes | alone, episodes / CPU s | together | together / alone | rows |",
+        "| --- | ---: | ---: | ---: | ---: | --- |",
+        *(
+            f"| `{name}` | {pace.count} | {pace.count / pace.alone:.1f} "
+            f"| {pace.count / pace.together:.1f} | {pace.alone / pace.together:.2f} "
+            f"| {'the same' if pace.same else 'NOT THE SAME'} |"
+            for name, pace in paces.items()
+        ),
+        "",
+        f"The same evaluation by worker processes, wall time: {times}{gain}.",
+        "",
+    ]
 
 
 def _rendering(rates: dict[str, tuple[float, float]], size: int) -> list[str]:

@@ -47,7 +47,9 @@ class FaceBuilder:
         self.paint: Palette = palette(apartment.split)
         self.rng = np.random.default_rng([apartment.seed, 77])
         self.light = self.rng.uniform(0.88, 1.08, len(apartment.rooms))
-        self.rows: list[tuple] = []
+        self.kinds: list[tuple[int, ...]] = []
+        self.places: list[tuple[float, ...]] = []
+        self.colours: list[np.ndarray] = []
 
     def build(self) -> Faces:
         for index in range(len(self.apartment.rooms)):
@@ -56,18 +58,35 @@ class FaceBuilder:
             self._frame(door)
         for instance, piece in enumerate(self.apartment.furniture):
             self._piece(instance, piece)
-        columns = list(zip(*self.rows, strict=True))
-        kinds = (
-            np.float32,
-            np.float32,
-            np.float32,
-            np.int16,
-            np.float32,
-            np.int16,
-            np.int16,
-            np.int16,
+        return self._faces()
+
+    def _faces(self) -> Faces:
+        """The arrays of all rectangles collected, made at one go."""
+        axis, sign, pattern, room, category, instance = np.array(self.kinds).T
+        at, tile, *span = np.array(self.places, float).T
+        low, high = np.stack(span[:2], 1), np.stack(span[2:], 1)
+        corners = _corners(axis, sign, at, low, high)
+        return Faces(
+            corners,
+            np.stack([axis, at], 1).astype(np.float32),
+            self._tints(axis, sign, room, corners),
+            pattern.astype(np.int16),
+            ((high - low) / tile[:, None]).astype(np.float32),
+            category.astype(np.int16),
+            room.astype(np.int16),
+            instance.astype(np.int16),
         )
-        return Faces(*(np.array(c, k) for c, k in zip(columns, kinds, strict=True)))
+
+    def _tints(
+        self, axis: np.ndarray, sign: np.ndarray, room: np.ndarray, corners: np.ndarray
+    ) -> np.ndarray:
+        """Colours by the light of side and room; upright faces are darker towards the floor."""
+        sides = np.array([self._SHADE[k] for k in range(3)])
+        shade = sides[axis, (sign > 0).astype(int)] * self.light[room]
+        dim = (0.82 + 0.18 * np.clip(corners[..., 2:] / 1.2, 0, 1)).astype(float)
+        dim[axis == 2] = 1.0
+        lit = np.array(self.colours)[:, None] * shade[:, None, None] * dim
+        return np.clip(lit, 0, 1).astype(np.float32)
 
     def _add(
         self,
@@ -84,19 +103,9 @@ class FaceBuilder:
         tile: float = 1.0,
     ) -> None:
         """One rectangle on plane ``axis = at`` seen from side ``sign``; low/high: other axes."""
-        a, b = [k for k in range(3) if k != axis]
-        corners = np.zeros((4, 3), np.float32)
-        corners[:, axis] = at
-        corners[:, a] = (low[0], high[0], high[0], low[0])
-        corners[:, b] = (low[1], low[1], high[1], high[1])
-        flip = (sign > 0) == (axis == 1)
-        if flip:
-            corners = corners[::-1]
-        shade = self._SHADE[axis][int(sign > 0)] * self.light[room]
-        dim = 0.82 + 0.18 * np.clip(corners[:, 2:3] / 1.2, 0, 1) if axis != 2 else np.ones((4, 1))
-        tint = np.clip(colour[None] * shade * dim, 0, 1).astype(np.float32)
-        repeat = ((high[0] - low[0]) / tile, (high[1] - low[1]) / tile)
-        self.rows.append((corners, (axis, at), tint, pattern, repeat, category, room, instance))
+        self.kinds.append((axis, sign, pattern, room, category, instance))
+        self.places.append((at, tile, *low, *high))
+        self.colours.append(colour)
 
     def _room(self, index: int) -> None:
         room, rng, paint = self.apartment.rooms[index], self.rng, self.paint
@@ -178,6 +187,22 @@ class FaceBuilder:
                     if axis == 2 and sign < 0 and low[2] < 0.3:
                         continue
                     self._add(axis, sign, at, *span, colour, pattern, piece.room, label, instance)
+
+
+def _corners(
+    axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Corners float32 [n, 4, 3] of rectangles on planes ``axis = at``, in the order in which each
+    is seen from its side ``sign``. low, high: [n, 2] on the other two axes."""
+    n = len(axis)
+    others = np.array([[1, 2], [0, 2], [0, 1]])[axis]
+    corners, every = np.zeros((n, 4, 3), np.float32), np.arange(n)
+    corners[every, :, axis] = at[:, None]
+    corners[every, :, others[:, 0]] = np.stack([low[:, 0], high[:, 0], high[:, 0], low[:, 0]], 1)
+    corners[every, :, others[:, 1]] = np.stack([low[:, 1], low[:, 1], high[:, 1], high[:, 1]], 1)
+    flipped = (sign > 0) == (axis == 1)
+    corners[flipped] = corners[flipped, ::-1]
+    return corners
 
 
 def _turned(part: tuple, piece: Furniture, width: float, depth: float) -> tuple[tuple, tuple]:
