@@ -247,6 +247,7 @@ class ImitationRecipe(Recipe):
                 step=step,
             )
         )
+        self.agent.train()
 
     def evaluate(self, step: int) -> dict[str, float]:
         """The schedule's weights, for the log."""

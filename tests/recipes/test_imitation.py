@@ -46,3 +46,19 @@ def test_a_prior_is_one_agents_evaluation(tmp_path):
 def test_an_unknown_part_is_refused():
     with pytest.raises(ValueError, match="adapters"):
         recipe(TopologicalAgent(16, SMALL), "encoder")
+
+
+def test_measuring_success_leaves_the_agent_in_training_mode():
+    """Or all that follows would train without dropout."""
+    schedule = Schedule("success_distributed", 0.6, names=("flare",))
+    made = ImitationRecipe(
+        TopologicalAgent(16, SMALL),
+        schedule,
+        ("planner",),
+        episodes=1,
+        apartments=1,
+        refresh_every=1,
+        refresh_episodes=1,
+    ).train()
+    assert made.jobs(0)[0][-1] == {"success": {"flare": schedule.success["flare"]}}
+    assert all(module.training for module in made.modules())
