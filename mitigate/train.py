@@ -34,7 +34,7 @@ from mitigate.trainer import Trainer
 from mitigate.workers import cores
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
-EPISODE_COST = 0.15  # seconds of one core for an episode, on the machine of precision.REFERENCE
+EPISODE_COST = 0.12  # seconds of one core for an episode, on the machine of precision.REFERENCE
 EPISODES = 300  # of a list, where the estimate need not open it
 IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
 NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
