@@ -57,7 +57,7 @@ class Progress:
                     total=self.total,
                     initial=self.start,
                     desc=self.title,
-                    unit=f" {self.unit}",
+                    unit=self.unit,
                     file=sys.stdout,
                     dynamic_ncols=True,
                     leave=None,  # nested ones vanish
