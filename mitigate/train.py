@@ -187,6 +187,11 @@ def check(cfg: DictConfig) -> None:
                 f"{key}={value:g} is out of range: a severity is a number from 0 (clean) to 1 "
                 f"(strongest). Write, for instance, {key}=0.6."
             )
+    if cfg.workers is not None and cfg.workers < 0:
+        raise ValueError(
+            f"workers={cfg.workers}: give a number of processes that make batches, 0 for none "
+            "beside this one, or null for one a core."
+        )
     if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
     for name, stage in cfg.stages.items():

@@ -54,7 +54,7 @@ class ImitationRecipe(Recipe):
     refresh_every: steps between two measurements of the success rates that such a schedule draws
     by, each on ``refresh_episodes`` training episodes under every corruption; 0: never.
 
-    Raises ValueError for an unknown part.
+    Raises ValueError for an unknown part and for no episodes.
     """
 
     def __init__(
@@ -80,6 +80,8 @@ class ImitationRecipe(Recipe):
         unknown = sorted(set(train_parts) - set(PARTS))
         if unknown:
             raise ValueError(f"train_parts={unknown} is unknown; choose from {', '.join(PARTS)}.")
+        if episodes < 1:
+            raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
         self.agent, self.schedule, self.seed = agent, schedule, seed
         self.episodes, self.follow_oracle = episodes, follow_oracle
         self.apartments, self.ogn_share, self.size = apartments, ogn_share, size

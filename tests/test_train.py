@@ -107,6 +107,21 @@ def test_the_same_command_writes_a_finished_runs_damaged_weights_again(tmp_path)
     checkpoint.load_weights(TinyAgent(), tmp_path / "agent")
 
 
+def test_a_negative_number_of_workers_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="or null for one a core"):
+        train.run(config(tmp_path, "workers=-1"))
+
+
+def test_a_run_says_first_what_it_will_do_and_how_long_that_takes(tmp_path, capsys):
+    cfg = config(tmp_path)
+    cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
+    train.run(cfg)
+    said = capsys.readouterr().out.splitlines()[0]
+    assert said.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in said
+    train.run(cfg)  # what is done takes no time
+    assert "about 0 s" in capsys.readouterr().out.splitlines()[0]
+
+
 def test_trainer_options_go_before_a_stages_own(tmp_path):
     train.run(config(tmp_path, "trainer.steps=3"))
     names = {checkpoint.checkpoints(tmp_path / stage)[-1].name for stage in ("first", "second")}

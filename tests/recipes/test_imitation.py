@@ -48,6 +48,11 @@ def test_an_unknown_part_is_refused():
         recipe(TopologicalAgent(16, SMALL), "encoder")
 
 
+def test_a_step_needs_an_episode():
+    with pytest.raises(ValueError, match="give 1 or more"):
+        ImitationRecipe(TopologicalAgent(16, SMALL), Schedule("clean", 0.0), episodes=0)
+
+
 def test_measuring_success_leaves_the_agent_in_training_mode():
     """Or all that follows would train without dropout."""
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
