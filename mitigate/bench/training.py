@@ -23,6 +23,7 @@ from typing import Any
 from unittest import mock
 
 import torch
+from omegaconf import OmegaConf
 
 from mitigate import cli, precision, seeding, train  # noqa: F401 (train registers config types)
 from mitigate.batches import Batches, Workers
@@ -118,6 +119,9 @@ def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
         "train", [f"recipe={name}", f"env.layouts={LAYOUTS}", "env.cached=2", *options]
     )
     found = []
+    if cfg.schedule.mode == "success_distributed":  # measured on one episode: that is not a step
+        for node in filter(None, cfg.stages.values()):
+            OmegaConf.update(node, "recipe.refresh_episodes", 1, force_add=True)
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
     with Workers(cores()) as workers:
         for stage, node in cfg.stages.items():
