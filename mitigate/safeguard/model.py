@@ -57,7 +57,9 @@ class LanguageModel(nn.Module):
             if value not in allowed:
                 raise ValueError(f"{name}={value} is unknown; choose one of {', '.join(allowed)}.")
         self.base, self.precision, self.prompt, self.batch = base, precision, prompt, batch
-        self.tokenizer, network = load_base(base, precision)
+        with Progress(f"loading {base}", 1, unit="model") as progress:
+            self.tokenizer, network = load_base(base, precision)
+            progress.advance()
         network.requires_grad_(False)
         self.network: Any = network if lora is None else _with_lora(network, lora)
         self.register_state_dict_post_hook(_keep_adapter)
