@@ -109,7 +109,7 @@ class LanguageModel(nn.Module):
         answers: list[str | None] = [None] * len(texts)
         self.network.eval()
         starts = range(0, len(order), self.batch)
-        shown = Progress("rewriting", len(starts), unit="batch") if len(starts) > 2 else None
+        shown = Progress("rewriting", len(order), unit="text") if len(starts) > 2 else None
         with shown or nullcontext():
             for start in starts:
                 rows = order[start : start + self.batch]
@@ -120,7 +120,7 @@ class LanguageModel(nn.Module):
                 for row, answer in zip(rows, found, strict=True):
                     answers[row] = answer
                 if shown:
-                    shown.advance()
+                    shown.advance(len(rows))
         return answers
 
     @contextmanager
