@@ -21,6 +21,7 @@ from mitigate.progress import say
 from mitigate.recipe import Recipe, do
 from mitigate.workers import WorkersDied, context, portable
 
+MOST = 4  # workers worth starting: the recipes make 2 to 4 pieces of a step
 AHEAD = 3  # steps whose pieces are ordered before they are needed (ours)
 PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
 DEATHS = 1  # times that a worker is started anew before the training stops

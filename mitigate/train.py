@@ -25,7 +25,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate import checkpoint, cli, precision, seeding
-from mitigate.batches import Workers
+from mitigate.batches import MOST, Workers
 from mitigate.build import build, build_agent
 from mitigate.evaluate import EvaluationConfig, conditions, episodes, load
 from mitigate.files import atomic_text
@@ -105,7 +105,7 @@ def run(cfg: DictConfig) -> Path:
     folder = Path(cfg.folder or default_folder(cfg))
     say(plan(cfg, folder))
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
-    with Workers(cores() if cfg.workers is None else cfg.workers) as workers:
+    with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
         for name, stage in cfg.stages.items():
             if stage is not None:
                 stage.trainer.precision = train_stage(
@@ -190,7 +190,7 @@ def check(cfg: DictConfig) -> None:
     if cfg.workers is not None and cfg.workers < 0:
         raise ValueError(
             f"workers={cfg.workers}: give a number of processes that make batches, 0 for none "
-            "beside this one, or null for one a core."
+            f"beside this one, or null for one a core ({MOST} at most)."
         )
     if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
