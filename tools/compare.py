@@ -1,0 +1,142 @@
+"""Compare two commits on this machine: ``python tools/compare.py COMMIT [COMMIT]``.
+
+For code that is moved or rewritten and must do what it did. Every recipe trains two steps and every
+shipped agent walks 20 episodes under the whole suite, by the commands that a user types, in a
+checkout of each commit; weights and rows must be the same, bit for bit. Bits differ between
+processors, so figures are kept in ``runs/compare`` only, for the next comparison on this machine.
+
+The second commit is by default the working tree as it is. Exits with status 1 if anything differs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from safetensors.numpy import load_file
+
+ROOT = Path(__file__).resolve().parent.parent
+KEPT = ROOT / "runs" / "compare"
+AGENTS = ("checkpoints/base", "checkpoints/teacher", "checkpoints/hardened/*")
+UNSTABLE = ("agent", "name", "rule", "world")  # what a row says of itself, not what was measured
+EXTRA = {"safeguard_lora": ("stages.lora.recipe.pairs=2", "stages.lora.recipe.micro_batch=2")}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("commits", nargs="+", metavar="COMMIT", help="one or two commits")
+    parser.add_argument("--only", nargs="*", help="names of recipes and agents (by default all)")
+    parser.add_argument("--episodes", type=int, default=20)
+    args = parser.parse_args()
+    if len(args.commits) > 2:
+        parser.error("name one commit, to compare with the working tree, or two")
+    found = [figures(commit, args.only, args.episodes) for commit in (*args.commits, None)[:2]]
+    names = list(dict.fromkeys(name for part in found for name in part))
+    differing = [name for name in names if len({part.get(name) for part in found}) > 1]
+    for name in names:
+        first, second = (part.get(name, "not there") for part in found)
+        equal = "equal" if name not in differing else f"DIFFERS ({first} | {second})"
+        print(f"{name:45s} {equal}")
+    print(f"{len(names) - len(differing)} of {len(names)} equal")
+    sys.exit(1 if differing else 0)
+
+
+def figures(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
+    """Digests by name at a commit (None: the working tree); those of a commit are kept."""
+    kept: dict[str, str] = {}
+    sha = commit and run(["git", "rev-parse", "--short=12", f"{commit}^{{commit}}"], ROOT).strip()
+    note = KEPT / f"{sha}-{episodes}.json"
+    if sha and note.is_file():
+        kept = json.loads(note.read_text(encoding="utf-8"))
+    with checkout(sha) as folder:
+        for name, measure in parts(folder, episodes):
+            if name in kept or (only and name.rpartition("/")[2] not in only):
+                continue
+            print(f"{sha or 'working tree'}: {name}", flush=True)
+            kept[name] = measure()
+            if sha:
+                KEPT.mkdir(parents=True, exist_ok=True)
+                note.write_text(json.dumps(kept, indent=2), encoding="utf-8")
+    return {n: v for n, v in kept.items() if not only or n.rpartition("/")[2] in only}
+
+
+def parts(folder: Path, episodes: int) -> Iterator[tuple]:
+    """What is compared in a checkout: its name, and a function that measures it."""
+    for path in sorted(folder.glob("conf/recipe/*.yaml")):
+        yield f"recipe/{path.stem}", lambda name=path.stem: trained(folder, name)
+    for path in sorted(p for pattern in AGENTS for p in folder.glob(pattern) if p.is_dir()):
+        name = str(path.relative_to(folder))
+        yield f"agent/{path.name}", lambda name=name: walked(folder, name, episodes)
+
+
+def trained(folder: Path, recipe: str) -> str:
+    """Digest of the weights that two steps of every stage of a recipe give."""
+    with tempfile.TemporaryDirectory() as out:
+        options = [f"recipe={recipe}", "debug=smoke", "workers=0", "evaluation.enabled=false"]
+        python(folder, "train", *options, f"runs={out}", f"folder={out}/run", *EXTRA.get(recipe, ()))
+        (file,) = Path(out, "run/agent").glob("*.safetensors")
+        return tensors_digest(file)
+
+
+def walked(folder: Path, checkpoint: str, episodes: int) -> str:
+    """Digest of what an agent's rows measured."""
+    with tempfile.TemporaryDirectory() as out:
+        python(folder, "evaluate", f"checkpoint={checkpoint}", f"episodes={episodes}", f"out={out}")
+        lines = Path(out, "rows.jsonl").read_text(encoding="utf-8").splitlines()
+        rows = [{k: v for k, v in json.loads(x).items() if k not in UNSTABLE} for x in lines]
+        return digest(json.dumps(rows, sort_keys=True).encode())
+
+
+def tensors_digest(file: Path) -> str:
+    """Digest of the tensors of a safetensors file, by name; what else it says does not count."""
+    held = sorted(load_file(file).items())
+    return digest(b"".join(name.encode() + value.tobytes() for name, value in held))
+
+
+def digest(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()[:12]
+
+
+def python(folder: Path, program: str, *options: str) -> None:
+    """Run ``python -m mitigate.<program>`` of a checkout; its output only if it fails."""
+    run([sys.executable, "-m", f"mitigate.{program}", *options], folder)
+
+
+def run(command: list[str], folder: Path) -> str:
+    threads = {"OMP_NUM_THREADS": "1", "PYTHONPATH": str(folder)}
+    done = subprocess.run(
+        command, cwd=folder, env={**os.environ, **threads}, capture_output=True, text=True
+    )
+    if done.returncode:
+        sys.exit(f"{' '.join(command)} failed in {folder}:\n{done.stdout[-2000:]}{done.stderr[-4000:]}")
+    return done.stdout
+
+
+@contextmanager
+def checkout(sha: str | None) -> Iterator[Path]:
+    """A folder with the files of a commit; of None the working tree."""
+    if sha is None:
+        yield ROOT
+        return
+    folder = Path(tempfile.mkdtemp(prefix=f"compare-{sha}-"))
+    try:
+        run(["git", "worktree", "add", "--detach", "--force", str(folder), sha], ROOT)
+        yield folder
+    finally:
+        run(["git", "worktree", "remove", "--force", str(folder)], ROOT)
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    main()
