@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mitigate.hardened import load_hardened
+    from mitigate.shipping.hardened import load_hardened
 
 # OpenMP reads this when torch is imported. By default a thread that waits for another one spins: as
 # soon as anything else runs beside torch, such as workers that make the next batch, it spins on the
@@ -14,13 +14,16 @@ if TYPE_CHECKING:
 # 200 ms took 2000 ms; with this 450 ms, and alone no longer than before).
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
+# ``python -m mitigate.train`` and its like are files of ``commands/``.
+__path__.append(os.path.join(os.path.dirname(__file__), "commands"))
+
 __all__ = ["load_hardened"]
 
 
 def __getattr__(name: str) -> Any:
     """Import ``load_hardened``, and torch with it, when it is first asked for."""
     if name in __all__:
-        from mitigate import hardened
+        from mitigate.shipping import hardened
 
         return getattr(hardened, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,107 +1,84 @@
-"""Run a Hydra program so that a user's mistake ends in one paragraph: cause, choices, fix.
+"""The command ``mitigate``: ``mitigate train recipe=da_per_episode``.
 
-Set ``HYDRA_FULL_ERROR=1`` to see the whole traceback instead.
+``python -m mitigate.train`` is the same; those modules lie in ``commands/``.
 """
 
 from __future__ import annotations
 
-import difflib
-import os
-import re
 import sys
-from collections.abc import Callable, Iterable
-from pathlib import Path
+from collections.abc import Sequence
+from importlib import import_module
+from typing import NamedTuple
 
-from hydra import compose, initialize_config_dir
-from hydra.core.global_hydra import GlobalHydra
-from hydra.errors import HydraException, MissingConfigException, OverrideParseException
-from omegaconf import DictConfig, OmegaConf
-from omegaconf.errors import OmegaConfBaseException
+from mitigate.core.names import unknown
 
-CONF = Path(__file__).resolve().parent.parent / "conf"
-KINDS = {
-    "Integer": "a whole number, such as 4",
-    "Float": "a number, such as 0.6",
-    "bool": "true or false",
-    "String": "text",
+
+class Command(NamedTuple):
+    """A module whose ``main()`` reads ``sys.argv`` and returns an exit status, and what it does."""
+
+    module: str
+    about: str
+    example: str
+
+
+COMMANDS = {
+    "train": Command(
+        "mitigate.training.train",
+        "train an agent by a recipe, then compare it with the one it was",
+        "recipe=da_per_episode severity=0.6 seed=1",
+    ),
+    "evaluate": Command(
+        "mitigate.evaluation.evaluate",
+        "success of an agent, clean and under every corruption",
+        "checkpoint=checkpoints/base split=val_seen",
+    ),
+    "table": Command(
+        "mitigate.evaluation.table",
+        "join result rows of any number of runs into one table with pictures",
+        "runs/a runs/b --out report",
+    ),
+    "table2": Command(
+        "mitigate.training.table2",
+        "train and evaluate every method of the paper's Table II",
+        "seeds=[0] jobs=2",
+    ),
+    "corrupt": Command(
+        "mitigate.corruptions.frames_command",
+        "corrupt a folder of recorded frames",
+        "recorded/ corrupted/ corruption=spatter severity=0.5",
+    ),
+    "corrupt_episodes": Command(
+        "mitigate.corruptions.episodes_command",
+        "corrupt the instructions of an R2R-CE or RxR-CE file",
+        "val_unseen.json.gz out.json.gz family=mask severity=0.5",
+    ),
+    "export": Command(
+        "mitigate.shipping.export",
+        "write the agent of a run as a hardened checkpoint",
+        "runs/ts_distill-s0.6-seed0 mine",
+    ),
+    "doctor": Command("mitigate.core.doctor", "say what this machine has and what is missing", ""),
 }
 
 
-def main(program: Callable[[], None], primary: str) -> None:
-    """Call ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``).
-
-    Exits with status 1 and one paragraph for ValueError, FileNotFoundError and config errors, with
-    130 for Ctrl-C.
-    """
-    if os.environ.get("HYDRA_FULL_ERROR"):
-        return program()
-    os.environ["HYDRA_FULL_ERROR"] = "1"  # lets errors through to here
-    try:
-        program()
-    except (HydraException, OmegaConfBaseException) as error:
-        sys.exit(f"error: {explain(error, primary)}")
-    except (ValueError, FileNotFoundError) as error:
-        sys.exit(f"error: {error}")
-    except KeyboardInterrupt:
-        print("\ninterrupted: the same command goes on from the last checkpoint", file=sys.stderr)
-        sys.exit(130)
-    finally:
-        del os.environ["HYDRA_FULL_ERROR"]
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run a command from the command line, and exit with its status."""
+    name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
+    options = options[:-1]
+    if name in ("", "-h", "--help", "help"):
+        print(usage())
+        sys.exit(0 if name else 2)
+    if name not in COMMANDS:
+        sys.exit(f"mitigate: {unknown('command', name, COMMANDS)} See mitigate --help.")
+    sys.argv = [f"mitigate {name}", *options]
+    sys.exit(import_module(COMMANDS[name].module).main())
 
 
-def explain(error: Exception, primary: str) -> str:
-    """Return one paragraph for an error of config composition."""
-    text = f"{error}\n{error.__cause__ or ''}"
-    if isinstance(error, MissingConfigException) and error.options is not None:
-        group, _, name = (error.missing_cfg_file or "").rpartition("/")
-        return unknown(group, name, error.options)
-    if isinstance(error, OverrideParseException):
-        return (
-            f"Cannot read the option {error.override!r}: write key=value, like severity=0.6, and "
-            "put a value that holds = , or spaces in quotes twice: 'checkpoint=\"my=agent\"'."
-        )
-    key = _first(r"Could not override '([^']+)'", text)
-    if key is not None:
-        return _unknown_key(key, primary)
-    value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
-    if value is not None:
-        key = _first(r"full_key: (\S+)", text) or _first(r"override (\S+?)=", text)
-        kind = _first(r"(?:converted to|is not a valid) (\w+)", text) or ""
-        return f"{key}={value} has the wrong type: {key} must be {KINDS.get(kind, kind)}."
-    return " ".join(str(error).split())
-
-
-def unknown(what: str, name: str, allowed: Iterable[str]) -> str:
-    """Return the paragraph for an unknown ``name`` of the kind ``what``, with the nearest."""
-    allowed = sorted(allowed)
-    near = difflib.get_close_matches(name, allowed, n=1)
-    hint = f" Did you mean {near[0]}?" if near else ""
-    return f"There is no {what} {name!r}.{hint} Choose one of: {', '.join(allowed)}."
-
-
-def load_config(primary: str, overrides: Iterable[str] = ()) -> DictConfig:
-    """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program."""
-    GlobalHydra.instance().clear()
-    with initialize_config_dir(str(CONF), version_base="1.3"):
-        return compose(primary, list(overrides))
-
-
-def _unknown_key(key: str, primary: str) -> str:
-    cfg = load_config(primary)
-    parent = key.rpartition(".")[0]
-    while parent and not isinstance(OmegaConf.select(cfg, parent), DictConfig):
-        parent = parent.rpartition(".")[0]
-    if not parent:
-        return unknown("option", key, {*map(str, cfg), *_groups(primary)})
-    return unknown("option", key, [f"{parent}.{name!s}" for name in OmegaConf.select(cfg, parent)])
-
-
-def _groups(primary: str) -> list[str]:
-    entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
-    groups = [str(name) for entry in entries if isinstance(entry, DictConfig) for name in entry]
-    return [name for name in groups if "/" not in name]
-
-
-def _first(pattern: str, text: str) -> str | None:
-    found = re.search(pattern, text)
-    return found.group(1) if found else None
+def usage() -> str:
+    """Every command with what it does and an example."""
+    lines = ["Corrupt, train, measure and ship navigation agents.", ""]
+    lines += ["usage: mitigate COMMAND [OPTIONS], each with --help", ""]
+    for name, command in COMMANDS.items():
+        lines += [f"  {name:17s} {command.about}"]
+        lines += [f"  {'':17s}   mitigate {name} {command.example}".rstrip(), ""]
+    return "\n".join(lines).rstrip()

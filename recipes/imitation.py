@@ -17,22 +17,22 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mitigate.agents.adapters import adapter_parameters
-from mitigate.agents.concepts import THINGS
-from mitigate.agents.planner import collate
-from mitigate.agents.rendered import RenderedWorld
-from mitigate.agents.rollout import Trace, roll_out
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.agents.waypoints import agreement, select, waypoint_loss
+from mitigate.agents.topological.concepts import THINGS
+from mitigate.agents.topological.planner import collate
+from mitigate.agents.topological.rendered import RenderedWorld
+from mitigate.agents.topological.rollout import Trace, roll_out
+from mitigate.agents.topological.waypoints import agreement, select, waypoint_loss
+from mitigate.core.files import sha256
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.envs.apartments.drawing import strip
-from mitigate.envs.apartments.renderer import shared_renderer
-from mitigate.envs.apartments.tasks import draw_training_episode, share_of
-from mitigate.envs.episodes import Episode
-from mitigate.evaluation.success import measure, prior_rates
-from mitigate.files import sha256
-from mitigate.keys import DEPTH, RGB
-from mitigate.recipe import Recipe
-from mitigate.seeding import generator
+from mitigate.training.recipe import Recipe
+from mitigate.training.success import measure, prior_rates
+from mitigate.worlds.apartments.drawing import strip
+from mitigate.worlds.apartments.renderer import shared_renderer
+from mitigate.worlds.apartments.tasks import draw_training_episode, share_of
+from mitigate.worlds.episodes import Episode
 from recipes.perception import f1
 
 MODULES = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
@@ -160,7 +160,7 @@ class ImitationRecipe(Recipe):
         return {**decisions_of(traces), **stacked, "tokens": tokens}
 
     def entries(self) -> tuple[str, ...]:
-        """What ``forward`` reads of the looks (``mitigate/agents/rendered.py``)."""
+        """What ``forward`` reads of the looks (``mitigate/agents/topological/rendered.py``)."""
         return (RGB, DEPTH, "concepts", "free", "shows") if self.trains_perception else ("shows",)
 
     def look(self, worlds: list[RenderedWorld]) -> list[tuple[np.ndarray, np.ndarray]]:

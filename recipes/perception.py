@@ -15,18 +15,19 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mitigate.agents.adapters import adapted, adapter_parameters
-from mitigate.agents.concepts import THINGS, view_labels
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.agents.waypoints import agreement, free_target, waypoint_loss
+from mitigate.agents.topological.concepts import THINGS
+from mitigate.agents.topological.waypoints import agreement, waypoint_loss
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
+from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
-from mitigate.envs.apartments.drawing import side_by_side
-from mitigate.envs.apartments.renderer import shared_renderer
-from mitigate.envs.apartments.simulator import apartment_of
-from mitigate.envs.apartments.tasks import share_of
-from mitigate.evaluation.success import measure
-from mitigate.keys import DEPTH, POSE, RGB, VIEWS
-from mitigate.recipe import Recipe
-from mitigate.seeding import generator
+from mitigate.training.recipe import Recipe
+from mitigate.training.success import measure
+from mitigate.worlds.apartments.drawing import side_by_side
+from mitigate.worlds.apartments.labels import free_directions, view_labels
+from mitigate.worlds.apartments.renderer import shared_renderer
+from mitigate.worlds.apartments.simulator import apartment_of
+from mitigate.worlds.apartments.tasks import share_of
 
 PIECE = 6  # panoramas that one job renders (ours)
 
@@ -116,7 +117,7 @@ class PerceptionRecipe(Recipe):
         frames = {RGB: rgb, DEPTH: depth, POSE: np.array([*xy, heading], np.float32)}
         frames = corrupt_observation(frames, *self.schedule.draw(self.seed, name, 0))
         if self.modality == "depth":
-            return frames[DEPTH], depth, free_target(space, xy, heading)
+            return frames[DEPTH], depth, free_directions(space, xy, heading)
         target, _ = view_labels(apartment, ids, depth)
         return frames[RGB][views], rgb[views], target[views]
 

@@ -1,8 +1,8 @@
 """Planner training on stored features: imitation without rendering, hundreds of decisions a step.
 
 The encoders are frozen; features of a lattice of poses of ``cached`` training apartments are
-computed once (``mitigate/agents/cache.py``). Otherwise as ``recipes/imitation.py``, whose losses it
-uses.
+computed once (``agents/topological/cache.py``). Otherwise as ``recipes/imitation.py``, whose losses
+it uses.
 """
 
 from __future__ import annotations
@@ -14,11 +14,10 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mitigate import precision
-from mitigate.agents import cache
-from mitigate.agents.rollout import Trace, roll_out
-from mitigate.agents.topological import TopologicalAgent
-from mitigate.checkpoint import weights_sha
+from mitigate.agents.topological import TopologicalAgent, cache
+from mitigate.agents.topological.rollout import Trace, roll_out
+from mitigate.core import precision
+from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from recipes.imitation import ImitationRecipe
 

@@ -12,10 +12,10 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from mitigate.recipe import Recipe
+from mitigate.core.seeding import generator
 from mitigate.safeguard.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.safeguard.model import LanguageModel, collate
-from mitigate.seeding import generator
+from mitigate.training.recipe import Recipe
 
 _HELD = 10**9  # pairs from here on are for evaluation
 

@@ -20,12 +20,13 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mitigate import checkpoint, hardened
 from mitigate.agents.adapters import remove_adapters
-from mitigate.agents.rendered import RenderedWorld
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.keys import CLEAN_DEPTH, CLEAN_RGB
-from mitigate.recipe import Recipe
+from mitigate.agents.topological.rendered import RenderedWorld
+from mitigate.core import checkpoint
+from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB
+from mitigate.shipping import hardened
+from mitigate.training.recipe import Recipe
 from recipes.imitation import ImitationRecipe
 from recipes.perception import PerceptionRecipe
 

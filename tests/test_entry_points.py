@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from mitigate.corruptions import Corruption, Schedule
-from mitigate.envs.habitat_baselines import CorruptObservationConfig
+from mitigate.worlds.habitat_baselines import CorruptObservationConfig
 
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs/corruption-entry-points.md").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from mitigate import doctor, seeding
+from mitigate.core import doctor, seeding
 
 if sys.version_info >= (3, 11):
     import tomllib

@@ -7,7 +7,7 @@ import time
 import torch
 from torch import nn
 
-from mitigate.recipe import Recipe
+from mitigate.training.recipe import Recipe
 
 
 class TinyAgent(nn.Module):

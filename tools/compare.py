@@ -83,8 +83,9 @@ def parts(folder: Path, episodes: int) -> Iterator[tuple]:
 def trained(folder: Path, recipe: str) -> str:
     """Digest of the weights that two steps of every stage of a recipe give."""
     with tempfile.TemporaryDirectory() as out:
+        extra = EXTRA.get(recipe, ())
         options = [f"recipe={recipe}", "debug=smoke", "workers=0", "evaluation.enabled=false"]
-        python(folder, "train", *options, f"runs={out}", f"folder={out}/run", *EXTRA.get(recipe, ()))
+        python(folder, "train", *options, f"runs={out}", f"folder={out}/run", *extra)
         (file,) = Path(out, "run/agent").glob("*.safetensors")
         return tensors_digest(file)
 
@@ -119,7 +120,8 @@ def run(command: list[str], folder: Path) -> str:
         command, cwd=folder, env={**os.environ, **threads}, capture_output=True, text=True
     )
     if done.returncode:
-        sys.exit(f"{' '.join(command)} failed in {folder}:\n{done.stdout[-2000:]}{done.stderr[-4000:]}")
+        said = f"{done.stdout[-2000:]}{done.stderr[-4000:]}"
+        sys.exit(f"{' '.join(command)} failed in {folder}:\n{said}")
     return done.stdout
 
 

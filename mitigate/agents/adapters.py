@@ -19,10 +19,10 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate import checkpoint
 from mitigate.agents.ring import RingAdapter
-from mitigate.files import atomic_text
-from mitigate.keys import HFOV_DEGREES, VIEWS
+from mitigate.core import checkpoint
+from mitigate.core.files import atomic_text
+from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module gets
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"

@@ -13,7 +13,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.keys import HFOV_DEGREES, VIEWS
+from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 
 class RingAdapter(nn.Module):
@@ -103,7 +103,7 @@ def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
     """Where the cells of a view lie in its left and right neighbour.
 
     Args: height, width: of the map. step: degrees from a view to the next, which is to its right
-    (``mitigate/keys.py``). hfov: of a view, in degrees; views are as wide as high.
+    (``mitigate/core/observation.py``). hfov: of a view, in degrees; views are as wide as high.
     Returns float32 ``[2, h, w, 2]``, (x, y) in the form of ``grid_sample`` (``align_corners``
     false): inside [-1, 1] where the neighbour sees the cell.
     """

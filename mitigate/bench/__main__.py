@@ -19,7 +19,7 @@ import cv2  # noqa: E402
 import torch  # noqa: E402
 
 from mitigate.bench import evaluation, renderers, report, suite, training  # noqa: E402
-from mitigate.files import write_bytes  # noqa: E402
+from mitigate.core.files import write_bytes  # noqa: E402
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
 

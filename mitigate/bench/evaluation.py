@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mitigate import cli, workers
-from mitigate.evaluate import conditions, episodes, load
+from mitigate.core import conf, workers
+from mitigate.evaluation.evaluate import conditions, episodes, load
 from mitigate.evaluation.evaluator import EpisodeTask, Job, evaluate, run_episode
 
 CHECKPOINTS = ("checkpoints/base", "checkpoints/hardened/stacked")
@@ -30,7 +30,7 @@ class Pace:
 
 def paces(count: int) -> dict[str, Pace]:
     """By checkpoint: ``count`` episodes under the suite in this process, both ways in turns."""
-    cfg = cli.load_config("evaluate")
+    cfg = conf.load_config("evaluate")
     found = {}
     for weights in CHECKPOINTS:
         task = EpisodeTask(load(cfg.agent, weights), cfg.env.size)
@@ -76,7 +76,7 @@ def seconds_by_workers(count: int) -> dict[int, float]:
 
 
 def _evaluation(count: int, number: int, folder: Path) -> float:
-    cfg = cli.load_config("evaluate")
+    cfg = conf.load_config("evaluate")
     agent = load(cfg.agent, CHECKPOINTS[0])
     started = time.perf_counter()
     evaluate(

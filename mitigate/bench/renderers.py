@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.envs.apartments.apartment import Apartment
-from mitigate.envs.apartments.renderer import Renderer
-from mitigate.keys import VIEWS
-from mitigate.seeding import generator
+from mitigate.core.observation import VIEWS
+from mitigate.core.seeding import generator
+from mitigate.worlds.apartments.apartment import Apartment
+from mitigate.worlds.apartments.renderer import Renderer
 
 ROUNDS = 4
 OURS = "apartments"

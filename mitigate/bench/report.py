@@ -7,8 +7,8 @@ from mitigate.bench.renderers import OURS
 from mitigate.bench.suite import PANORAMA_BAR, SEED, SEVERITY, TINY, Cost
 from mitigate.bench.timing import machine
 from mitigate.bench.training import CAPS, LAYOUTS, Stage, table
+from mitigate.core.observation import VIEWS
 from mitigate.corruptions import SUITE_VERSION
-from mitigate.keys import VIEWS
 
 AIM = 0.15  # of a training step, at most, in which no network computes
 # Where the time of a corruption goes that may miss its bar, found with a profiler.

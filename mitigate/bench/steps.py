@@ -15,7 +15,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from mitigate.journal import CPU
+from mitigate.training.journal import CPU
 
 LEAST = 3  # steps of a stage that are worth comparing: one that warms up and two
 

@@ -25,32 +25,33 @@ from unittest import mock
 import torch
 from omegaconf import OmegaConf
 
-from mitigate import cli, precision, seeding, train  # noqa: F401 (train registers config types)
-from mitigate.batches import Batches, Workers
-from mitigate.build import build, build_agent
-from mitigate.recipe import Recipe
-from mitigate.workers import cores
+from mitigate.core import conf, precision, seeding
+from mitigate.core.build import build, build_agent
+from mitigate.core.workers import cores
+from mitigate.training import train  # noqa: F401 (train registers config types)
+from mitigate.training.batches import Batches, Workers
+from mitigate.training.recipe import Recipe
 
 RECIPES = ("da_per_episode", "ts_distill", "conv_adapter", "stacked", "base", "safeguard_lora")
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
 LAYOUTS = 8  # apartments, so that their making, which a long training pays once, does not count
 NETWORK = "network"
 PARTS = {  # what making a batch consists of: module, class or None, function
-    "rendering": (("mitigate.envs.apartments.renderer", "Renderer", "render"),),
-    "scenes": (("mitigate.envs.apartments.renderer", "Renderer", "load"),),
+    "rendering": (("mitigate.worlds.apartments.renderer", "Renderer", "render"),),
+    "scenes": (("mitigate.worlds.apartments.renderer", "Renderer", "load"),),
     "geodesics": (
-        ("mitigate.envs.apartments.navigation", "FreeSpace", "distances"),
-        ("mitigate.envs.apartments.navigation", "FreeSpace", "rays"),
+        ("mitigate.worlds.apartments.navigation", "FreeSpace", "distances"),
+        ("mitigate.worlds.apartments.navigation", "FreeSpace", "rays"),
     ),
     "corruption": (
-        ("mitigate.agents.rendered", None, "corrupt_observation"),
+        ("mitigate.agents.topological.rendered", None, "corrupt_observation"),
         ("recipes.perception", None, "corrupt_observation"),
     ),
     NETWORK: (
-        ("mitigate.agents.topological", "TopologicalAgent", "perceive"),
-        ("mitigate.agents.planner", "Planner", "forward"),
-        ("mitigate.agents.planner", "Planner", "look"),
-        ("mitigate.agents.planner", "Planner", "read"),
+        ("mitigate.agents.topological.agent", "TopologicalAgent", "perceive"),
+        ("mitigate.agents.topological.planner", "Planner", "forward"),
+        ("mitigate.agents.topological.planner", "Planner", "look"),
+        ("mitigate.agents.topological.planner", "Planner", "read"),
     ),
 }
 OTHER = "other"
@@ -115,7 +116,7 @@ def clocked() -> Iterator[dict[str, Clock]]:
 
 def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
     """Measure the stages of the recipe ``name``, ``steps`` steps each after two that warm up."""
-    cfg = cli.load_config(
+    cfg = conf.load_config(
         "train", [f"recipe={name}", f"env.layouts={LAYOUTS}", "env.cached=2", *options]
     )
     found = []

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from mitigate import keys
+from mitigate.core import observation
 from mitigate.corruptions.keying import (
     Key,
     digest,
@@ -53,7 +53,7 @@ class DepthSensor:
     """
 
     z_min: float = 0.0
-    z_max: float = keys.Z_MAX
+    z_max: float = observation.Z_MAX
     missing: float = 0.0
 
     def __post_init__(self) -> None:

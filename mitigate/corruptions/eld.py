@@ -18,14 +18,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from mitigate.corruptions.keying import (
-    Key,
-    digest,
-    mix,
-    normal_table,
-    unit_normals,
-    view_streams,
-)
+from mitigate.corruptions.keying import Key, digest, mix, normal_table, unit_normals, view_streams
 from mitigate.corruptions.masks import low_light_mask
 
 WHITE = 15583.0  # sensor units at full scale: 14 bits less the black level (Sony A7S2)

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
+from mitigate.core.files import write_bytes
+from mitigate.core.observation import Z_MAX
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.frame_files import MOST, RGB
@@ -17,8 +19,6 @@ from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import check_sensor
 from mitigate.corruptions.plan import Frame, Plan, make_plan, told
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
-from mitigate.files import write_bytes
-from mitigate.keys import Z_MAX
 
 SUMMARY = "corrupt.json"
 UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0}

@@ -15,12 +15,12 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from mitigate.core.files import write_bytes
+from mitigate.core.observation import DEPTH, Z_MAX
+from mitigate.core.observation import RGB as RGB_ENTRY
 from mitigate.corruptions import curves, page
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.suite import NAMES, RGB, corrupt
-from mitigate.files import write_bytes
-from mitigate.keys import DEPTH, Z_MAX
-from mitigate.keys import RGB as RGB_ENTRY
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
 SUFFIXES = (".png", ".jpg", ".jpeg")  # of a sheet
@@ -110,9 +110,9 @@ def contact_sheet(
 
 def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
     """RGB [12, H, W, 3] and depth [12, H, W, 1] at an episode start of apartment ``seed``."""
-    from mitigate.envs.apartments.apartment import Apartment
-    from mitigate.envs.apartments.simulator import Simulator
-    from mitigate.envs.apartments.tasks import make_episode
+    from mitigate.worlds.apartments.apartment import Apartment
+    from mitigate.worlds.apartments.simulator import Simulator
+    from mitigate.worlds.apartments.tasks import make_episode
 
     simulator = Simulator(size=size)
     simulator.reset(make_episode(Apartment(seed), "vln", 0))

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from mitigate import keys
+from mitigate.core import observation
 from mitigate.corruptions.keying import field, top_share, uniform
 
 DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
@@ -127,7 +127,7 @@ def flare_centres(
     looks at heading - 30 k degrees. Without a heading that camera is view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
-    focal = 0.5 / math.tan(math.radians(keys.HFOV_DEGREES) / 2.0)  # over the width
+    focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width
     yaw = math.atan2(0.5 - column, focal)  # from the camera, counter-clockwise
     tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # of the elevation
     if heading is not None and not math.isfinite(heading):
@@ -139,7 +139,7 @@ def flare_centres(
         yaw += 2.0 * math.pi * uniform(value, 2) - heading
     centres = []
     for view in range(views):
-        turn = yaw + math.radians(keys.VIEW_STEP_DEGREES) * view
+        turn = yaw + math.radians(observation.VIEW_STEP_DEGREES) * view
         ahead, left = math.cos(turn), math.sin(turn)
         x = 0.5 - focal * left / ahead if ahead > 1e-6 else -1.0
         seen = 0.0 <= x <= 1.0

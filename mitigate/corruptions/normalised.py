@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mitigate import keys
+from mitigate.core import observation
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.suite import SENSOR, Corruption, corrupt_observation
@@ -26,13 +26,13 @@ def corrupt_normalised(
     ``corrupt_observation`` does.
     """
     check_sensor(sensor)
-    if corruption.modality != "depth" or keys.DEPTH not in obs:
+    if corruption.modality != "depth" or observation.DEPTH not in obs:
         return corrupt_observation(obs, corruption, key, sensor)
-    clean = np.asarray(obs[keys.DEPTH])
+    clean = np.asarray(obs[observation.DEPTH])
     valid = _valid(clean)
     metres = np.where(valid, sensor.to_metres(clean), np.float32(0))
-    hurt = corrupt_observation({**obs, keys.DEPTH: metres}, corruption, key, sensor)
-    return {**hurt, keys.DEPTH: _normalise(hurt[keys.DEPTH], metres, clean, sensor)}
+    hurt = corrupt_observation({**obs, observation.DEPTH: metres}, corruption, key, sensor)
+    return {**hurt, observation.DEPTH: _normalise(hurt[observation.DEPTH], metres, clean, sensor)}
 
 
 def check_sensor(sensor: DepthSensor) -> None:

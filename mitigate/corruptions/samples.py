@@ -19,7 +19,7 @@ from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.style import MANNERS, restyle
 from mitigate.corruptions.suite import INSTRUCTION
-from mitigate.envs.episodes import read_episodes
+from mitigate.worlds.episodes import read_episodes
 
 OTHER = {"left": "right", "right": "left"}
 FAMILIES = tuple(name for name in INSTRUCTION if name != "white_box")

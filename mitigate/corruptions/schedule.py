@@ -10,14 +10,7 @@ from itertools import accumulate
 from typing import Any
 
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.corruptions.suite import (
-    CLEAN,
-    NAMES,
-    RGB,
-    Corruption,
-    check_name,
-    check_severity,
-)
+from mitigate.corruptions.suite import CLEAN, NAMES, RGB, Corruption, check_name, check_severity
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
 Severity = float | Sequence[float]  # one, or the ends of a range

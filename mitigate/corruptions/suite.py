@@ -6,13 +6,13 @@ Both are pure functions of (frame, name, severity, key, heading).
 
 from __future__ import annotations
 
-import difflib
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from mitigate import keys
+from mitigate.core import observation
+from mitigate.core.names import unknown
 from mitigate.corruptions import depth, eld, rgb
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
@@ -51,11 +51,7 @@ def check_name(name: str, allowed: tuple[str, ...] = NAMES) -> str:
     """Return ``name``, or raise ValueError with the nearest allowed name."""
     if name in allowed:
         return name
-    near = difflib.get_close_matches(str(name), allowed, n=1)
-    hint = f" Did you mean {near[0]!r}?" if near else ""
-    raise ValueError(
-        f"There is no corruption called {name!r}.{hint} Allowed names: {', '.join(allowed)}."
-    )
+    raise ValueError(unknown("corruption", name, allowed))
 
 
 def check_severity(severity: float) -> float:
@@ -210,7 +206,7 @@ def corrupt(
 def corrupt_observation(
     obs: dict, corruption: Corruption, key: Key, sensor: DepthSensor = SENSOR
 ) -> dict:
-    """A new observation dict in which the modality concerned is hurt (see ``mitigate.keys``).
+    """A new observation dict in which the modality concerned is hurt (``core/observation.py``).
 
     The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
     A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
@@ -218,18 +214,19 @@ def corrupt_observation(
     """
     if corruption.modality in ("none", "instruction"):
         return dict(obs)
-    entry = keys.RGB if corruption.modality == "rgb" else keys.DEPTH
+    entry = observation.RGB if corruption.modality == "rgb" else observation.DEPTH
     if entry not in obs:
         raise ValueError(
             f"{corruption.name!r} hurts {entry!r}, which this observation does not hold (it holds "
             f"{', '.join(map(repr, obs)) or 'nothing'}). Give the agent that sensor or leave "
             f"{corruption.name!r} out of its suite."
         )
-    pose = obs.get(keys.POSE)
+    pose = obs.get(observation.POSE)
     if pose is not None and np.shape(pose) != (3,):
         raise ValueError(
-            f"{keys.POSE!r} must be [3] = (x, y, heading), but its shape is {np.shape(pose)}. "
-            "Leave it out if the heading is not known: a flare then keeps its place in view 0."
+            f"{observation.POSE!r} must be [3] = (x, y, heading), but its shape is "
+            f"{np.shape(pose)}. Leave it out if the heading is not known: a flare then keeps its "
+            "place in view 0."
         )
     heading = None if pose is None else float(pose[2])
     hurt = corrupt(

@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from mitigate.agents.rollout import STOP_WITHIN
+from mitigate.agents.topological.rollout import STOP_WITHIN
+from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
+from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import SUCCESS_METRES, load_episodes
 from mitigate.evaluation import metrics, rows
 from mitigate.evaluation.evaluator import Agent, run_episode
-from mitigate.keys import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
-from mitigate.seeding import generator
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, load_episodes
 
 _STOP_SHARE = 0.01  # of random actions; about 100 actions an episode
 

@@ -8,6 +8,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from mitigate.core.memory import Memory
+from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.corruptions import (
     Corruption,
     Key,
@@ -16,12 +18,10 @@ from mitigate.corruptions import (
     corrupt_observation,
     inject_system_prompt,
 )
-from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import SUCCESS_METRES, from_vlnce
-from mitigate.envs.episodes import Episode
 from mitigate.evaluation import metrics
-from mitigate.keys import DEPTH, POSE, RGB
-from mitigate.memory import Memory
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, from_vlnce
+from mitigate.worlds.episodes import Episode
 
 FRAMES = 1 << 26  # bytes of rendered frames kept for the conditions of an episode (ours)
 

@@ -19,23 +19,17 @@ from typing import Any, ClassVar
 
 import torch
 
-from mitigate import workers as processes
-from mitigate.checkpoint import weights_sha
+from mitigate.core import workers as processes
+from mitigate.core.checkpoint import weights_sha
+from mitigate.core.memory import Memory
+from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
-from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import SUCCESS_METRES
-from mitigate.envs.episodes import Episode
 from mitigate.evaluation import metrics, rows
-from mitigate.evaluation.episode import (
-    FRAMES,
-    Agent,
-    LazyObservation,
-    instruction,
-    run_episode,
-)
-from mitigate.memory import Memory
-from mitigate.progress import Progress
+from mitigate.evaluation.episode import FRAMES, Agent, LazyObservation, instruction, run_episode
 from mitigate.safeguard.guard import Safeguard
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES
+from mitigate.worlds.episodes import Episode
 
 __all__ = ["Agent", "EpisodeTask", "LazyObservation", "evaluate", "instruction", "run_episode"]
 
@@ -47,7 +41,7 @@ Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says 
 
 @dataclass
 class EpisodeTask:
-    """Runs jobs (``mitigate/workers.py``): each one's result is its label with its measures.
+    """Runs jobs (``mitigate/core/workers.py``): each one's result is its label with its measures.
 
     repaired: what a safeguard makes of instructions. size: pixels of a view. simulator: to use in
     this process; others make their own. A label holds "seed".

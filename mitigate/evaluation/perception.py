@@ -20,20 +20,20 @@ import torch
 from hydra import compose, initialize_config_dir
 from tqdm import tqdm
 
-from mitigate import cli
-from mitigate.agents.concepts import THINGS, view_labels
-from mitigate.agents.waypoints import free_target
-from mitigate.columns import name_of
+from mitigate.agents.topological.concepts import THINGS
+from mitigate.core import conf
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
 from mitigate.corruptions import RGB as RGB_NAMES
-from mitigate.envs.apartments.renderer import Renderer
-from mitigate.envs.apartments.simulator import apartment_of
-from mitigate.envs.apartments.tasks import load_episodes
-from mitigate.evaluate import load
 from mitigate.evaluation.bootstrap import resampled_means
+from mitigate.evaluation.columns import name_of
+from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.sections import label
-from mitigate.keys import DEPTH, POSE, RGB
-from mitigate.seeding import generator
+from mitigate.worlds.apartments.labels import free_directions, view_labels
+from mitigate.worlds.apartments.renderer import Renderer
+from mitigate.worlds.apartments.simulator import apartment_of
+from mitigate.worlds.apartments.tasks import load_episodes
 
 SIZE = 64  # pixels, as the reference agent sees
 FRAMES = tuple(name for name in NAMES if Corruption(name, 0.0).modality in ("rgb", "depth"))
@@ -56,7 +56,7 @@ class Poses:
             pose = np.array([*xy, heading], np.float32)
             self.observations.append({RGB: rgb.copy(), DEPTH: depth.copy(), POSE: pose})
             self.things.append(view_labels(apartment, ids, depth)[0][:, THINGS] > 0.5)
-            self.free.append(free_target(apartment.space, xy, heading) > 0.5)
+            self.free.append(free_directions(apartment.space, xy, heading) > 0.5)
 
     @torch.no_grad()
     def counts(self, agent: Any, corruption: Corruption) -> tuple[np.ndarray, np.ndarray]:
@@ -114,7 +114,7 @@ def _column(weights: str, taken: Collection[str]) -> str:
 
 @lru_cache(maxsize=1)
 def _agent_node() -> Any:
-    with initialize_config_dir(str(cli.CONF), version_base="1.3"):
+    with initialize_config_dir(str(conf.CONF), version_base="1.3"):
         return compose("evaluate").agent
 
 

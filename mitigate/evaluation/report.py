@@ -9,12 +9,12 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
+from mitigate.core.files import atomic_text
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
 from mitigate.evaluation.grid import BLOCKS, METRICS, PROMPT_ONLY, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
-from mitigate.files import atomic_text
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:

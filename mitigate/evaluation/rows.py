@@ -14,7 +14,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from mitigate.files import atomic_text, open_text
+from mitigate.core.files import atomic_text, open_text
 
 Row = dict[str, Any]
 IDENTITY: dict[str, Any] = {

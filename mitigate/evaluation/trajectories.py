@@ -13,16 +13,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
 from mitigate.corruptions.gallery import depth_picture
-from mitigate.envs.apartments.drawing import draw_path, draw_plan, strip
-from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import from_vlnce
-from mitigate.envs.episodes import Episode
 from mitigate.evaluation.evaluator import Agent, run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
-from mitigate.keys import DEPTH, RGB
+from mitigate.worlds.apartments.drawing import draw_path, draw_plan, strip
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import from_vlnce
+from mitigate.worlds.episodes import Episode
 
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
 CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order

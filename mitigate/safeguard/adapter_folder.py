@@ -10,7 +10,7 @@ from typing import Any
 
 from torch import Tensor
 
-from mitigate import checksums
+from mitigate.core import checksums
 
 CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
 ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card and of PEFT's config

@@ -19,7 +19,8 @@ from typing import Any
 
 import torch
 
-from mitigate import cli, train  # noqa: F401 - train names the types of its config
+from mitigate.core import conf
+from mitigate.training import train  # noqa: F401 - train names the types of its config
 
 BASELINE = "transformers + PEFT, fp32"
 KINDS = {  # name -> precision of the weights, autocast, as the recipe does
@@ -46,7 +47,7 @@ def measure(kind: str, base: str) -> dict[str, float]:
     from recipes.safeguard_lora import SafeguardLora
 
     precision, autocast, ours = KINDS[kind]
-    cfg = cli.load_config("train", ["recipe=safeguard_lora"])
+    cfg = conf.load_config("train", ["recipe=safeguard_lora"])
     model = LanguageModel(base, precision, dict(cfg.agent.lora))
     found = {"loaded_mb": _resident()}
     recipe = SafeguardLora(model, pairs=16, micro_batch=4 if ours else 16)

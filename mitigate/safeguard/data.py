@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from mitigate.core.files import atomic_text, open_text
+from mitigate.core.seeding import digest, generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.clauses import clauses
@@ -23,10 +25,8 @@ from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.phrases import VOICES
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
-from mitigate.envs.episodes import read_episodes
-from mitigate.files import atomic_text, open_text
 from mitigate.safeguard.routes import draw_route
-from mitigate.seeding import digest, generator
+from mitigate.worlds.episodes import read_episodes
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack

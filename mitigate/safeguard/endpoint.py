@@ -18,8 +18,8 @@ from typing import Any
 
 from tqdm import tqdm
 
+from mitigate.core.seeding import digest
 from mitigate.safeguard.data import PROMPTS, prompt_messages
-from mitigate.seeding import digest
 
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
 LARGEST = 1 << 20  # bytes of an answer that are read (ours)

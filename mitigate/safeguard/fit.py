@@ -15,15 +15,15 @@ from pathlib import Path
 
 import numpy as np
 
+from mitigate.core.files import atomic_text
+from mitigate.core.seeding import generator
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.prefixes import prefixes
-from mitigate.files import atomic_text
 from mitigate.safeguard import routes
 from mitigate.safeguard.data import draw_pair, vary
 from mitigate.safeguard.rules import CLOSED, VERBS, features
 from mitigate.safeguard.text import sentences, words
-from mitigate.seeding import generator
 
 WEIGHTS = Path(__file__).parent / "weights.py"
 PAIRS, RIDGE, ITERATIONS = 6000, 3.0, 30

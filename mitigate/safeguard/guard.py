@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
 
-from mitigate import cli
+from mitigate.core.names import unknown
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
@@ -136,9 +136,7 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     if choice == "prompted":
         return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
     if choice != "lora" and not Path(choice).is_dir():
-        raise ValueError(
-            cli.unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder."
-        )
+        raise ValueError(unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder.")
     return Safeguard(open_adapter(ADAPTER if choice == "lora" else choice), log=log)
 
 

@@ -6,10 +6,10 @@ import re
 from collections import Counter
 from functools import lru_cache
 
+from mitigate.core.seeding import generator
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.text import MASK
-from mitigate.seeding import generator
 
 ROUTES = 4000  # counted, about one second once (ours)
 SMALL = bag(

@@ -17,8 +17,8 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from mitigate.checkpoint import load_tensors
-from mitigate.progress import Progress
+from mitigate.core.checkpoint import load_tensors
+from mitigate.core.progress import Progress
 from mitigate.safeguard.adapter_folder import ADAPTER, read_adapter, write_adapter
 from mitigate.safeguard.base import PRECISIONS, SMOLLM2, base_sha256, load_base
 from mitigate.safeguard.data import PROMPTS, Pair, prompt_messages

@@ -17,16 +17,16 @@ from typing import Any
 
 from torch import nn
 
+from mitigate.core.files import atomic_text, open_text
+from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
-from mitigate.envs.episodes import read_episodes
-from mitigate.files import atomic_text, open_text
 from mitigate.safeguard.data import read_texts
 from mitigate.safeguard.guard import PASSAGE, Rewriter, Safeguard, open_safeguard
 from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
 from mitigate.safeguard.text import passages, sentences
-from mitigate.seeding import generator
+from mitigate.worlds.episodes import read_episodes
 
 FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")
 ALONE = "-alone"

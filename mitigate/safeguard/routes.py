@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mitigate.envs.apartments.instructions import TEMPLATES
+from mitigate.worlds.apartments.instructions import TEMPLATES
 
 
 def _listed(text: str) -> tuple[str, ...]:

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import torch
 
-from mitigate import seeding
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.agents.waypoints import free_target
-from mitigate.envs.apartments.navigation import CELL, FreeSpace
+from mitigate.core import seeding
+from mitigate.worlds.apartments.labels import free_directions
+from mitigate.worlds.apartments.navigation import CELL, FreeSpace
 
 
 def room(width: float, depth: float) -> FreeSpace:
@@ -20,7 +20,7 @@ def room(width: float, depth: float) -> FreeSpace:
 
 def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
     """Logits [120, 12] of a waypoint predictor that is right about everything."""
-    return np.where(free_target(space, xy, heading) > 0.5, 20.0, -20.0)
+    return np.where(free_directions(space, xy, heading) > 0.5, 20.0, -20.0)
 
 
 def wanderer(*blind: str, stop: float = -50.0) -> TopologicalAgent:

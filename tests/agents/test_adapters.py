@@ -12,13 +12,13 @@ import pytest
 import torch
 from torch import Tensor, nn
 
-import mitigate.train  # noqa: F401  (the schema of its config)
-from mitigate import cli
+import mitigate.training.train  # noqa: F401  (the schema of its config)
 from mitigate.agents import adapters
 from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
-from mitigate.build import build_agent
-from mitigate.checkpoint import weights_sha
-from mitigate.keys import VIEWS
+from mitigate.core import conf
+from mitigate.core.build import build_agent
+from mitigate.core.checkpoint import weights_sha
+from mitigate.core.observation import VIEWS
 
 
 class Bottleneck(nn.Module):
@@ -174,7 +174,7 @@ def test_a_copy_has_adapters_of_its_own(encoder):
 
 
 def test_the_share_on_the_reference_agent_is_between_one_and_four_per_cent():
-    cfg = cli.load_config("train", ["recipe=conv_adapter"])
+    cfg = conf.load_config("train", ["recipe=conv_adapter"])
     agent = build_agent(cfg.agent, weights=cfg.init, seed=0)
     assert 0.01 <= adapters.trainable_share(agent) <= 0.04
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 import torch
 
-from mitigate import seeding
 from mitigate.agents.fusion import CAP, RATE, fuse, reliability
-from mitigate.agents.planner import Planner, collate
-from mitigate.keys import VIEWS
-from tests.agents.test_planner import decision
+from mitigate.agents.topological.planner import Planner, collate
+from mitigate.core import seeding
+from mitigate.core.observation import VIEWS
+from tests.agents.topological.test_planner import decision
 
 
 @pytest.fixture

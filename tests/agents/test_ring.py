@@ -6,9 +6,9 @@ import pytest
 import torch
 
 from mitigate.agents.ring import RingAdapter, neighbour_grid
-from mitigate.envs.apartments.renderer import Renderer
-from mitigate.envs.apartments.simulator import apartment_of
-from mitigate.keys import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
+from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
+from mitigate.worlds.apartments.renderer import Renderer
+from mitigate.worlds.apartments.simulator import apartment_of
 
 
 @pytest.fixture(scope="module")

@@ -13,7 +13,7 @@ from mitigate.corruptions.language import phrases
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.prefixes import SPLITS, prefixes
 from mitigate.corruptions.language.style import MANNERS, restyle
-from mitigate.envs.episodes import read_episodes
+from mitigate.worlds.episodes import read_episodes
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
 HANDWRITTEN = [
@@ -21,7 +21,7 @@ HANDWRITTEN = [
     for line in (Path(__file__).parents[1] / "safeguard/handwritten.txt").read_text().splitlines()
     if line and not line.startswith("#")
 ]
-OURS = "mitigate/envs/apartments/episodes/val_unseen_vln.json.gz"
+OURS = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"
 FLIPS = {"left": "right", "right": "left", "up": "down", "down": "up"}
 
 

@@ -191,7 +191,7 @@ def test_a_very_long_instruction_with_emoji_and_control_characters_is_corrupted(
 
 
 def test_wrong_options_name_the_right_ones():
-    with pytest.raises(ValueError, match="Did you mean 'formal'"):
+    with pytest.raises(ValueError, match="Did you mean formal"):
         corrupt_instruction(TEXT, "formel", 0.5, KEY)
     with pytest.raises(ValueError, match="from 0 .clean. to 1"):
         corrupt_instruction(TEXT, "mask", 1.5, KEY)

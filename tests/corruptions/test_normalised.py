@@ -74,5 +74,5 @@ def test_a_schedule_of_one_corruption_draws_it_always():
     schedule = Schedule.always("spatter", 0.4)
     drawn = {schedule.draw(0, str(e), f)[0] for e in range(20) for f in range(3)}
     assert drawn == {Corruption("spatter", 0.4)}
-    with pytest.raises(ValueError, match="Did you mean 'spatter'"):
+    with pytest.raises(ValueError, match="Did you mean spatter"):
         Schedule.always("spater", 0.4)

@@ -152,7 +152,7 @@ def test_state_survives_json_and_gives_the_same_draws():
         ({"severity": "worst"}, "from 0 .clean. to 1"),
         ({"clean_share": 1.5}, "clean_share must be in"),
         ({"clean_share": float("nan")}, "clean_share must be in"),
-        ({"names": ("spater",)}, "mean 'spatter'"),
+        ({"names": ("spater",)}, "mean spatter"),
         ({"names": ()}, "at least one corruption"),
         ({"names": ("flare", "flare")}, "only once"),
         ({"alpha": -1.0}, "alpha and floor"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mitigate.core.observation import DEPTH, POSE, RGB, STOP
 from mitigate.corruptions import (
     CLEAN,
     INSTRUCTION,
@@ -14,12 +15,11 @@ from mitigate.corruptions import (
     corrupt_instruction,
     inject_system_prompt,
 )
-from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import load_episodes
 from mitigate.evaluation import controls, evaluator, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
 from mitigate.evaluation.evaluator import LazyObservation, evaluate, run_episode
-from mitigate.keys import DEPTH, POSE, RGB, STOP
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import load_episodes
 from tests.agents.rooms import wanderer
 
 CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]

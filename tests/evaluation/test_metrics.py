@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mitigate.envs.episodes import read_episodes, read_ground_truth
 from mitigate.evaluation.metrics import dtw, ndtw, path_length, prs, rule, spl, success
+from mitigate.worlds.episodes import read_episodes, read_ground_truth
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
 LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]

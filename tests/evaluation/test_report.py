@@ -6,9 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from mitigate import table
 from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
-from mitigate.evaluation import rows
+from mitigate.evaluation import rows, table
 from mitigate.evaluation.report import markdown, sections, write
 from tests.evaluation.made_rows import cell, column, row
 

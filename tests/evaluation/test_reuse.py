@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate import workers
+from mitigate.core import workers
+from mitigate.core.memory import Memory
+from mitigate.core.observation import DEPTH, RGB, STOP
 from mitigate.corruptions import CLEAN, NAMES, Corruption
-from mitigate.envs.apartments.simulator import Simulator
-from mitigate.envs.apartments.tasks import load_episodes
 from mitigate.evaluation import rows
 from mitigate.evaluation.evaluator import evaluate, run_episode
-from mitigate.keys import DEPTH, RGB, STOP
-from mitigate.memory import Memory
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import load_episodes
 from tests.agents.rooms import wanderer
 
 CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import cv2
 import pytest
 
+from mitigate.core.observation import FORWARD, STOP
 from mitigate.corruptions import Corruption
-from mitigate.envs.apartments.tasks import load_episodes
 from mitigate.evaluation import trajectories
 from mitigate.evaluation.trajectories import draw_trajectories, won_back, write_pictures
-from mitigate.keys import FORWARD, STOP
+from mitigate.worlds.apartments.tasks import load_episodes
 from tests.evaluation.made_rows import row
 
 

@@ -6,10 +6,10 @@ import pytest
 
 from mitigate.agents.adapters import backbone_sha
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.checkpoint import weights_sha
+from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
-from mitigate.trainer import Trainer
+from mitigate.training.trainer import Trainer
 from recipes.imitation import ImitationRecipe
 from tests.evaluation.made_rows import cell
 

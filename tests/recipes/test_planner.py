@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate import seeding
 from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import seeding
 from recipes.planner import PlannerRecipe
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 import torch
 
-import mitigate.train  # noqa: F401  (the schema of its config)
-from mitigate import checkpoint, cli, seeding
+import mitigate.training.train  # noqa: F401  (the schema of its config)
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.checkpoint import checkpoints, weights_sha
+from mitigate.core import checkpoint, conf, seeding
+from mitigate.core.checkpoint import checkpoints, weights_sha
 from mitigate.corruptions import Schedule
-from mitigate.trainer import Trainer
+from mitigate.training.trainer import Trainer
 from recipes.conv_adapter import ConvAdapterRecipe
 from recipes.imitation import MODULES, ImitationRecipe
 from recipes.ts_distill import TeacherStudent, ViewDistillation, policy_kl
@@ -167,7 +167,7 @@ def test_adapters_alone_are_no_teacher():
 def test_one_option_names_the_teacher_of_all_stages():
     for recipe in ("ts_distill", "stacked"):
         options = [f"recipe={recipe}", "stages.views_rgb.recipe.teacher=mine"]
-        cfg = cli.load_config("train", options)
+        cfg = conf.load_config("train", options)
         assert {stage.recipe.teacher for stage in cfg.stages.values()} == {"mine"}
 
 

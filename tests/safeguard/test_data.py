@@ -7,13 +7,13 @@ import re
 
 import pytest
 
+from mitigate.core.seeding import generator
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
-from mitigate.envs.apartments.instructions import TEMPLATES
-from mitigate.envs.episodes import read_episodes
 from mitigate.safeguard import data, routes
 from mitigate.safeguard.data import KINDS, Pair, draw_pair, read_chats, write_chats
-from mitigate.seeding import generator
+from mitigate.worlds.apartments.instructions import TEMPLATES
+from mitigate.worlds.episodes import read_episodes
 
 PAIRS = [draw_pair(0, index) for index in range(1500)]
 SIZE = 2000
@@ -34,7 +34,7 @@ def test_no_route_holds_a_phrase_of_the_validation_templates():
 
 
 def test_no_validation_instruction_can_be_drawn():
-    listed = read_episodes("mitigate/envs/apartments/episodes/val_unseen_vln.json.gz")
+    listed = read_episodes("mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz")
     assert all(routes.overlaps_validation(episode.instruction.text) for episode in listed)
     assert not routes.overlaps_validation("Leave the pantry and veer left at the piano.")
 

@@ -7,8 +7,9 @@ import time
 
 import pytest
 
-import mitigate.evaluate  # noqa: F401  (registers the types of conf/evaluate.yaml)
-from mitigate import cli
+import mitigate.evaluation.evaluate  # noqa: F401  (registers the types of conf/evaluate.yaml)
+from mitigate.core import conf
+from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check, facts
@@ -19,7 +20,6 @@ from mitigate.safeguard.guard import Safeguard, open_safeguard, refusal
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.rules import restyled, style_marks
 from mitigate.safeguard.text import MASK, sentences
-from mitigate.seeding import generator
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
 STYLED = "Hey there! So, go ahead and stroll past the sofa. Then hang a left, okay?"
@@ -189,7 +189,7 @@ def test_an_endpoint_is_named_with_its_model(tmp_path, monkeypatch):
     monkeypatch.setattr("mitigate.safeguard.guard.CACHE", tmp_path / "answers.sqlite")
     found = open_safeguard("http://localhost:1/v1@org/model-1")
     assert (found.rewriter.url, found.rewriter.model) == ("http://localhost:1/v1", "org/model-1")
-    cfg = cli.load_config("evaluate", ["safeguard=http://localhost:1/v1@org/model-1"])
+    cfg = conf.load_config("evaluate", ["safeguard=http://localhost:1/v1@org/model-1"])
     assert cfg.safeguard == "http://localhost:1/v1@org/model-1"
 
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 import torch
 
-from mitigate import checkpoint
+from mitigate.core import checkpoint
 from mitigate.safeguard.data import Pair
 from mitigate.safeguard.model import LanguageModel, collate, open_adapter
-from mitigate.trainer import Trainer
+from mitigate.training.trainer import Trainer
 from recipes.safeguard_lora import SafeguardLora
 from tests.safeguard.conftest import LORA, write_tiny_model
 

@@ -6,12 +6,13 @@ import json
 
 import torch
 
-from mitigate import cli, evaluate, train
+from mitigate.core import conf
 from mitigate.corruptions import CLEAN, Corruption
-from mitigate.evaluation import evaluator
+from mitigate.evaluation import evaluate, evaluator
 from mitigate.safeguard import report
 from mitigate.safeguard.guard import Safeguard
 from mitigate.safeguard.model import LanguageModel
+from mitigate.training import train
 from tests.safeguard.conftest import LORA
 
 TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Stop by the piano."]
@@ -37,7 +38,7 @@ def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
 
 def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):
     torch.manual_seed(0)
-    cfg = cli.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"])
+    cfg = conf.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"])
     assert cfg.report == "mitigate.safeguard.report.before_after" and train.TrainConfig.report
     report.before_after(cfg, None, LanguageModel(tiny_base, "fp32", LORA), tmp_path)
     shown = capsys.readouterr().out
@@ -58,7 +59,7 @@ class Listener(torch.nn.Module):
 
 
 def test_the_agent_hears_the_repaired_instruction_and_the_rows_say_so(tmp_path):
-    cfg = cli.load_config("evaluate")
+    cfg = conf.load_config("evaluate")
     episodes = evaluate.episodes(cfg.env, "val_unseen", 2)
     Listener.heard.clear()
     rows = evaluator.evaluate(

@@ -1,0 +1,211 @@
+"""The reference agent: perceive, extend the topological map, choose, walk.
+
+``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action. The
+agent reads ``observation["rgb"]`` and ``["depth"]`` only when it takes a decision, so a lazy
+observation renders nothing in between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from hashlib import blake2b
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from mitigate.agents.adapters import insert_adapters
+from mitigate.agents.topological import observation as checked
+from mitigate.agents.topological.controller import Controller
+from mitigate.agents.topological.encoders import SIZE, DepthEncoder, RGBEncoder
+from mitigate.agents.topological.mapping import TopologicalMap
+from mitigate.agents.topological.planner import Planner, collate
+from mitigate.agents.topological.text import Vocabulary, pad
+from mitigate.agents.topological.waypoints import WaypointHead, select
+from mitigate.core.memory import Memory
+from mitigate.core.observation import STOP, VIEWS
+
+MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
+SENSORS = ("rgb", "depth", "instruction")
+FEATURES = 1 << 25  # bytes of features kept while remembering (ours): about 900 panoramas
+
+
+class TopologicalAgent(nn.Module):
+    """ETPNav's structure with about 2.5 M parameters.
+
+    Args:
+        width: of view features of each sensor. planner: keyword arguments of ``Planner``.
+        adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
+        blind: sensors that are blanked before they enter (the ablations): of ``SENSORS``.
+        size: pixels of a square view that it works on; frames of another size are resized.
+        vocabulary: the words it knows; None: those of the shipped agents.
+    Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
+    """
+
+    def __init__(
+        self,
+        width: int = 128,
+        planner: dict[str, Any] | None = None,
+        blind: tuple[str, ...] = (),
+        adapters: dict[str, Any] | None = None,
+        size: int = SIZE,
+        vocabulary: list[str] | None = None,
+    ) -> None:
+        super().__init__()
+        unknown = set(blind) - set(SENSORS)
+        if unknown:
+            raise ValueError(
+                f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSORS)}."
+            )
+        self.blind = tuple(blind)
+        self._memory: Memory | None = None
+        self.rgb_encoder = RGBEncoder(width=width, size=size)
+        self.depth_encoder = DepthEncoder(width=width, size=size)
+        self.waypoint_head = WaypointHead(width)
+        self.vocabulary = Vocabulary(vocabulary)
+        self.planner = Planner(width, width, vocabulary=self.vocabulary, **(planner or {}))
+        if adapters:
+            insert_adapters(self, **adapters)
+
+    def settings(self) -> dict[str, Any]:
+        """What its config must say so that the weights are read as they were trained."""
+        return {"vocabulary": list(self.vocabulary.words)}
+
+    @property
+    def device(self) -> torch.device:
+        return self.planner.places.weight.device
+
+    # features: what recipes train and distil -------------------------------------------------
+
+    def perceive(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Frames of P panoramas to named features.
+
+        Args: rgb uint8 [P, 12, H, W, 3]; depth float32 metres [P, 12, H, W, 1].
+        Returns views [P, 12, rgb + concepts + depth] (concepts as probabilities), concept logits
+        [P, 12, C], waypoint logits [P, 120, 12].
+        """
+        rgb = torch.zeros_like(rgb) if "rgb" in self.blind else rgb
+        depth = torch.zeros_like(depth) if "depth" in self.blind else depth
+        return self.encode(rgb, depth)
+
+    def encode(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """As :meth:`perceive`, whatever the agent is blind to."""
+        features, concepts = self._encode_rgb(rgb)
+        depth_features, waypoints = self._encode_depth(depth)
+        return torch.cat([features, concepts.sigmoid(), depth_features], -1), concepts, waypoints
+
+    def _encode_rgb(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
+        """Features [P, 12, width] and concept logits [P, 12, C]."""
+        features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
+        return features.unflatten(0, (-1, VIEWS)), concepts.unflatten(0, (-1, VIEWS))
+
+    def _encode_depth(self, depth: Tensor) -> tuple[Tensor, Tensor]:
+        """Features [P, 12, width] and waypoint logits [P, 120, 12]."""
+        features = self.depth_encoder(depth.flatten(0, 1)).unflatten(0, (-1, VIEWS))
+        return features, self.waypoint_head(features)
+
+    def tokens(self, instructions: list[str]) -> Tensor:
+        """Instructions to padded token ids int64 [E, L]."""
+        encode = self.vocabulary.encode
+        rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
+        return pad(rows).to(self.device)
+
+    # closed loop ------------------------------------------------------------------------------
+
+    @contextmanager
+    def remembering(self) -> Iterator[None]:
+        """Within it, :meth:`act` encodes equal frames once: what the encoders made of the latest
+        ones is kept. The same frames give the same features, so no action depends on it, as long
+        as the weights stay as they are; in training mode nothing is kept."""
+        before, self._memory = self._memory, Memory(FEATURES)
+        try:
+            yield
+        finally:
+            self._memory = before
+
+    def reset(self, instruction: str) -> None:
+        """Start an episode. Raises TypeError if ``instruction`` is no string; warns if the agent
+        knows none of its words."""
+        checked.instruction(instruction, self.vocabulary)
+        self.map, self.controller = TopologicalMap(), Controller()
+        self.decisions = 0
+        self._views: list[Tensor] = []
+        self._stop_scores: list[tuple[float, int]] = []
+        self._final = False
+        with torch.inference_mode():
+            self._text = self.planner.read(self.tokens([instruction]))
+
+    def act(self, observation: Mapping[str, np.ndarray]) -> int:
+        """One low-level action. Reads frames only when a decision is due.
+
+        Raises RuntimeError before the first ``reset``, and what ``agents/observation.py`` refuses:
+        KeyError, TypeError or ValueError for a missing entry, a wrong dtype, shape or unit.
+        """
+        if not hasattr(self, "controller"):
+            raise RuntimeError("Start the episode first: agent.reset(instruction).")
+        action = self.controller.action(checked.pose(observation))
+        while action is None:
+            if self._final or not self._decide(observation):
+                return STOP
+            action = self.controller.action(checked.pose(observation))
+        return action
+
+    @torch.inference_mode()
+    def _decide(self, observation: Mapping[str, np.ndarray]) -> bool:
+        """Take one decision: start a route and return True, or return False to stop."""
+        views, waypoints = self._see(*checked.frames(observation))
+        self._views.append(self.planner.look(views))
+        pose = checked.pose(observation).astype(np.float64)
+        self.map.add(pose, waypoints)
+        decision = self.map.decision(pose)
+        logits = self.planner(
+            self._text, torch.cat(self._views), collate([decision], [0], [0]).to(self.device)
+        )["logits"][0]
+        self.decisions += 1
+        self._stop_scores.append((float(logits.softmax(0)[0]), self.map.current))
+        best = int(logits.argmax())
+        if best == 0 or not decision.ghosts:
+            return False
+        if self.decisions >= MAX_DECISIONS:
+            return self._give_up()
+        ghost = decision.ghosts[best - 1 - len(decision.nodes)]
+        self.controller.follow(self.map.route(ghost))
+        self.map.arrive(ghost)
+        return True
+
+    def _see(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[Tensor, np.ndarray]:
+        """View features [1, 12, ...] and waypoints [n, 2] of one panorama, as :meth:`perceive`."""
+
+        def encode_rgb(frames: Tensor) -> tuple[Tensor, Tensor]:
+            features, concepts = self._encode_rgb(frames)
+            return features, concepts.sigmoid()
+
+        def encode_depth(frames: Tensor) -> tuple[Tensor, np.ndarray]:
+            features, waypoints = self._encode_depth(frames)
+            return features, select(waypoints[0].float().cpu().numpy())
+
+        features, concepts = self._once("rgb", rgb, encode_rgb)
+        depth_features, waypoints = self._once("depth", depth, encode_depth)
+        return torch.cat([features, concepts, depth_features], -1), waypoints
+
+    def _once(self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]) -> tuple:
+        """What ``encode`` makes of the frames [12, H, H, c] of a sensor, or made of equal ones
+        before, while :meth:`remembering`."""
+        frames = np.zeros_like(frames) if sensor in self.blind else frames
+
+        def made() -> tuple:
+            return encode(torch.from_numpy(frames)[None].to(self.device))
+
+        if self._memory is None or self.training:
+            return made()
+        digest = blake2b(frames.data, digest_size=16).digest()
+        return self._memory.recall((sensor, frames.shape, digest), made)
+
+    def _give_up(self) -> bool:
+        """At the limit: walk to the visited node with the best stop score (as ETPNav) and stop."""
+        self._final = True
+        node = max(self._stop_scores)[1]
+        self.controller.follow(self.map.route_to_node(node))
+        return True

@@ -1,0 +1,103 @@
+"""What the agent checks before it believes an observation.
+
+Every check is one that a robot would pay for: a wrong unit or layout does not fail later, the agent
+only walks badly.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from mitigate.agents.topological.text import UNKNOWN, Vocabulary
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
+
+FARTHEST = 50.0  # metres (ours): indoors some pixel of twelve views is nearer, if only the floor
+NEAREST = 1.0  # metres (ours): a room of which nothing lies farther away is rare
+
+
+def frames(observation: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return RGB uint8 [12, H, H, 3] and depth float32 [12, H, H, 1], as torch takes them.
+
+    Raises KeyError for a missing entry; TypeError for anything but uint8 RGB and floating depth;
+    ValueError for another shape and for depth in millimetres. Warns of depth that looks normalised.
+    """
+    rgb, depth = _entry(observation, RGB), _entry(observation, DEPTH)
+    if rgb.dtype != np.uint8:
+        raise TypeError(
+            f"rgb must be uint8 with values 0 to 255, not {rgb.dtype}: for values 0 to 1, give "
+            "(rgb * 255).round().astype(np.uint8)."
+        )
+    if not np.issubdtype(depth.dtype, np.floating):
+        raise TypeError(
+            f"depth must be float32 metres, not {depth.dtype}: for millimetres, give "
+            "depth.astype(np.float32) / 1000."
+        )
+    for name, frame, channels in ((RGB, rgb, 3), (DEPTH, depth, 1)):
+        wanted = frame.ndim == 4 and frame.shape[::3] == (VIEWS, channels)
+        if not wanted or frame.shape[1] != frame.shape[2]:
+            raise ValueError(
+                f"{name} has the shape {list(frame.shape)}, but the agent sees {VIEWS} square "
+                f"views at once: [{VIEWS}, H, H, {channels}], view k at 30 k degrees to the right."
+            )
+    _check_unit(depth)
+    # C and writeable is what torch takes as it is; what has it already is not copied
+    return np.require(rgb, np.uint8, ["C", "W"]), np.require(depth, np.float32, ["C", "W"])
+
+
+def pose(observation: Mapping[str, Any]) -> np.ndarray:
+    """Return the pose [3] as it came. Raises KeyError if it is missing, ValueError unless it is
+    three finite numbers."""
+    found = _entry(observation, POSE)
+    if found.shape != (3,) or not np.isfinite(found).all():
+        raise ValueError(
+            f"pose must be three finite numbers, (x, y, heading) in metres and radians, not "
+            f"{found.tolist()}."
+        )
+    return found
+
+
+def instruction(text: str, vocabulary: Vocabulary) -> str:
+    """Return ``text``. Raises TypeError if it is no string; warns if it holds no word of
+    ``vocabulary``."""
+    if not isinstance(text, str):
+        raise TypeError(f"An instruction is a string, not {type(text).__name__}.")
+    if set(vocabulary.encode(text)) == {UNKNOWN}:
+        warnings.warn(
+            f"The agent knows no word of the instruction {text[:60]!r}, so it walks without one. "
+            "It was trained on English routes.",
+            stacklevel=3,
+        )
+    return text
+
+
+def _entry(observation: Mapping[str, Any], name: str) -> np.ndarray:
+    try:
+        return np.asarray(observation[name])
+    except KeyError:
+        raise KeyError(
+            f"The observation has no entry {name!r}; it holds {', '.join(map(str, observation))}. "
+            f"The agent needs {RGB}, {DEPTH} and {POSE}."
+        ) from None
+
+
+def _check_unit(depth: np.ndarray) -> None:
+    if ((depth > NEAREST) & (depth <= FARTHEST)).any():
+        return  # metres; the rest says what else they may be
+    valid = depth[np.isfinite(depth) & (depth > 0)]
+    if not len(valid):
+        return
+    if valid.min() > FARTHEST:
+        raise ValueError(
+            f"Nothing in depth is nearer than {valid.min():g}: that is not metres. If these are "
+            "millimetres, divide by 1000."
+        )
+    if valid.max() <= NEAREST:
+        warnings.warn(
+            f"Nothing in depth is farther than {valid.max():g} m. If it is normalised to 0..1 (as "
+            "Habitat's is by default), multiply it by the sensor's range first.",
+            stacklevel=3,
+        )

@@ -1,0 +1,256 @@
+"""Cross-modal planner: scores [stop] and ghosts of the map against the instruction.
+
+Structure after ETPNav: RGB and depth embeddings summed per view, a panorama transformer, node =
+mean over views, ghost = mean over the views that faced it, a cross-modal transformer over map and
+text. The 12 views of the current panorama are given as further context (as DUET's fine branch).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from mitigate.agents.fusion import reliability
+from mitigate.agents.topological.concepts import CONCEPTS, NEAR, THINGS
+from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS, Decision
+from mitigate.agents.topological.text import MAX_WORDS, PAD, Vocabulary
+from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
+
+
+@dataclass
+class DecisionBatch:
+    """Padded decisions: token order [stop], nodes (N), ghosts (G).
+
+    episode, panorama: int [B]. nodes: int [B, N] panorama index or -1. sightings: int [B, G, 4]
+    flat view index (panorama * 12 + view) or -1. geometry: float [B, 1 + N + G, GEOMETRY]. valid:
+    bool [B, 1 + N + G]. allowed: bool [B, 1 + N + G], what may be chosen: stop and ghosts.
+    """
+
+    episode: Tensor
+    panorama: Tensor
+    nodes: Tensor
+    sightings: Tensor
+    geometry: Tensor
+    valid: Tensor
+    allowed: Tensor
+
+    def to(self, device: torch.device) -> DecisionBatch:
+        """Return the batch on ``device``."""
+        return DecisionBatch(*(getattr(self, part.name).to(device) for part in fields(self)))
+
+
+def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
+    """Pad decisions; ``episodes[i]`` is the row of the text, ``offsets[i]`` the first panorama."""
+    n = max(len(d.nodes) for d in decisions)
+    g = max(1, max(len(d.ghosts) for d in decisions))
+    b = len(decisions)
+    nodes = np.full((b, n), -1, np.int64)
+    sightings = np.full((b, g, SIGHTINGS), -1, np.int64)
+    geometry = np.zeros((b, 1 + n + g, GEOMETRY), np.float32)
+    valid, allowed = np.zeros((b, 1 + n + g), bool), np.zeros((b, 1 + n + g), bool)
+    for row, (d, offset) in enumerate(zip(decisions, offsets, strict=True)):
+        a, c = len(d.nodes), len(d.ghosts)
+        nodes[row, :a] = d.nodes + offset
+        flat = (d.sightings[..., 0] + offset) * VIEWS + d.sightings[..., 1]
+        sightings[row, :c] = np.where(d.sightings[..., 0] >= 0, flat, -1)
+        geometry[row, : 1 + a], geometry[row, 1 + n : 1 + n + c] = (
+            d.geometry[: 1 + a],
+            d.geometry[1 + a :],
+        )
+        valid[row, : 1 + a] = valid[row, 1 + n : 1 + n + c] = True
+        allowed[row, 0] = allowed[row, 1 + n : 1 + n + c] = True
+    current = np.array([d.panorama + o for d, o in zip(decisions, offsets, strict=True)])
+    arrays = (np.array(episodes), current, nodes, sightings, geometry, valid, allowed)
+    return DecisionBatch(*(torch.from_numpy(a) for a in arrays))
+
+
+class Attention(nn.Module):
+    """Multi-head attention; ``mask`` is bool, True = may look. Written out: for these short rows
+    PyTorch's fused CPU kernel took four times as long (torch 2.13)."""
+
+    def __init__(self, width: int, heads: int) -> None:
+        super().__init__()
+        self.heads, self.scale = heads, (width // heads) ** -0.5
+        self.q, self.kv, self.out = (
+            nn.Linear(width, width),
+            nn.Linear(width, 2 * width),
+            nn.Linear(width, width),
+        )
+
+    def forward(
+        self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
+    ) -> Tensor:
+        """x [B, n, width] looks at memory [B, m, width], or at ``memory[rows]`` projected once."""
+
+        def split(t: Tensor) -> Tensor:
+            return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
+
+        pairs = self.kv(memory) if rows is None else self.kv(memory)[rows]
+        k, v = pairs.chunk(2, -1)
+        scores = split(self.q(x)) @ split(k).transpose(-1, -2) * self.scale
+        if mask is not None:
+            scores = scores.masked_fill(~mask[:, None, None, :], -1e4)
+        return self.out((scores.softmax(-1).to(v.dtype) @ split(v)).transpose(-2, -3).flatten(-2))
+
+
+class Layer(nn.Module):
+    """Pre-norm transformer layer: [cross-attention], self-attention, feed-forward."""
+
+    def __init__(self, width: int, heads: int, cross: bool, dropout: float) -> None:
+        super().__init__()
+        self.cross = Attention(width, heads) if cross else None
+        self.cross_norm = nn.LayerNorm(width) if cross else None
+        self.self_norm, self.ff_norm = nn.LayerNorm(width), nn.LayerNorm(width)
+        self.attention = Attention(width, heads)
+        self.ff = nn.Sequential(nn.Linear(width, 3 * width), nn.GELU(), nn.Linear(3 * width, width))
+        self.dropout = nn.Dropout(dropout)
+
+    def forward(
+        self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None
+    ) -> Tensor:
+        """``text``: features [E, L, width], mask [B, L] and the row of each x: int [B]."""
+        if self.cross is not None and self.cross_norm is not None and text is not None:
+            x = x + self.cross(self.cross_norm(x), *text)
+        y = self.self_norm(x)
+        x = x + self.attention(y, y, mask)
+        return x + self.dropout(self.ff(self.ff_norm(x)))
+
+
+class Planner(nn.Module):
+    """See the module's docstring.
+
+    ``fusion``: keyword arguments of ``fusion.reliability`` (rate, cap): nodes and ghosts are then
+    means of their views weighted by the reliability of the encoder features; None: plain means.
+    ``vocabulary``: of the instructions.
+    """
+
+    concept_words: Tensor
+    yaws: Tensor
+
+    def __init__(
+        self,
+        rgb_width: int = 128,
+        depth_width: int = 128,
+        width: int = 128,
+        heads: int = 4,
+        text_layers: int = 2,
+        layers: int = 3,
+        dropout: float = 0.1,
+        fusion: dict[str, float] | None = None,
+        vocabulary: Vocabulary | None = None,
+    ) -> None:
+        super().__init__()
+        self.fusion = fusion
+        self.widths = (rgb_width, len(CONCEPTS), depth_width)
+        vocabulary = vocabulary or Vocabulary()
+        self.words = nn.Embedding(len(vocabulary), width, padding_idx=PAD)
+        nn.init.normal_(self.words.weight, std=0.5)
+        self.places = nn.Embedding(MAX_WORDS, width)
+        nn.init.normal_(self.places.weight, std=0.1)
+        self.register_buffer("concept_words", vocabulary.concept_words(), persistent=False)
+        self.text = nn.ModuleList([Layer(width, heads, False, dropout) for _ in range(text_layers)])
+        self.text_norm = nn.LayerNorm(width)
+        self.seen, self.close, self.kinds = (nn.Linear(width, width, bias=False) for _ in range(3))
+        self.rgb, self.depth = nn.Linear(rgb_width, width), nn.Linear(depth_width, width)
+        self.yaw = nn.Linear(4, width)
+        self.panorama = nn.ModuleList([Layer(width, heads, False, dropout)])
+        self.view_norm = nn.LayerNorm(width)
+        self.geometry = nn.Sequential(
+            nn.Linear(GEOMETRY, width), nn.GELU(), nn.Linear(width, width)
+        )
+        self.view_kind = nn.Parameter(torch.zeros(width))
+        self.layers = nn.ModuleList([Layer(width, heads, True, dropout) for _ in range(layers)])
+        self.norm = nn.LayerNorm(width)
+        self.score = nn.Sequential(nn.Linear(width, width), nn.GELU(), nn.Linear(width, 1))
+        self.stop = nn.Sequential(nn.Linear(width, width), nn.GELU(), nn.Linear(width, 1))
+        self.distance = nn.Linear(width, 1)
+        self.grounding = nn.Linear(width, 1)
+        yaws = torch.arange(VIEWS) * math.radians(VIEW_STEP_DEGREES)
+        self.register_buffer(
+            "yaws",
+            torch.stack([yaws.sin(), yaws.cos(), (2 * yaws).sin(), (2 * yaws).cos()], 1),
+            persistent=False,
+        )
+
+    def read(self, tokens: Tensor) -> tuple[Tensor, Tensor]:
+        """Token ids [E, L] to (text features [E, L, width], mask [E, L])."""
+        mask = tokens != PAD
+        x = self.words(tokens) + self.places.weight[: tokens.shape[1]]
+        for layer in self.text:
+            x = layer(x, mask)
+        return self.text_norm(x), mask
+
+    def look(self, views: Tensor) -> Tensor:
+        """View features [P, 12, view_width] to view tokens [P, 12, width]; with ``fusion`` each
+        view's reliability follows as one channel more."""
+        rgb, concepts, depth = views.split(self.widths, -1)
+        meaning = self.concept_words @ self.words.weight  # [concepts, width]
+        seen = concepts[..., THINGS] @ meaning[THINGS]
+        close = concepts[..., NEAR] @ meaning[NEAR]
+        others = concepts[..., NEAR.stop :] @ meaning[NEAR.stop :]
+        x = (
+            self.seen(seen)
+            + self.close(close)
+            + self.kinds(others)
+            + self.rgb(rgb)
+            + self.depth(depth)
+            + self.yaw(self.yaws)
+        )
+        for layer in self.panorama:
+            x = layer(x, None)
+        x = self.view_norm(x)
+        if self.fusion is None:
+            return x
+        weights = reliability(torch.cat([rgb, depth], -1).float(), **self.fusion)  # type: ignore[arg-type]
+        return torch.cat([x, weights.unsqueeze(-1).to(x.dtype)], -1)
+
+    def forward(
+        self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch
+    ) -> dict[str, Tensor]:
+        """Scores of every token.
+
+        Args: text from ``read``; views [P, 12, ...] from ``look``; the padded decisions.
+        Returns logits [B, 1 + N + G] (-inf where not allowed), distance [B, 1 + N + G] (predicted
+        metres to the goal / 5), grounding [B, 12] (logit that the goal's landmark shows), nodes
+        [B, 1 + N + G, width] (the matched features of distillation).
+        """
+        weights = None if self.fusion is None else views[..., -1:]
+        views = views if self.fusion is None else views[..., :-1]
+        x = self._tokens(views, weights, batch)
+        size = x.shape[1]
+        x = torch.cat([x, views[batch.panorama] + self.view_kind], 1)
+        mask = F.pad(batch.valid, (0, VIEWS), value=True)
+        for layer in self.layers:
+            x = layer(x, mask, (text[0], text[1][batch.episode], batch.episode))
+        x = self.norm(x)
+        tokens, current = x[:, :size], x[:, size:]
+        logits = (
+            torch.cat([self.stop(tokens[:, :1]), self.score(tokens[:, 1:])], 1).squeeze(-1).float()
+        )
+        logits = logits.masked_fill(~batch.allowed, float("-inf"))
+        return {
+            "logits": logits,
+            "distance": self.distance(tokens).squeeze(-1).float(),
+            "grounding": self.grounding(current).squeeze(-1).float(),
+            "nodes": tokens,
+        }
+
+    def _tokens(self, views: Tensor, weights: Tensor | None, batch: DecisionBatch) -> Tensor:
+        known = (batch.sightings >= 0).unsqueeze(-1)
+        places = batch.sightings.clamp(min=0)
+        if weights is None:
+            means = views.mean(1)
+            ghosts = (views.flatten(0, 1)[places] * known).sum(2) / known.sum(2).clamp(min=1)
+        else:
+            means = (views * weights).sum(1)  # of a panorama they add up to 1
+            shares = weights.flatten(0, 1)[places] * known
+            total = shares.sum(2)
+            ghosts = (views.flatten(0, 1)[places] * shares).sum(2) / total.where(total > 0, 1)
+        nodes = means[batch.nodes.clamp(min=0)]
+        here = means[batch.panorama].unsqueeze(1)
+        return torch.cat([here, nodes, ghosts], 1) + self.geometry(batch.geometry)

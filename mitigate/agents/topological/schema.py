@@ -1,0 +1,150 @@
+"""What the settings of the reference agent may be, where they come with weights.
+
+The limits are far above what any agent here has; they keep a file from asking for all memory, and
+patterns from taking for ever to match.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from inspect import signature
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from mitigate.agents.topological.agent import SENSORS
+from mitigate.agents.topological.planner import Planner
+from mitigate.core import settings
+
+MOST_TARGETS = 64  # patterns of a list
+MOST_WORDS = 50_000  # of a vocabulary
+_WORD = re.compile(r"[a-z]{1,40}")
+_PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)  # no groups, no counts
+_REPEATS = 2  # of a pattern; more could be tried in too many ways
+
+
+class Kind(NamedTuple):
+    """``words`` say which values ``fits`` allows."""
+
+    words: str
+    fits: Callable[[Any], bool]
+
+
+def whole(least: int, most: int) -> Kind:
+    """Whole numbers from ``least`` to ``most``, both included; no truth values."""
+    return Kind(
+        f"a whole number from {least} to {most}",
+        lambda value: type(value) is int and least <= value <= most,
+    )
+
+
+def number(least: float, most: float) -> Kind:
+    """Numbers from ``least`` to ``most``, both included; no truth values."""
+    return Kind(
+        f"a number from {least:g} to {most:g}",
+        lambda value: type(value) in (int, float) and least <= value <= most,
+    )
+
+
+def some_of(names: tuple[str, ...]) -> Kind:
+    """Lists of ``names``."""
+    return Kind(
+        f"a list of {', '.join(names)}",
+        lambda value: isinstance(value, list) and all(item in names for item in value),
+    )
+
+
+def _are_targets(value: Any) -> bool:
+    return (
+        isinstance(value, list)
+        and len(value) <= MOST_TARGETS
+        and all(isinstance(item, str) and _PATTERN.fullmatch(item) for item in value)
+        and all(sum(map(item.count, "*+?")) <= _REPEATS for item in value)
+    )
+
+
+TARGETS = Kind(
+    f"a list of at most {MOST_TARGETS} names of modules, or of patterns without groups and with at "
+    f"most {_REPEATS} of * + ?",
+    _are_targets,
+)
+
+
+def _are_words(value: Any) -> bool:
+    return value is None or (
+        isinstance(value, list)
+        and len(value) <= MOST_WORDS
+        and all(isinstance(item, str) and _WORD.fullmatch(item) for item in value)
+    )
+
+
+VOCABULARY = Kind(f"null or a list of at most {MOST_WORDS} words of the letters a to z", _are_words)
+FUSION = {"rate": number(0, 1e6), "cap": number(0, 1e6)}
+PLANNER = {
+    "width": whole(4, 1024),
+    "heads": whole(1, 64),
+    "text_layers": whole(0, 32),
+    "layers": whole(0, 32),
+    "dropout": number(0, 1),
+    "fusion": FUSION,
+}
+ADAPTERS = {
+    "target_modules": TARGETS,
+    "ring": TARGETS,
+    "reduction": whole(1, 1024),
+    "ring_reduction": whole(1, 1024),
+    "kernel": whole(1, 15),
+    "views": whole(3, 64),
+    "hfov": number(1, 179),
+}
+AGENT = {
+    "width": whole(4, 1024),
+    "size": whole(16, 1024),
+    "blind": some_of(SENSORS),
+    "planner": PLANNER,
+    "adapters": ADAPTERS,
+    "vocabulary": VOCABULARY,
+}
+_AGAIN = "Fetch the folder again, or train again."
+
+
+def check(found: dict[str, Any], file: Path) -> dict[str, Any]:
+    """Return ``found``, the settings of a reference agent in ``file``. Raises ValueError, naming
+    the file and the setting, for an unknown one and a value of another kind."""
+    _check(found, AGENT, file, "agent")
+    planner, adapters = found.get("planner") or {}, found.get("adapters") or {}
+    width, heads = (planner.get(name, _planner_default(name)) for name in ("width", "heads"))
+    if width % heads:
+        raise ValueError(
+            f"{file}: agent.planner.width ({width}) must be a multiple of agent.planner.heads "
+            f"({heads}). {_AGAIN}"
+        )
+    if adapters and "target_modules" not in adapters:
+        raise ValueError(
+            f"{file}: agent.adapters lacks target_modules ([] for none beside ring). {_AGAIN}"
+        )
+    return found
+
+
+def _planner_default(name: str) -> int:
+    return signature(Planner).parameters[name].default
+
+
+def _check(found: dict[str, Any], schema: dict[str, Any], file: Path, where: str) -> None:
+    for name, value in found.items():
+        key = f"{where}.{name}"
+        if name not in schema:
+            raise ValueError(settings.unknown(file, key, schema))
+        kind = schema[name]
+        if isinstance(kind, Kind):
+            if not kind.fits(value):
+                raise ValueError(
+                    f"{file}: {key} is {value!r:.80}, but must be {kind.words}. {_AGAIN}"
+                )
+        elif isinstance(value, dict):
+            _check(value, kind, file, key)
+        elif value is not None:
+            raise ValueError(
+                f"{file}: {key} is {value!r:.80}, but must be null or a mapping of "
+                f"{', '.join(kind)}. {_AGAIN}"
+            )

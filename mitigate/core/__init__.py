@@ -1,0 +1,1 @@
+"""What all packages share: observations, files, seeds, checkpoints, processes."""

@@ -1,0 +1,92 @@
+"""From a config to objects: the only place that instantiates ``_target_`` nodes.
+
+Only configs of this checkout are ever built; a config that came with downloaded weights is read
+as data, because a ``_target_`` in it could run anything.
+"""
+
+from __future__ import annotations
+
+from inspect import Parameter, signature
+from pathlib import Path
+from typing import Any
+
+from hydra.errors import InstantiationException
+from hydra.utils import get_object, instantiate
+from omegaconf import DictConfig, OmegaConf
+from torch import nn
+
+from mitigate.core import checkpoint, seeding, settings
+
+
+def build(node: DictConfig, **given: Any) -> Any:
+    """Return the object that ``node`` describes; ``given`` are further keyword arguments.
+
+    Lists and mappings inside arrive as plain lists and dicts. The ValueError or FileNotFoundError
+    of a constructor reaches the user as it was raised.
+    """
+    try:
+        make = instantiate(node, _partial_=True, _convert_="all")
+        return make(**given)  # not through instantiate, which would copy what is given
+    except InstantiationException as error:
+        cause = error.__cause__
+        while isinstance(cause, InstantiationException):
+            cause = cause.__cause__
+        if isinstance(cause, (ValueError, FileNotFoundError)):
+            raise cause from error
+        raise
+
+
+def settings_of(node: DictConfig, weights: str) -> DictConfig:
+    """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too)."""
+    return merged(node, carried(node, weights))
+
+
+def merged(node: DictConfig, own: dict[str, Any]) -> DictConfig:
+    """Return a copy of ``node`` with the settings ``own`` in place of its own."""
+    found = OmegaConf.merge(node, own)
+    assert isinstance(found, DictConfig)
+    return found
+
+
+def carried(node: DictConfig, weights: str) -> dict[str, Any]:
+    """Return the settings of the agent that ``weights`` belong to, none if they do not say.
+
+    They come, as data, from ``config.yaml`` beside the weights. Raises ValueError if the weights
+    are those of another kind of agent than ``node``, or if the file holds anything but plain data
+    that the agent takes (:func:`mitigate.core.settings.read_agent`).
+    """
+    from mitigate.shipping import hardened  # brings the reference agent with it
+
+    if hardened.adapters_only(weights):
+        file = Path(weights) / hardened.CONFIG
+    else:
+        file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
+    if not file.is_file():
+        return {}
+    if node._target_ == hardened.TARGET:
+        return hardened.agent_settings(file)
+    names = {*signature(get_object(node._target_)).parameters, *map(str, node)} - {"_target_"}
+    return settings.read_agent(file, node._target_, names)
+
+
+def defaults(node: DictConfig) -> dict[str, Any]:
+    """Return the settings of ``node`` as its ``_target_`` has them by itself, None where it has
+    none of its own."""
+    own = signature(get_object(node._target_)).parameters
+    given = {str(n): own[str(n)].default for n in node if n != "_target_" and str(n) in own}
+    plain = {name: None if value is Parameter.empty else value for name, value in given.items()}
+    return {name: OmegaConf.create({"it": value}).it for name, value in plain.items()}
+
+
+def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Module:
+    """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file."""
+    from mitigate.shipping import hardened
+
+    seeding.seed_everything(seed, "agent")
+    agent = build(node)
+    if weights is not None and hardened.adapters_only(weights):
+        hardened.check(Path(weights))
+        hardened.fill(agent, weights)
+    elif weights is not None:
+        checkpoint.load_agent(agent, weights)
+    return agent

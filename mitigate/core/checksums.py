@@ -1,0 +1,97 @@
+"""The sha256 of a file in a sidecar beside it, in the format of ``sha256sum -c``.
+
+While a file is replaced, its sidecar lists the sums of the old one and of the new one: a program
+that is killed at any moment leaves a file that has one of them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from mitigate.core.files import atomic_text, sha256, write_atomically
+
+SUFFIX = ".sha256"
+_LINE = re.compile(r"([0-9a-f]{64})  (.+)")
+
+
+def sidecar(path: Path) -> Path:
+    """Return where the sum of ``path`` is kept, whether it is there or not."""
+    return path.with_name(path.name + SUFFIX)
+
+
+def write(path: Path, write: Callable[[Path], Any]) -> Path:
+    """As :func:`mitigate.core.files.write_atomically`, with the file's sum beside it."""
+    digest = ""
+
+    def write_and_announce(temporary: Path) -> None:
+        nonlocal digest
+        write(temporary)
+        digest = announce(path, temporary)
+
+    write_atomically(path, write_and_announce)
+    settle(path, digest)
+    return path
+
+
+def announce(path: Path, new: Path) -> str:
+    """Call before ``new`` is renamed to ``path``, then :func:`settle` with the sum that this
+    returns: notes the sum of ``new`` beside those of the file that it replaces."""
+    digest = sha256(new)
+    listed: list[str] = []
+    if path.is_file():
+        try:
+            listed = _sums(path) if sidecar(path).is_file() else [sha256(path)]
+        except ValueError:  # a damaged sidecar goes with its file
+            listed = []
+    _note(path, [*dict.fromkeys([*listed, digest])])
+    return digest
+
+
+def settle(path: Path, digest: str) -> None:
+    """Note ``digest`` alone as the sum of ``path``."""
+    if _sums(path) != [digest]:
+        _note(path, [digest])
+
+
+def problem(path: Path) -> str:
+    """Return what is wrong with ``path`` by its sidecar (a predicate, such as "does not have the
+    sha256 ..."), empty if nothing is or if it has none."""
+    note = sidecar(path)
+    if not note.is_file():
+        return ""
+    try:
+        return "" if sha256(path) in _sums(path) else f"does not have the sha256 in {note.name}"
+    except (ValueError, OSError) as error:
+        return f"cannot be compared with {note.name} ({error})"
+
+
+def delete(path: Path) -> None:
+    """Delete ``path`` and its sidecar, this one first: a file without one is no damaged file."""
+    sidecar(path).unlink(missing_ok=True)
+    path.unlink(missing_ok=True)
+
+
+def delete_sidecars(folder: Path, pattern: str, *, orphans: bool = False) -> None:
+    """Delete the sidecars of the files in ``folder`` whose names match ``pattern`` (as a glob);
+    ``orphans``: only those of files that are gone."""
+    for note in folder.glob(pattern + SUFFIX):
+        if not (orphans and note.with_suffix("").is_file()):
+            note.unlink(missing_ok=True)
+
+
+def _sums(path: Path) -> list[str]:
+    """Return the sums that the sidecar of ``path`` lists; ValueError if it is damaged."""
+    lines = sidecar(path).read_text(encoding="utf-8").splitlines()
+    found = [_LINE.fullmatch(line) for line in lines]
+    sums = [line[1] for line in found if line and line[2] == path.name]
+    if not sums or len(sums) < len(lines):
+        raise ValueError("it is damaged")
+    return sums
+
+
+def _note(path: Path, digests: list[str]) -> None:
+    with atomic_text(sidecar(path)) as file:
+        file.writelines(f"{digest}  {path.name}\n" for digest in digests)

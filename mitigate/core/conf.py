@@ -1,0 +1,100 @@
+"""Run a Hydra program so that a user's mistake ends in one paragraph: cause, choices, fix.
+
+Set ``HYDRA_FULL_ERROR=1`` to see the whole traceback instead.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from hydra import compose, initialize_config_dir
+from hydra.core.global_hydra import GlobalHydra
+from hydra.errors import HydraException, MissingConfigException, OverrideParseException
+from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+
+from mitigate.core.names import unknown
+
+CONF = Path(__file__).resolve().parents[2] / "conf"
+KINDS = {
+    "Integer": "a whole number, such as 4",
+    "Float": "a number, such as 0.6",
+    "bool": "true or false",
+    "String": "text",
+}
+
+
+def main(program: Callable[[], None], primary: str) -> None:
+    """Call ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``).
+
+    Exits with status 1 and one paragraph for ValueError, FileNotFoundError and config errors, with
+    130 for Ctrl-C.
+    """
+    if os.environ.get("HYDRA_FULL_ERROR"):
+        return program()
+    os.environ["HYDRA_FULL_ERROR"] = "1"  # lets errors through to here
+    try:
+        program()
+    except (HydraException, OmegaConfBaseException) as error:
+        sys.exit(f"error: {explain(error, primary)}")
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")
+    except KeyboardInterrupt:
+        print("\ninterrupted: the same command goes on from the last checkpoint", file=sys.stderr)
+        sys.exit(130)
+    finally:
+        del os.environ["HYDRA_FULL_ERROR"]
+
+
+def explain(error: Exception, primary: str) -> str:
+    """Return one paragraph for an error of config composition."""
+    text = f"{error}\n{error.__cause__ or ''}"
+    if isinstance(error, MissingConfigException) and error.options is not None:
+        group, _, name = (error.missing_cfg_file or "").rpartition("/")
+        return unknown(group, name, error.options)
+    if isinstance(error, OverrideParseException):
+        return (
+            f"Cannot read the option {error.override!r}: write key=value, like severity=0.6, and "
+            "put a value that holds = , or spaces in quotes twice: 'checkpoint=\"my=agent\"'."
+        )
+    key = _first(r"Could not override '([^']+)'", text)
+    if key is not None:
+        return _unknown_key(key, primary)
+    value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
+    if value is not None:
+        key = _first(r"full_key: (\S+)", text) or _first(r"override (\S+?)=", text)
+        kind = _first(r"(?:converted to|is not a valid) (\w+)", text) or ""
+        return f"{key}={value} has the wrong type: {key} must be {KINDS.get(kind, kind)}."
+    return " ".join(str(error).split())
+
+
+def load_config(primary: str, overrides: Iterable[str] = ()) -> DictConfig:
+    """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program."""
+    GlobalHydra.instance().clear()
+    with initialize_config_dir(str(CONF), version_base="1.3"):
+        return compose(primary, list(overrides))
+
+
+def _unknown_key(key: str, primary: str) -> str:
+    cfg = load_config(primary)
+    parent = key.rpartition(".")[0]
+    while parent and not isinstance(OmegaConf.select(cfg, parent), DictConfig):
+        parent = parent.rpartition(".")[0]
+    if not parent:
+        return unknown("option", key, {*map(str, cfg), *_groups(primary)})
+    return unknown("option", key, [f"{parent}.{name!s}" for name in OmegaConf.select(cfg, parent)])
+
+
+def _groups(primary: str) -> list[str]:
+    entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
+    groups = [str(name) for entry in entries if isinstance(entry, DictConfig) for name in entry]
+    return [name for name in groups if "/" not in name]
+
+
+def _first(pattern: str, text: str) -> str | None:
+    found = re.search(pattern, text)
+    return found.group(1) if found else None

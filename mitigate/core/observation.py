@@ -1,0 +1,111 @@
+"""Names, dtypes, shapes and units of every observation and batch entry, and the turning sense.
+
+An observation is one instant: a panorama of ``VIEWS`` RGB-D views and the pose of the agent.
+
+* ``rgb``    uint8   ``[12, H, W, 3]``
+* ``depth``  float32 ``[12, H, W, 1]``, metres along the optical axis; 0 means "no reading"
+* ``pose``   float32 ``[3]`` = (x, y, heading): metres, metres, radians, in the plan frame
+
+Turning sense: view ``k`` looks at yaw ``-30 k`` degrees from the heading, so a growing ``k`` turns
+RIGHT (clockwise from above). ``heading`` is counter-clockwise; forward is ``(-sin h, cos h)``.
+Plan frame to VLN-CE frame: ``x = x``, ``z = -y``, height ``y`` up.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+RGB = "rgb"
+DEPTH = "depth"
+POSE = "pose"
+CLEAN_RGB = "clean_rgb"  # in training batches: the frames before the corruption
+CLEAN_DEPTH = "clean_depth"
+# what torchrl environments add: text, the name of this run of an episode, low-level steps taken
+INSTRUCTION = "instruction"
+EPISODE = "episode"
+FRAME = "frame"
+
+VIEWS = 12
+VIEW_STEP_DEGREES = 30.0
+HFOV_DEGREES = 90.0
+Z_MAX = 10.0  # metres, the R2R-CE depth sensor range (VLN-CE config)
+
+STOP, FORWARD, LEFT, RIGHT = 0, 1, 2, 3
+FORWARD_METRES = 0.25  # VLN-CE
+TURN_DEGREES = 15.0  # VLN-CE
+MAX_STEPS = 500  # VLN-CE
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """What one entry of an observation is.
+
+    kind: "rgb", "depth", "pose" or "text". shape: of the array; views first where there are
+    several. unit: "m" for depth. hfov: horizontal field of view in degrees. yaws: of the views, in
+    degrees to the right of the heading. low, high: of valid values. missing: what stands for "no
+    reading".
+    """
+
+    kind: str
+    shape: tuple[int, ...]
+    dtype: str
+    unit: str = ""
+    hfov: float | None = None
+    yaws: tuple[float, ...] = (0.0,)
+    low: float = -math.inf
+    high: float = math.inf
+    missing: float | None = None
+
+
+def panorama(size: int) -> dict[str, Sensor]:
+    """The sensors of the module's docstring, with views of ``size`` pixels."""
+    yaws = tuple(VIEW_STEP_DEGREES * k for k in range(VIEWS))
+    shape = (VIEWS, size, size)
+    return {
+        RGB: Sensor(RGB, (*shape, 3), "uint8", "", HFOV_DEGREES, yaws, 0, 255),
+        DEPTH: Sensor(DEPTH, (*shape, 1), "float32", "m", HFOV_DEGREES, yaws, 0, missing=0.0),
+        POSE: Sensor(POSE, (3,), "float32", "m, m, rad"),
+    }
+
+
+class Observation(Mapping[str, Any]):
+    """One instant; its frames are made when one of them is first read.
+
+    Args:
+        ready: entries that are there, such as the pose.
+        make: returns the frames; None: all entries are ready.
+        frames: their names. clean: the observation before its corruption; None: this one is clean.
+    """
+
+    def __init__(
+        self,
+        ready: Mapping[str, Any],
+        make: Callable[[], Mapping[str, Any]] | None = None,
+        frames: Iterable[str] = (),
+        *,
+        clean: Observation | None = None,
+    ) -> None:
+        self.ready, self.frames = dict(ready), tuple(frames)
+        self._make, self._clean = make, clean
+        self._made: dict[str, Any] | None = None
+
+    @property
+    def clean(self) -> Observation:
+        """What there was to see before the corruption."""
+        return self if self._clean is None else self._clean
+
+    def __getitem__(self, name: str) -> Any:
+        if name in self.frames:
+            if self._made is None:
+                self._made = dict(self._make()) if self._make else {}
+            return self._made[name]
+        return self.ready[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter((*self.ready, *self.frames))
+
+    def __len__(self) -> int:
+        return len(self.ready) + len(self.frames)

@@ -1,0 +1,128 @@
+"""Corrupt a folder of frames: python -m mitigate.corrupt IN OUT corruption=... severity=...
+
+  IN          folder of frames, with any folders inside and links to folders: 8-bit RGB as PNG or
+              JPEG; depth as 16-bit PNG, or as NPY float metres, [H, W], [H, W, 1] or with views
+              first
+  OUT         folder for the corrupted frames; the tree and the names stay
+
+  corruption  its name (see --list); frames of the other modality are passed by
+  severity    0 (clean) to 1 (worst)
+  seed        of every random draw (0)
+  episode     folder: each folder is an episode, frames in the order of their names (default);
+              all: all frames are one episode
+  unit        of 16-bit PNG: mm (default), cm, m, or the metres of one count, such as 0.00025
+  format      what a JPEG becomes: png, which keeps every pixel (default), or same: JPEG again,
+              under its own name, at quality 95
+  z_max       depth range in metres (10): valid depth beyond it is clipped
+  missing     metres that a hole of missing_data reads (0, which means no reading)
+
+  --list      the corruptions: what they hurt, what severity means, what is kept, the source
+  --help      this
+
+The same command goes on where it stopped. OUT/corrupt.json holds settings, counts and the files
+left out with the reason; files of other kinds are left alone, and counted by suffix. Exit status:
+0 done, 1 done but bad files were left out, 2 not done.
+
+Example: python -m mitigate.corrupt recorded/ hurt/ corruption=spatter severity=0.5
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from dataclasses import MISSING, fields
+
+from mitigate.core.names import unknown
+from mitigate.corruptions import catalogue, folders
+from mitigate.corruptions.folders import UNITS, Settings
+from mitigate.corruptions.plan import told
+from mitigate.corruptions.suite import check_name
+
+SHOWN = 5  # files left out that are named on the screen; all are in the summary
+
+
+def parse(arguments: Sequence[str]) -> tuple[str, str, Settings]:
+    """IN, OUT and the settings. Raises ValueError in one paragraph for what cannot be read."""
+    options: dict[str, str] = {}
+    paths: list[str] = []
+    for argument in arguments:
+        name, equals, value = argument.partition("=")
+        if equals and name.isidentifier():
+            options[name] = value
+        elif argument.startswith("-"):
+            raise ValueError(f"There is no option {argument}: write key=value, --list or --help.")
+        else:
+            paths.append(argument)
+    if len(paths) != 2:
+        raise ValueError(
+            f"Two folders are needed, IN and OUT, but there are {len(paths)}"
+            f"{': ' if paths else ''}{', '.join(paths)}. See --help. (A folder whose name holds "
+            "'=' is written ./a=b.)"
+        )
+    return paths[0], paths[1], _settings(options)
+
+
+def _settings(options: dict[str, str]) -> Settings:
+    known = {option.name: option for option in fields(Settings)}
+    for name in options:
+        if name not in known:
+            raise ValueError(unknown("option", name, known))
+    for name, option in known.items():
+        if option.default is MISSING and name not in options:
+            raise ValueError(
+                f"{name}=... is missing, such as corruption=spatter severity=0.5. The corruptions "
+                "are listed by --list."
+            )
+    check_name(options["corruption"])
+    return Settings(**{name: _value(name, text) for name, text in options.items()})  # type: ignore[arg-type]
+
+
+def _value(name: str, text: str) -> str | int | float:
+    if name in ("corruption", "episode", "format"):
+        return text
+    if name == "unit" and text in UNITS:
+        return UNITS[text]
+    try:
+        return int(text) if name == "seed" else float(text)
+    except ValueError:
+        kind = "a whole number" if name == "seed" else "a number"
+        units = f" or one of {', '.join(UNITS)}" if name == "unit" else ""
+        raise ValueError(f"{name}={text} has the wrong type: it must be {kind}{units}.") from None
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run from the command line; return the exit status."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or "--help" in arguments or "-h" in arguments:
+        print(__doc__)
+        return 0 if arguments else 2
+    if "--list" in arguments:
+        print(catalogue.table())
+        return 0
+    try:
+        source, out, settings = parse(arguments)
+        summary = folders.run(source, out, settings)
+    except (OSError, ValueError) as error:
+        print(f"corrupt: {error}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\ninterrupted: the same command goes on where it stopped", file=sys.stderr)
+        return 130
+    return _report(summary, out)
+
+
+def _report(summary: dict, out: str) -> int:
+    left_out = summary["left_out"]
+    counts = [f"{summary['written']} frames written to {out}"]
+    counts += [f"{summary['there']} were there"] * (summary["there"] > 0)
+    counts += [f"{summary['other_modality']} of the other modality passed by"] * (
+        summary["other_modality"] > 0
+    )
+    others = told(summary["other_files"])
+    counts += [f"other files left alone: {others}"] * bool(others)
+    print("; ".join(counts))
+    for entry in left_out[:SHOWN]:
+        print(f"left out: {entry['file']} {entry['reason']}", file=sys.stderr)
+    if left_out:
+        print(f"{len(left_out)} files left out, see {out}/{folders.SUMMARY}", file=sys.stderr)
+    return 1 if left_out else 0

@@ -1,0 +1,239 @@
+"""Evaluate an agent: ``python -m mitigate.evaluate checkpoint=checkpoints/base split=val_seen``.
+
+Writes one JSON line an episode and condition to ``rows.jsonl`` in the output folder; the same
+command again only fills what is missing.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from hydra.core.hydra_config import HydraConfig
+from omegaconf import MISSING, DictConfig
+
+from mitigate.core import conf
+from mitigate.core.files import atomic_text, sha256
+from mitigate.core.names import unknown
+
+if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
+    from torch import nn
+
+ROWS = "rows.jsonl"
+DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
+LIST = "episodes.sha256"  # of the file that the episodes came from
+GOLDEN = (5**0.5 - 1) / 2
+
+
+@dataclass
+class EvaluationConfig:
+    """The evaluation that follows a training."""
+
+    enabled: bool = True
+    split: str = "val_unseen"
+    episodes: int | None = 40
+    workers: int | None = None
+
+
+@dataclass
+class EvaluateConfig:
+    """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
+
+    runs: str = "runs"
+    checkpoint: str = "checkpoints/base"
+    safeguard: str = "none"
+    name: str | None = None
+    split: str = "val_unseen"
+    episodes: int | None = None
+    conditions: list[str] | None = None
+    severity: float = 0.6
+    severity_depth: float | None = None
+    seed: int = 0
+    workers: int | None = None
+    out: str | None = None
+    agent: Any = MISSING
+    env: Any = MISSING
+    suite: Any = field(default=MISSING)
+
+
+ConfigStore.instance().store(name="evaluate_schema", node=EvaluateConfig)
+
+
+def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
+    """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
+
+    ``overrides``: those of the command line. Its agent's settings (``agent.blind=[rgb]``, or a
+    config chosen by ``agent=mine``) count more than the weights' own. The table's column names
+    every setting in which the agent is not the one that the weights belong to, and a size of view
+    that is not the agent's.
+    Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
+    """
+    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
+    chosen = episodes(cfg.env, cfg.split, cfg.episodes)
+    print(
+        f"evaluate: {cfg.checkpoint} on {cfg.split}, {len(chosen)} episodes x {len(names)} "
+        f"conditions at severity {cfg.severity:g}",
+        flush=True,
+    )
+    from mitigate.core import build
+    from mitigate.evaluation import columns
+    from mitigate.evaluation.evaluator import evaluate
+    from mitigate.safeguard.guard import open_safeguard
+
+    node, name = columns.agent_and_name(cfg, overrides)
+    agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
+    out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
+    _check_list(out / LIST, cfg.env.episodes[cfg.split])
+    evaluate(
+        agent,
+        chosen,
+        conditions(names, cfg.severity, cfg.severity_depth),
+        name=name,
+        out=out / ROWS,
+        split=cfg.split,
+        seed=cfg.seed,
+        workers=cfg.workers,
+        size=cfg.env.size,
+        safeguard=open_safeguard(cfg.safeguard, log=out / DECISIONS),
+    )
+    write_table([out / ROWS], out)
+    return out
+
+
+def _check_list(note: Path, source: str) -> None:
+    """Keep the hash of the episode file beside the rows; raise ValueError if it was another.
+
+    A row names its episode by id alone, so another list's rows would count as done. ``note`` has a
+    line for each list, as ``sha256sum`` writes it.
+    """
+    known = note.read_text(encoding="utf-8").splitlines() if note.is_file() else []
+    held = {name: digest for digest, _, name in (line.partition("  ") for line in known)}
+    found = sha256(source)
+    if held.get(source, found) != found:
+        raise ValueError(
+            f"{note.parent} holds rows of another {source} than there is now. Name another folder "
+            "(out=...), or delete this one."
+        )
+    with atomic_text(note) as file:
+        file.writelines(f"{d}  {name}\n" for name, d in {**held, source: found}.items())
+
+
+def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
+    """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
+    by ``node``. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
+    from mitigate.core import build
+
+    settings = build.settings_of(node, weights)
+    return build.build_agent(settings, weights=weights, seed=seed).eval()
+
+
+def report_before_after(
+    cfg: DictConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
+) -> None:
+    """Evaluate both agents on the same quick subset; print one table, write it and pictures.
+
+    ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing. The
+    pictures in ``folder/pictures`` show episodes that the training won back.
+    """
+    from mitigate.evaluation import columns
+    from mitigate.evaluation.evaluator import evaluate
+    from mitigate.evaluation.trajectories import write_pictures
+
+    quick = cfg.evaluation
+    chosen = episodes(cfg.env, quick.split, quick.episodes)
+    suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+    agents: dict[str, Any] = {"before": base_agent, columns.of_run(cfg, folder): trained_agent}
+    agents = {name: agent for name, agent in agents.items() if agent is not None}
+    rows = []
+    for name, agent in agents.items():
+        rows += evaluate(
+            agent,
+            chosen,
+            suite,
+            name=name,
+            out=folder / ROWS,
+            split=quick.split,
+            seed=cfg.seed,
+            workers=quick.workers,
+            size=cfg.env.size,
+        )
+    write_table([folder / ROWS], folder)
+    written = write_pictures(
+        agents, chosen, rows, folder / "pictures", seed=cfg.seed, size=cfg.env.size
+    )
+    print("\n".join(f"wrote {path}" for path in written), flush=True)
+
+
+def episodes(env: DictConfig, split: str, count: int | None) -> list:
+    """Return ``count`` episodes of a split's shipped list (all, if None), spread evenly over it.
+
+    A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
+    whose multiples of the golden section have the smallest fractional parts are spread for any
+    count, and fewer are always among more: rows of 40 episodes count towards 100.
+    Raises ValueError for an unknown split, a count below 1, and a list that is empty, names an
+    episode twice or has one without an instruction.
+    """
+    from mitigate.worlds.episodes import read_episodes
+
+    if count is not None and count < 1:
+        raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
+    if split not in env.episodes:
+        raise ValueError(unknown("split", split, env.episodes))
+    listed = list(read_episodes(env.episodes[split]))
+    _check_episodes(env.episodes[split], listed)
+    chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
+    return [listed[i] for i in sorted(chosen)]
+
+
+def _check_episodes(source: str, listed: list) -> None:
+    """Raise ValueError for a list that cannot be scored: rows name an episode by its id alone."""
+    twice = [name for name, n in Counter(e.episode_id for e in listed).items() if n > 1]
+    silent = [e.episode_id for e in listed if not e.instruction.text.strip()]
+    if not listed:
+        raise ValueError(f"{source} lists no episode.")
+    if twice:
+        raise ValueError(f"{source} has the episode {twice[0]} twice: give each an id of its own.")
+    if silent:
+        raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
+
+
+def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
+    """Return one Corruption for each name; ``clean`` has severity 0."""
+    from mitigate.corruptions import CLEAN, DEPTH, INSTRUCTION, RGB, Corruption
+    from mitigate.corruptions.suite import check_severity
+
+    allowed = ("clean", *RGB, *DEPTH, *INSTRUCTION)
+    for name in names:
+        if name not in allowed:
+            raise ValueError(unknown("condition", name, allowed))
+    severity = check_severity(severity)  # also where all conditions are clean
+    depth = severity if severity_depth is None else check_severity(severity_depth)
+    return [
+        CLEAN if name == "clean" else Corruption(name, depth if name in DEPTH else severity)
+        for name in names
+    ]
+
+
+def write_table(rows: list[Path], out: Path) -> None:
+    """Join row files into ``out/table.md`` and pictures, and print the table."""
+    from mitigate.evaluation import table
+
+    written = table.run(rows, out)
+    print(written[0].read_text(encoding="utf-8"))
+    print("\n".join(f"wrote {path}" for path in written), flush=True)
+
+
+@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="evaluate")
+def hydra_main(cfg: DictConfig) -> None:
+    """Hydra's entry."""
+    run(cfg, HydraConfig.get().overrides.task)
+
+
+def main() -> None:
+    """Run from the command line."""
+    conf.main(hydra_main, "evaluate")

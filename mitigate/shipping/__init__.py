@@ -1,0 +1,1 @@
+"""Hardened checkpoints: exported, described, checked and loaded."""

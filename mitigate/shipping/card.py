@@ -1,0 +1,193 @@
+"""The card of a hardened checkpoint: what made it and what it reached, and the README from it."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+from collections.abc import Iterable
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from mitigate.agents import adapters
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import checkpoint
+from mitigate.core.files import sha256
+from mitigate.corruptions import SUITE_VERSION
+from mitigate.evaluation.bootstrap import Estimate
+from mitigate.evaluation.rows import Row
+from mitigate.evaluation.sections import Section, label, sections
+from mitigate.shipping import hardened
+
+VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
+LICENCE = "Apache-2.0"
+
+
+def facts(cfg: dict[str, Any], agent: TopologicalAgent) -> dict[str, Any]:
+    """Return what the resolved config ``cfg`` of a run and this checkout say about ``agent``.
+
+    Raises FileNotFoundError if the base or a teacher that the run names is gone.
+    """
+    teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
+    trained_at = {**cfg, **(cfg.get("schedule") or {})}
+    return {
+        "recipe": cfg["name"],
+        "severity": trained_at["severity"],
+        "severity_depth": trained_at["severity_depth"],
+        "seed": cfg["seed"],
+        "precision": _precision(cfg.get("stages") or {}),
+        "suite": SUITE_VERSION,
+        "base": reference(cfg["init"]) if cfg.get("init") else None,
+        "teachers": [reference(path) for path in teachers],
+        "vocabulary": hardened.vocabulary_sha(agent),
+        "commit": commit(),
+        "versions": {package: _version(package) for package in VERSIONS},
+        "license": LICENCE,
+    }
+
+
+def reference(weights: str) -> dict[str, str]:
+    """Return the path of ``weights`` (below the current folder: relative) and its sha256."""
+    own = Path(weights) / adapters.WEIGHTS
+    file = own if own.is_file() else checkpoint.weights_file(weights)
+    return {"weights": weights.removeprefix(f"{Path.cwd()}/"), "sha256": sha256(file)}
+
+
+def commit() -> str | None:
+    """Return the git commit of the checkout, or None outside one."""
+    command = ["git", "rev-parse", "HEAD"]
+    found = subprocess.run(command, cwd=Path(__file__).parent, capture_output=True, text=True)
+    return found.stdout.strip() or None if found.returncode == 0 else None
+
+
+def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
+    """Return SR, SPL and PRS with 95 % intervals of the rows of ``agents`` (their weights' sha).
+
+    One entry for each split, suite, rule and severity; intervals are [value, low, high], as in
+    the report. The rows of other agents are left out.
+    """
+    mine = [{**row, "name": "agent", "agent": "agent"} for row in rows if row["agent"] in agents]
+    return [_entry(section) for section in sections(mine)] if mine else []
+
+
+def readme(card: dict[str, Any]) -> str:
+    """Return the README of a folder as Markdown."""
+    parts = [f"# {card['name']}", _origin(card), *map(_table, card["metrics"]), _use(card)]
+    if not card["metrics"]:
+        parts.insert(2, "No evaluation rows were given when it was exported.")
+    return "\n\n".join(parts) + "\n"
+
+
+def _entry(section: Section) -> dict[str, Any]:
+    grid, column = section.grid, section.columns[0]
+    return {
+        "split": grid.split,
+        "severity": section.severity,
+        "suite": grid.suite,
+        "rule": grid.rule,
+        "episodes": len(grid.episodes),
+        "seeds": list(grid.seeds[column, section.severity]),
+        "clean": {metric: _interval(found) for (_, metric), found in section.clean.items()},
+        "PRS": {
+            f"PRS-{metric} ({block})": _interval(found.estimate)
+            for (_, block, metric), found in section.retained.items()
+        },
+        "SR": {
+            name: _number(section.value(column, name))
+            for names in section.blocks.values()
+            for name in names
+        },
+        "incomplete": sorted({gap.corruption for gap in section.gaps}),
+    }
+
+
+def _interval(found: Estimate) -> list[float | None]:
+    return [_number(found.value), _number(found.low), _number(found.high)]
+
+
+def _number(value: float) -> float | None:
+    return None if math.isnan(value) else round(value, 4)
+
+
+def _origin(card: dict[str, Any]) -> str:
+    depth = card["severity"] if card["severity_depth"] is None else card["severity_depth"]
+    severities = f"{_span(card['severity'])} (depth {_span(depth)})"
+    base = card["base"]
+    start = f", from `{base['weights']}` (sha256 `{base['sha256'][:12]}`)" if base else ""
+    taught = "".join(
+        f", taught by `{t['weights']}` (sha256 `{t['sha256'][:12]}`)" for t in card["teachers"]
+    )
+    kind = (
+        "These are adapters; the base they belong to is not in this folder"
+        if card["adapters_only"]
+        else "The weights are whole, in float16"
+    )
+    computed = f", trained in {card['precision']}" if card.get("precision") else ""
+    return (
+        f"Recipe `{card['recipe']}`, severity {severities}, seed {card['seed']}{computed}, "
+        f"corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent `{card['agent']}`, "
+        f"licence {card['license']}, exported at commit `{card['commit']}`."
+    )
+
+
+def _span(severity: float | list[float]) -> str:
+    return " to ".join(f"{s:g}" for s in (severity if isinstance(severity, list) else [severity]))
+
+
+def _table(entry: dict[str, Any]) -> str:
+    lines = ["| measure | value, 95 % interval |", "| --- | ---: |"]
+    lines += [f"| Clean {name} | {_cell(found)} |" for name, found in entry["clean"].items()]
+    lines += [f"| {name} | {_cell(found)} |" for name, found in entry["PRS"].items()]
+    lines += [f"| SR, {label(name)} | {_cell([sr])} |" for name, sr in entry["SR"].items()]
+    gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
+    return (
+        f"## {entry['split']}, severity {entry['severity']:g}\n\n{entry['episodes']} episodes, "
+        f"seed {', '.join(map(str, entry['seeds']))}, suite {entry['suite']}. Success: "
+        f"{entry['rule']}.\n\n" + "\n".join(lines) + gaps
+    )
+
+
+def _cell(found: list[float | None]) -> str:
+    texts = ["–" if value is None else f"{value:.3f}" for value in found]
+    return texts[0] if len(texts) == 1 else f"{texts[0]} [{texts[1]}, {texts[2]}]"
+
+
+def _use(card: dict[str, Any]) -> str:
+    times, checked = card["latency_ms"], card["checked"]
+    networks = list(times["eager"])
+    lines = [
+        f"| `{name}`, {kind} | {times[kind][name]['wall']:g} | {times[kind][name]['cpu']:g} |"
+        for name in networks
+        for kind in ("eager", "exported")
+    ]
+    table = "\n".join(["| network | fastest | processor |", "| --- | ---: | ---: |", *lines])
+    return (
+        "## Use\n\n```python\nimport mitigate\n\n"
+        f'agent = mitigate.load_hardened("checkpoints/hardened/{card["name"]}")\n```\n\n'
+        "Files are compared with the sha256 in `card.json` first. `program.pt2` runs a decision "
+        "without this code; `program.json` describes its inputs. Reloaded in a fresh process, "
+        f"the outputs on a fixed probe were equal within {checked['reload_tolerance']:g} (agent) "
+        f"and {checked['program_tolerance']:g} (program); float16 moved them by "
+        f"{checked['float16']:.2g}.\n\nMilliseconds, fastest of {times['calls']} "
+        f"calls and median processor time, threads: {times['threads']}.\n\n{table}"
+    )
+
+
+def _precision(stages: dict[str, Any]) -> str:
+    """In which precision the stages were trained, "fp32" or "bf16", both if they differ."""
+    settings = [(stage or {}).get("trainer") or {} for stage in stages.values()]
+    return " and ".join(sorted({s["precision"] for s in settings if s.get("precision")}))
+
+
+def _teachers(node: Any) -> list[str]:
+    if not isinstance(node, dict):
+        return []
+    found = [value for key, value in node.items() if key == "teacher" and isinstance(value, str)]
+    return found + [path for value in node.values() for path in _teachers(value)]
+
+
+def _version(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None

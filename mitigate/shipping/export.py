@@ -1,0 +1,256 @@
+"""Write a run's agent as a folder to ship: ``python -m mitigate.export runs/a my_agent``.
+
+``checkpoints/hardened/<name>`` gets the weights (or adapters and a reference to their base),
+``config.yaml``, ``program.pt2``, a card and a README. The folder is made aside, reloaded in a fresh
+process and renamed into place only if the outputs on a fixed probe are the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import copy
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import torch
+import yaml
+from safetensors.torch import load_file, save_file
+from torch import Tensor
+
+from mitigate.agents import adapters
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import checkpoint, checksums, settings
+from mitigate.core.files import sha256
+from mitigate.evaluation import rows as result_rows
+from mitigate.shipping import hardened, programs
+from mitigate.shipping.card import facts, metrics, readme
+
+HARDENED = Path("checkpoints/hardened")
+# largest absolute difference of an output on the probe (ours; logits are of the order of 1 to 10)
+RELOADED = 1e-5  # the folder in a fresh process against the agent in this one
+EXPORTED = 1e-3  # program.pt2, and the ONNX files, against the agent
+ROUNDED = 0.1  # the float16 weights against the run's float32 ones
+_CHECK = (
+    "import sys; from mitigate.shipping.export import check_outputs; check_outputs(*sys.argv[1:])"
+)
+
+
+def export(
+    run: Path,
+    name: str,
+    *,
+    out: Path = HARDENED,
+    rows: Iterable[Path | str] = (),
+    overwrite: bool = False,
+    onnx: bool = False,
+) -> Path:
+    """Write the agent of the finished run folder ``run`` to ``out/name`` and return that folder.
+
+    Args:
+        rows: row files or folders with the agent's evaluation; the run folder's own are found.
+        overwrite: replace ``out/name``. onnx: write the two networks as ONNX files too.
+    Raises FileNotFoundError if ``run`` holds no finished run, ValueError if ``out/name`` exists,
+    if ``rows`` say nothing about this agent, or if the written folder does not reload to the same
+    outputs; then nothing is written.
+    """
+    if not re.fullmatch(r"\w[\w.+-]*", name):
+        raise ValueError(f"{name!r} is no name for a folder: use letters, digits and . _ + -")
+    target = out / name
+    if target.exists() and not overwrite:
+        raise ValueError(
+            f"{target} exists already: choose another name, or replace it with --overwrite."
+        )
+    cfg, agent = _finished(run)
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
+        draft = Path(aside) / name
+        draft.mkdir()
+        _write(draft, run, cfg, agent, name, list(rows), onnx)
+        if target.exists():
+            target.rename(Path(aside) / "old")
+        draft.rename(target)
+    return target
+
+
+def check_outputs(folder: str, expected: str) -> None:
+    """Raise ValueError unless the agent and the program in ``folder`` give the outputs in the
+    safetensors file ``expected`` on the probe. Run by ``export`` in a fresh process."""
+    wanted = _open(load_file(expected))
+    agent = hardened.load_hardened(folder)
+    size = json.loads((Path(folder) / hardened.INPUTS).read_text(encoding="utf-8"))["size"]
+    program = programs.load_programs(Path(folder) / hardened.PROGRAM)
+    for what, networks, most in (
+        ("agent", programs.networks(agent), RELOADED),
+        ("program", program, EXPORTED),
+    ):
+        gap = programs.difference(wanted, programs.outputs(networks, programs.probe(agent, size)))
+        if not gap <= most:
+            raise ValueError(
+                f"The reloaded {what} differs by {gap:g}; at most {most:g} is allowed."
+            )
+
+
+def _finished(run: Path) -> tuple[dict[str, Any], TopologicalAgent]:
+    """Return the config and the agent of a finished run."""
+    weights, config = run / "agent" / checkpoint.WEIGHTS, run / hardened.CONFIG
+    if not (weights.is_file() and config.is_file()):
+        raise FileNotFoundError(
+            f"{run} holds no finished run: it needs config.yaml and agent/{checkpoint.WEIGHTS}. "
+            "Run `make train` to the end, then name its folder (runs/...)."
+        )
+    agent = hardened.build(config)
+    checkpoint.load_weights(agent, weights)
+    if not all(torch.isfinite(value.half()).all() for value in agent.state_dict().values()):
+        raise ValueError(f"{weights} holds numbers that are not finite in float16.")
+    return settings.read(config), agent.eval()
+
+
+def _write(
+    draft: Path,
+    run: Path,
+    cfg: dict[str, Any],
+    agent: TopologicalAgent,
+    name: str,
+    rows: list[Path | str],
+    onnx: bool,
+) -> None:
+    """Fill ``draft`` and check it."""
+    size = agent.rgb_encoder.size
+    given = programs.probe(agent, size)
+    config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)  # where it ran is no matter
+    config = config.replace(f"{Path.cwd()}/", "")
+    (draft / hardened.CONFIG).write_text(config, encoding="utf-8")
+    adapters_only = _only_adapters_trained(cfg, agent)
+    shipped = agent
+    if adapters_only:
+        adapters.save_adapters(agent, draft)
+    else:
+        shipped = copy.deepcopy(agent)
+        checkpoint.save_weights(agent, draft, half=True)
+        checkpoint.load_weights(shipped, draft)
+    checksums.delete_sidecars(draft, "*")  # the card has all sums
+    known = facts(cfg, agent)  # before the slow part: what is missing shows at once
+    found = _metrics(run, rows, {checkpoint.weights_sha(a) for a in (agent, shipped)})
+    print("exporting the programs", flush=True)
+    exported = programs.export_programs(shipped, size)
+    programs.save_programs(exported, draft / hardened.PROGRAM)
+    _write_json(draft / hardened.INPUTS, programs.description(shipped, size))
+    eager = programs.networks(shipped)
+    modules = {kind: program.module() for kind, program in exported.items()}
+    before, wanted = (programs.outputs(programs.networks(a), given) for a in (agent, shipped))
+    rounded = programs.difference(before, wanted)
+    if not rounded <= ROUNDED:
+        raise ValueError(
+            f"Rounding the weights to float16 moves an output on the probe by {rounded:g}; at most "
+            f"{ROUNDED:g} is allowed. Was the run trained to the end? Nothing was written."
+        )
+    if onnx:
+        from mitigate.shipping.onnx_programs import save_onnx
+
+        save_onnx(shipped, size, draft, EXPORTED)
+    card = {
+        "format": hardened.FORMAT,
+        "name": name,
+        **known,
+        "agent": checkpoint.weights_sha(shipped),
+        "run_agent": checkpoint.weights_sha(agent),
+        "adapters_only": adapters_only,
+        "metrics": found,
+        "checked": {
+            "float16": rounded,
+            "float16_tolerance": ROUNDED,
+            "reload_tolerance": RELOADED,
+            "program_tolerance": EXPORTED,
+        },
+        "latency_ms": programs.latency({"eager": eager, "exported": modules}, shipped, size),
+    }
+    (draft / hardened.README).write_text(readme(card), encoding="utf-8")
+    for file in draft.iterdir():
+        file.chmod(0o644)  # safetensors are written for their owner alone
+    card["files"] = {file.name: sha256(file) for file in sorted(draft.iterdir())}
+    card["sha256"] = hardened.card_sha(card)
+    _write_json(draft / hardened.CARD, card)
+    print("reloading in a fresh process", flush=True)
+    _reload(draft, wanted)
+
+
+def _only_adapters_trained(cfg: dict[str, Any], agent: TopologicalAgent) -> bool:
+    """Whether all but the adapters of ``agent`` is, bit for bit, what the run started from."""
+    init = cfg.get("init")
+    if not adapters.adapted(agent) or not init or hardened.adapters_only(init):
+        return False
+    base = copy.deepcopy(agent)
+    adapters.remove_adapters(base)
+    try:
+        checkpoint.load_weights(base, init)
+    except ValueError:  # a base with adapters of its own
+        return False
+    return adapters.backbone_sha(base) == adapters.backbone_sha(agent)
+
+
+def _metrics(run: Path, rows: list[Path | str], agents: set[str]) -> list[dict[str, Any]]:
+    try:
+        own = result_rows.gather([run])
+    except FileNotFoundError:
+        own = []
+    given = result_rows.gather(rows) if rows else []
+    if rows and not any(row["agent"] in agents for row in given):
+        raise ValueError(
+            f"The rows given are of {', '.join(sorted({row['agent'] for row in given}))}, not of "
+            f"this agent ({', '.join(sorted(agents))}). Evaluate it: `make evaluate "
+            f'ARGS="checkpoint={run}/agent"`.'
+        )
+    return metrics(result_rows.upsert(own, given), agents)
+
+
+def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:
+    """Run :func:`check_outputs` in a fresh process; ValueError with its last words if it fails."""
+    root = str(Path(__file__).resolve().parents[2])
+    path = os.pathsep.join(filter(None, (root, os.environ.get("PYTHONPATH"))))
+    with tempfile.TemporaryDirectory() as folder:
+        expected = Path(folder) / "expected.safetensors"
+        save_file(_open(wanted), expected)
+        done = subprocess.run(
+            [sys.executable, "-c", _CHECK, str(draft), str(expected)],
+            env={**os.environ, "PYTHONPATH": path},
+            capture_output=True,
+            text=True,
+        )
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        raise ValueError(
+            f"The folder does not reload to the same outputs ({last}); nothing written"
+        )
+
+
+def _open(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
+    return {name: tensor.contiguous() for name, tensor in tensors.items()}
+
+
+def _write_json(file: Path, value: Any) -> None:
+    file.write_text(json.dumps(value, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def main() -> None:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(prog="mitigate.export", description=__doc__.splitlines()[0])
+    parser.add_argument("run", type=Path, help="a finished run folder, such as runs/...")
+    parser.add_argument("name", help="name of the folder to write")
+    parser.add_argument("--out", type=Path, default=HARDENED, help="where to write it")
+    parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
+    parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
+    parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
+    given = vars(parser.parse_args())
+    try:
+        folder = export(given.pop("run"), given.pop("name"), **given)
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")
+    card = hardened.read_card(folder)
+    print(f"latency in ms: {json.dumps(card['latency_ms'])}\nwrote {folder}")

@@ -1,0 +1,173 @@
+"""Hardened checkpoints: folders that are checked by hash before anything in them is read.
+
+``load_hardened(folder)`` needs neither Hydra nor the simulator, and runs nothing from the folder:
+weights are safetensors, settings are plain YAML, and the class is one of ours. What a folder holds
+is written in ``checkpoints/README.md``; ``mitigate.export`` writes it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from mitigate.agents import adapters
+from mitigate.agents.topological import TopologicalAgent, schema
+from mitigate.core import checkpoint, settings
+from mitigate.core.files import sha256
+
+FORMAT = 1
+CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
+PROGRAM, INPUTS = "program.pt2", "program.json"
+FILES = (CONFIG, README, PROGRAM, INPUTS)  # besides the weights, in every folder
+ENTRIES = ("files", "adapters_only", "base", "vocabulary", "commit")  # what loading reads of a card
+TARGET = "mitigate.agents.topological.TopologicalAgent"
+_AGAIN = "Fetch the folder again, or export it again with `make export`."
+
+
+def load_hardened(folder: str | Path, *, base: str | Path | None = None) -> TopologicalAgent:
+    """Return the agent of a hardened checkpoint on the CPU, in eval mode, ready for ``reset``.
+
+    Args:
+        folder: such as ``checkpoints/hardened/ts_distill``.
+        base: for a folder of adapters, the weights they belong to (a file or folder); None: where
+            the card says, looked for below the current folder, the folders above ``folder`` and
+            the checkout.
+    Raises FileNotFoundError or ValueError, naming the file, if the folder is not whole or not what
+    its card states.
+    """
+    folder = Path(folder)
+    card = check(folder)
+    with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
+        agent = build(folder / CONFIG)
+        if card["vocabulary"] != vocabulary_sha(agent):
+            raise ValueError(
+                f"{folder} was exported with another vocabulary than its {CONFIG} gives the agent, "
+                f"so its words would be misread. Use the version that made it (commit "
+                f"{card['commit']})."
+            )
+        return fill(agent, folder, base=base).eval()
+
+
+def build(config: Path) -> TopologicalAgent:
+    """Return an agent with the settings in ``config`` (YAML, read as data), its weights random.
+
+    Raises ValueError if the file is damaged or names another kind of agent.
+    """
+    given = agent_settings(config)
+    try:
+        return TopologicalAgent(**given)
+    except (TypeError, RuntimeError) as error:
+        raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
+
+
+def agent_settings(config: Path) -> dict[str, Any]:
+    """Return the keyword arguments of the agent in ``config``. Errors as :func:`build`."""
+    return schema.check(settings.read_agent(config, TARGET, schema.AGENT), config)
+
+
+def fill(
+    agent: TopologicalAgent, folder: str | Path, *, base: str | Path | None = None
+) -> TopologicalAgent:
+    """Read the weights of a hardened folder into ``agent``, adapters and base alike.
+
+    Arguments and errors as :func:`load_hardened`; ValueError too if the agent is another one.
+    """
+    folder = Path(folder)
+    if not adapters_only(folder):
+        checkpoint.load_weights(agent, folder)
+        return agent
+    mine = adapters.adapted(agent)
+    adapters.remove_adapters(agent)
+    checkpoint.load_weights(agent, _base(folder, read_card(folder)["base"], base))
+    if adapters.load_adapters(agent, folder) != mine:
+        raise ValueError(
+            f"{folder} holds adapters of other modules than agent.adapters names: build the agent "
+            f"with its {CONFIG}."
+        )
+    return agent
+
+
+def adapters_only(folder: str | Path) -> bool:
+    """Whether ``folder`` holds adapters and a reference to their base in place of all weights."""
+    return (Path(folder) / adapters.WEIGHTS).is_file() and (Path(folder) / CARD).is_file()
+
+
+def check(folder: Path) -> dict[str, Any]:
+    """Return the card of ``folder`` after comparing every file's sha256 with it.
+
+    Raises FileNotFoundError for a missing file, ValueError for a changed one or a damaged card.
+    """
+    card = read_card(folder)
+    files = card["files"]
+    own = (adapters.WEIGHTS, adapters.SETTINGS) if card["adapters_only"] else (checkpoint.WEIGHTS,)
+    for name in (*own, *FILES):
+        if name not in files:
+            raise ValueError(f"{folder / CARD} does not list {name}, which must be there. {_AGAIN}")
+    for name, wanted in files.items():
+        if Path(name).name != name or name in ("", ".", ".."):
+            raise ValueError(
+                f"{folder / CARD} lists {name!r}, which is no plain file name. Do not use this "
+                "folder: its card was not written by `make export`."
+            )
+        if not (folder / name).is_file():
+            raise FileNotFoundError(f"{folder} is incomplete: {name} is missing. {_AGAIN}")
+        if sha256(folder / name) != wanted:
+            raise ValueError(
+                f"{folder / name} does not have the sha256 that {CARD} states: it was changed or "
+                f"cut short. {_AGAIN}"
+            )
+    return card
+
+
+def read_card(folder: Path) -> dict[str, Any]:
+    """Return the card of ``folder``; its own sha256 must fit. Errors as :func:`check`."""
+    file = folder / CARD
+    if not file.is_file():
+        raise FileNotFoundError(
+            f"{folder} is no hardened checkpoint: {CARD} is missing. Name a folder such as "
+            "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`."
+        )
+    try:
+        card = json.loads(file.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{file} is cut short or damaged ({error}). {_AGAIN}") from error
+    if not isinstance(card, dict) or card.get("format") != FORMAT:
+        raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {_AGAIN}")
+    if card.get("sha256") != card_sha(card):
+        raise ValueError(
+            f"{file} does not have the sha256 that it states: it was changed. {_AGAIN}"
+        )
+    lacking = [name for name in ENTRIES if name not in card]
+    if lacking or not isinstance(card["files"], dict):
+        raise ValueError(f"{file} lacks {', '.join(lacking or ['files'])}. {_AGAIN}")
+    return card
+
+
+def card_sha(card: dict[str, Any]) -> str:
+    """Return the sha256 of a card's entries but "sha256" itself, as sorted JSON."""
+    entries = {name: value for name, value in card.items() if name != "sha256"}
+    return hashlib.sha256(json.dumps(entries, sort_keys=True).encode()).hexdigest()
+
+
+def vocabulary_sha(agent: TopologicalAgent) -> str:
+    """Return the first 12 hex digits of the sha256 of the words, in the order of their ids."""
+    return hashlib.sha256("\n".join(agent.vocabulary).encode()).hexdigest()[:12]
+
+
+def _base(folder: Path, reference: dict[str, str], given: str | Path | None) -> Path:
+    roots = (Path(), *folder.resolve().parents, Path(__file__).resolve().parents[2])
+    places = [root / reference["weights"] for root in roots] if given is None else [Path(given)]
+    files = [p if p.suffix == ".safetensors" else p / checkpoint.WEIGHTS for p in places]
+    found = [file for file in files if file.is_file()]
+    for file in found:
+        if sha256(file) == reference["sha256"]:
+            return file
+    where = f"{found[0]} has another" if found else f"there is none at {files[0]}"
+    raise (ValueError if found else FileNotFoundError)(
+        f"The adapters in {folder} belong to the weights {reference['weights']} with sha256 "
+        f"{reference['sha256']}, but {where}. Name the right ones: load_hardened(folder, base=...)."
+    )

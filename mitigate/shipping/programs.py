@@ -1,0 +1,293 @@
+"""The two networks of a decision as programs that run without this package's code.
+
+``program.pt2`` holds both, made by ``torch.export``: ``perceive`` (frames of panoramas to view
+tokens and waypoint logits) and ``decide`` (instruction, view tokens of all panoramas so far and the
+map to logits over [stop], nodes and ghosts). :data:`INPUTS` describes every tensor; the folder's
+``program.json`` repeats it, with the vocabulary.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+from torch.export import Dim, ExportedProgram
+from torch.export.pt2_archive._package import load_pt2, package_pt2  # several programs in one file
+from torch.func import functional_call
+
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS
+from mitigate.agents.topological.planner import DecisionBatch
+from mitigate.agents.topological.text import MAX_WORDS
+from mitigate.core.observation import VIEWS
+from mitigate.core.seeding import torch_generator
+
+PERCEIVE, DECIDE = "perceive", "decide"
+OUTPUTS = {PERCEIVE: ("views", "waypoints"), DECIDE: ("logits",)}
+INPUTS = {  # name: dtype, shape, meaning
+    PERCEIVE: {
+        "rgb": ("uint8", "[P, 12, size, size, 3]", "view k looks 30 k degrees right"),
+        "depth": ("float32", "[P, 12, size, size, 1]", "metres; 0 or not finite: no reading"),
+    },
+    DECIDE: {
+        "tokens": ("int64", "[E, L]", "word ids of E instructions, padded with 0"),
+        "views": ("float32", "[P, 12, width]", "of `perceive`, of all panoramas so far"),
+        "episode": ("int64", "[B]", "row of tokens of each decision"),
+        "panorama": ("int64", "[B]", "the current panorama, row of views"),
+        "nodes": ("int64", "[B, N]", "panorama of each visited node, -1: padding"),
+        "sightings": ("int64", "[B, G, 4]", "views that faced a ghost, panorama * 12 + k, or -1"),
+        "geometry": (
+            "float32",
+            "[B, 1 + N + G, 12]",
+            "place of [stop], nodes, ghosts; 0: padding",
+        ),
+        "valid": ("bool", "[B, 1 + N + G]", "false: padding"),
+        "allowed": ("bool", "[B, 1 + N + G]", "what may be chosen: [stop] and ghosts"),
+    },
+}
+MEANINGS = {
+    "views": "float32 [P, 12, width]: view tokens",
+    "waypoints": "float32 [P, 120, 12]: logit that the way is free; angle a looks 3 a - 13.5 "
+    "degrees right, distance d is 0.25 (d + 1) m",
+    "logits": "float32 [B, 1 + N + G]: scores, -inf where not allowed",
+}
+TIMED = 20  # calls of each network that a latency is the median of
+
+
+class Perceive(nn.Module):
+    """``perceive`` of :data:`INPUTS`, eager."""
+
+    def __init__(self, agent: TopologicalAgent) -> None:
+        super().__init__()
+        self.agent = agent
+
+    def forward(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor]:
+        views, _, waypoints = self.agent.perceive(rgb, depth)
+        return self.agent.planner.look(views), waypoints
+
+
+class Decide(nn.Module):
+    """``decide`` of :data:`INPUTS`, eager."""
+
+    def __init__(self, agent: TopologicalAgent) -> None:
+        super().__init__()
+        self.planner = agent.planner
+
+    def forward(
+        self,
+        tokens: Tensor,
+        views: Tensor,
+        episode: Tensor,
+        panorama: Tensor,
+        nodes: Tensor,
+        sightings: Tensor,
+        geometry: Tensor,
+        valid: Tensor,
+        allowed: Tensor,
+    ) -> tuple[Tensor]:
+        batch = DecisionBatch(episode, panorama, nodes, sightings, geometry, valid, allowed)
+        return (self.planner(self.planner.read(tokens), views, batch)["logits"],)
+
+
+class Stored(nn.Module):
+    """``network`` with the tensors that it uses kept as float16 where that loses nothing."""
+
+    def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
+        super().__init__()
+        self._network = (network,)  # hidden: only what is registered below is exported
+        self._names = {name: name.replace(".", "__") for name in _used(network, inputs)}
+        tensors = {**dict(network.named_parameters()), **dict(network.named_buffers())}
+        for name, key in self._names.items():
+            self.register_buffer(key, _smallest(tensors[name].detach()))
+
+    def forward(self, *inputs: Tensor) -> tuple[Tensor, ...]:
+        tensors = {name: getattr(self, key).float() for name, key in self._names.items()}
+        return functional_call(self._network[0], tensors, inputs)
+
+
+def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
+    """Return the two eager networks of ``agent`` by name; they share its weights."""
+    return {PERCEIVE: Perceive(agent), DECIDE: Decide(agent)}
+
+
+@torch.no_grad()
+def export_programs(agent: TopologicalAgent, size: int) -> dict[str, ExportedProgram]:
+    """Return both networks as exported programs for views of ``size`` pixels.
+
+    P, E, L, B, N and G of :data:`INPUTS` are free from 1 on (L up to ``MAX_WORDS``).
+    """
+    made = {}
+    given = probe(agent, size)
+    for name, network in networks(agent).items():
+        inputs = tuple(given[key] for key in INPUTS[name])
+        shapes = (free_dimensions(name),)  # one entry: Stored takes all inputs as *inputs
+        stored = Stored(network, inputs).eval()
+        made[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
+        made[name].example_inputs = None  # frames; nothing needs them
+        _drop_type_checks(made[name])
+        for node in made[name].graph.nodes:  # where lines of code lay on this machine
+            node.meta.pop("stack_trace", None)
+    return made
+
+
+def free_dimensions(name: str) -> tuple[dict[int, Any], ...]:
+    """Return the dynamic dimensions of each input of a network, for ``torch.export``."""
+    return tuple(_free(shape) for _, shape, _ in INPUTS[name].values())
+
+
+def save_programs(programs: dict[str, ExportedProgram], file: Path) -> None:
+    """Write both programs to one ``.pt2`` file."""
+    package_pt2(file, exported_programs=programs)
+
+
+def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:
+    """Return the programs of :func:`save_programs` by name. Only for files you trust: torch reads
+    parts of such a file with pickle."""
+    return {name: p.module() for name, p in load_pt2(str(file)).exported_programs.items()}
+
+
+def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor]:
+    """Return fixed inputs of both networks, every entry of :data:`INPUTS`: noise as frames, three
+    panoramas, two decisions, each with padding."""
+    draw = torch_generator(seed, "export probe", size)
+
+    def integers(low: int, high: int, *shape: int) -> Tensor:
+        return torch.randint(low, high, shape, generator=draw)
+
+    p, b, n, g, words = 3, 2, 3, 4, 9
+    valid = torch.ones(b, 1 + n + g, dtype=torch.bool)
+    valid[1, [n, n + g]] = False
+    allowed = valid.clone()
+    allowed[:, 1 : 1 + n] = False
+    return {
+        "rgb": integers(0, 256, p, VIEWS, size, size, 3).to(torch.uint8),
+        "depth": 5 * torch.rand(p, VIEWS, size, size, 1, generator=draw),
+        "tokens": integers(1, len(agent.vocabulary), 2, words),
+        "views": torch.randn(p, VIEWS, agent.planner.view_norm.bias.numel(), generator=draw),
+        "episode": torch.arange(b),
+        "panorama": torch.tensor([p - 1, p - 2]),
+        "nodes": torch.tensor([[0, 1, 2], [0, 1, -1]]),
+        "sightings": integers(-1, p * VIEWS, b, g, SIGHTINGS),
+        "geometry": torch.randn(b, 1 + n + g, GEOMETRY, generator=draw),
+        "valid": valid,
+        "allowed": allowed,
+    }
+
+
+@torch.no_grad()
+def outputs(programs: dict[str, Any], given: dict[str, Tensor]) -> dict[str, Tensor]:
+    """Return what both networks, eager or exported, make of a probe, by the outputs' names.
+
+    ``decide`` gets the view tokens that ``perceive`` found, not the probe's.
+    """
+    found: dict[str, Tensor] = {}
+    for name in (PERCEIVE, DECIDE):
+        inputs = {**given, **found}
+        found |= zip(OUTPUTS[name], programs[name](*(inputs[k] for k in INPUTS[name])), strict=True)
+    return found
+
+
+def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
+    """Return the largest absolute difference of any output; infinite if an -inf is not in both, or
+    if a NaN is in either."""
+    gaps = [0.0]
+    for name, a in one.items():
+        b = two[name]
+        if a.shape != b.shape or not torch.equal(a.isneginf(), b.isneginf()):
+            return float("inf")
+        gap = (a - b)[~a.isneginf()].abs()
+        gaps.append(float("inf") if gap.isnan().any() else float(gap.max()))
+    return max(gaps)
+
+
+@torch.no_grad()
+def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
+    """Return milliseconds a call of each network of each kind, taking turns in one run.
+
+    Args: kinds: such as ``{"eager": networks(agent), "exported": ...}``. One panorama, then one
+    decision among three nodes and four ghosts. Returns, by kind and network, the fastest of
+    ``TIMED`` calls ("wall") and the median processor time of all threads ("cpu"), which other
+    programs disturb less.
+    """
+    given = probe(agent, size)
+    one = {name: tensor[:1] for name, tensor in given.items()} | {"views": given["views"]}
+    times: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for _ in range(3 + TIMED):  # three to warm up
+        for kind, programs in kinds.items():
+            for name in (PERCEIVE, DECIDE):
+                inputs = [one[key] for key in INPUTS[name]]
+                wall, cpu = time.perf_counter(), time.process_time()
+                programs[name](*inputs)
+                taken = (time.perf_counter() - wall, time.process_time() - cpu)
+                times.setdefault((kind, name), []).append(taken)
+    found: dict[str, Any] = {"threads": torch.get_num_threads(), "calls": TIMED}
+    for (kind, name), seconds in times.items():
+        walls, cpus = zip(*seconds[3:], strict=True)
+        found.setdefault(kind, {})[name] = {
+            "wall": round(1e3 * min(walls), 2),
+            "cpu": round(1e3 * statistics.median(cpus), 2),
+        }
+    return found
+
+
+def description(agent: TopologicalAgent, size: int) -> dict[str, Any]:
+    """Return what ``program.json`` says: inputs, outputs and the words by their ids."""
+    return {
+        "size": size,
+        "programs": {
+            name: {
+                "inputs": {
+                    key: dict(zip(("dtype", "shape", "meaning"), entry, strict=True))
+                    for key, entry in INPUTS[name].items()
+                },
+                "outputs": {key: MEANINGS[key] for key in OUTPUTS[name]},
+            }
+            for name in INPUTS
+        },
+        "words": list(agent.vocabulary),
+        "most_words": MAX_WORDS,
+    }
+
+
+def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
+    """Names of the parameters that the outputs depend on, and of all buffers."""
+    parameters = dict(network.named_parameters())
+    before = {name: p.requires_grad for name, p in parameters.items()}
+    network.requires_grad_(True)
+    with torch.enable_grad():
+        total = sum(out[torch.isfinite(out)].sum() for out in network(*inputs))
+        grads = torch.autograd.grad(total, list(parameters.values()), allow_unused=True)
+    for name, p in parameters.items():
+        p.requires_grad_(before[name])
+    used = [name for name, grad in zip(parameters, grads, strict=True) if grad is not None]
+    return used + [name for name, _ in network.named_buffers()]
+
+
+def _drop_type_checks(program: ExportedProgram) -> None:
+    """Take out the checks of the stored tensors' types: over a hundred calls that cannot fail."""
+    graph = program.graph_module.graph
+    for node in list(graph.nodes):
+        if node.target is torch.ops.aten._assert_tensor_metadata.default:
+            graph.erase_node(node)
+    program.graph_module.recompile()
+
+
+def _smallest(tensor: Tensor) -> Tensor:
+    half = tensor.half()
+    return half if torch.equal(half.float(), tensor.float()) else tensor
+
+
+def _free(shape: str) -> dict[int, Any]:
+    """Dynamic dimensions of a shape in :data:`INPUTS`: those of one letter, and their sums."""
+    free: dict[int, Any] = {}
+    for place, name in enumerate(shape.strip("[]").split(", ")):
+        if "+" in name:
+            free[place] = Dim.AUTO  # torch finds out that it is 1 + N + G
+        elif name.isupper():
+            free[place] = Dim(name, min=1, max=MAX_WORDS if name == "L" else None)
+    return free

@@ -1,0 +1,1 @@
+"""The trainer, what it asks of a recipe, and the run of ``mitigate train``."""

@@ -1,0 +1,234 @@
+"""Worker processes that make the pieces of a recipe's batches, and the batches made of them.
+
+A recipe names the jobs of a step (``recipe.py``); how many there are does not depend on the number
+of workers, each is a pure function of itself, the seed and the weights, and each is done on one
+thread. So any number of workers, none included, gives the same batches.
+"""
+
+from __future__ import annotations
+
+import pickle
+import signal
+from collections import deque
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from typing import Any
+
+import torch
+
+from mitigate.core import precision
+from mitigate.core.progress import say
+from mitigate.core.workers import WorkersDied, context, portable
+from mitigate.training.recipe import Recipe, do
+
+MOST = 4  # workers worth starting: the recipes make 2 to 4 pieces of a step
+AHEAD = 3  # steps whose pieces are ordered before they are needed (ours)
+PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
+DEATHS = 1  # times that a worker is started anew before the training stops
+
+
+class Workers:
+    """``count`` processes; job i of every step is done by worker ``i % count``.
+
+    They live through all stages of a training, so apartments and scenes that one stage has built
+    serve the next. Use it as a context manager.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._all = [_Worker(number) for number in range(count)]
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for worker in self._all:
+            worker.close()
+
+    def take(self, recipe: Recipe, kind: str) -> None:
+        """Give every worker its own copy of ``recipe``, to compute in the precision ``kind``.
+
+        Raises ValueError if the recipe cannot be pickled.
+        """
+        for worker in self._all:
+            worker.take(recipe, kind)
+
+    def send_weights(self, recipe: Recipe) -> None:
+        """Bring the copies of the trained weights and of all buffers up to date."""
+        trained = {
+            name: p.detach().cpu() for name, p in recipe.named_parameters() if p.requires_grad
+        }
+        buffers = {name: buffer.detach().cpu() for name, buffer in recipe.named_buffers()}
+        for worker in self._all:
+            worker.send(("weights", {**trained, **buffers}))
+
+    def order(self, jobs: list[Any]) -> None:
+        """Have ``jobs`` done; :meth:`receive` returns what they give."""
+        for index, job in enumerate(jobs):
+            self._all[index % len(self)].order(job)
+
+    def receive(self, count: int) -> list[Any]:
+        """Return what the next ``count`` jobs gave, in the order of one :meth:`order`.
+
+        Raises what a job raised, and WorkersDied.
+        """
+        return [self._all[index % len(self)].receive() for index in range(count)]
+
+
+class Batches:
+    """The batches of ``recipe`` up to ``steps``, made on ``device`` in the precision ``kind``.
+
+    Pieces that do not depend on the weights (``recipe.ahead``) are ordered ``AHEAD`` steps early.
+    """
+
+    def __init__(
+        self, recipe: Recipe, workers: Workers | None, steps: int, kind: str, device: torch.device
+    ) -> None:
+        self.recipe, self.steps, self.kind, self.device = recipe, steps, kind, device
+        self.workers = workers if workers is not None and len(workers) else None
+        self._ordered: deque[tuple[int, int]] = deque()  # steps and how many jobs they have
+        self._taken = False
+
+    def batch(self, step: int) -> dict[str, Any]:
+        """Return the batch of ``step``; steps are asked for in order."""
+        recipe = self.recipe
+        if not self._ordered:
+            jobs = recipe.jobs(step) if self.workers is not None else []
+            if not jobs:
+                with precision.computing(self.kind, self.device):
+                    return recipe.batch(step)
+            self._order(step, jobs)
+        while recipe.ahead and self._ordered[-1][0] < min(step + AHEAD, self.steps - 1):
+            later = self._ordered[-1][0] + 1
+            self._order(later, recipe.jobs(later))
+        ordered, count = self._ordered.popleft()
+        assert ordered == step, f"step {step} was asked for, {ordered} is next"
+        assert self.workers is not None
+        return recipe.collate(step, self.workers.receive(count))
+
+    def _order(self, step: int, jobs: list[Any]) -> None:
+        assert self.workers is not None
+        if not self._taken:
+            self.workers.take(self.recipe, self.kind)
+            self._taken = True
+        elif not self.recipe.ahead:
+            self.workers.send_weights(self.recipe)
+        self.workers.order(jobs)
+        self._ordered.append((step, len(jobs)))
+
+
+class _Worker:
+    """One process and what it was given to do."""
+
+    def __init__(self, number: int) -> None:
+        self.number, self.deaths = number, 0
+        self.recipe: tuple[Recipe, str] | None = None
+        self.pending: deque[Any] = deque()
+        self._start()
+
+    def take(self, recipe: Recipe, kind: str) -> None:
+        if self.pending:  # of a recipe that was given up: nobody will ask for them
+            self._restart()
+            self.pending.clear()
+        self.recipe = (recipe, kind)
+        self.send(("recipe", _packed(recipe), kind))
+
+    def order(self, job: Any) -> None:
+        self.pending.append(job)
+        self.send(("job", job))
+
+    def send(self, message: tuple) -> None:
+        with suppress(BrokenPipeError, ConnectionResetError):  # receive() notices
+            self.connection.send(message)
+
+    def receive(self) -> Any:
+        try:
+            kind, value = self.connection.recv()
+        except (EOFError, ConnectionResetError):
+            self._replace()
+            return self.receive()
+        self.pending.popleft()
+        if kind == "error":
+            error, cause = value
+            raise error from cause
+        return value
+
+    def close(self) -> None:
+        self.connection.close()
+        self.process.join(timeout=1)
+        if self.process.is_alive():
+            self.process.kill()
+
+    def _start(self) -> None:
+        made = context(PRELOAD)
+        self.connection, other = made.Pipe()
+        self.process = made.Process(target=_serve, args=(other,), daemon=True)
+        self.process.start()
+        other.close()  # so that the worker's death ends the connection
+
+    def _replace(self) -> None:
+        self.process.join(timeout=1)
+        what = f"worker {self.number} ended with code {self.process.exitcode}"
+        if self.deaths >= DEATHS or self.recipe is None:
+            raise WorkersDied(
+                f"The {what}, and not for the first time: it was killed, most likely because the "
+                "memory ran out. Checkpoints are kept. Run the same command again, with fewer "
+                "processes: workers=1, or 0 for none."
+            )
+        self.deaths += 1
+        say(f"{what}; a new one does its work again")
+        self._restart()
+        recipe, kind = self.recipe
+        self.send(("recipe", _packed(recipe), kind))
+        for job in self.pending:
+            self.send(("job", job))
+
+    def _restart(self) -> None:
+        self.connection.close()
+        self.process.kill()
+        self._start()
+
+
+def _packed(recipe: Recipe) -> bytes:
+    try:
+        device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
+        if device.type == "cpu":
+            return pickle.dumps(recipe)
+        try:
+            return pickle.dumps(recipe.cpu())
+        finally:
+            recipe.to(device)
+    except (pickle.PicklingError, TypeError, AttributeError) as error:
+        raise ValueError(
+            f"{type(recipe).__name__} cannot be sent to worker processes ({error}): keep what "
+            "cannot be pickled out of its attributes, or train with workers=0."
+        ) from error
+
+
+def _serve(connection: Connection) -> None:
+    """The life of a worker: messages in, the results of jobs out, until the connection ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the training ends it
+    recipe, kind, weights = Recipe(), "fp32", {}
+    with suppress(EOFError, BrokenPipeError, ConnectionResetError):
+        while True:
+            name, *given = connection.recv()
+            if name == "recipe":
+                recipe, kind = pickle.loads(given[0]), given[1]
+                weights = {**dict(recipe.named_parameters()), **dict(recipe.named_buffers())}
+            elif name == "weights":
+                with torch.no_grad():
+                    for entry, value in given[0].items():
+                        weights[entry].copy_(value)
+            else:
+                connection.send(_answer(recipe, given[0], kind))
+
+
+def _answer(recipe: Recipe, job: Any, kind: str) -> tuple[str, Any]:
+    device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
+    try:
+        with precision.computing(kind, device):
+            return "done", do(recipe, job)
+    except Exception as error:
+        return "error", portable(error)

@@ -1,0 +1,81 @@
+"""What a run says: TensorBoard scalars and pictures, and a progress bar or plain lines."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mitigate.core import progress
+
+if TYPE_CHECKING:
+    from typing import Self
+
+CPU = (
+    "cpu_s_per_step"  # scalar: this process's CPU seconds, all threads, a step since the last line
+)
+
+
+class Journal:
+    """Log of one run over ``total`` steps, from ``start``; use it as a context manager.
+
+    It shows a :class:`~mitigate.core.progress.Progress`: a bar in a terminal, else plain lines, to
+    which :meth:`scalars` with ``line=True`` adds one with all its values.
+    """
+
+    def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
+        from torch.utils.tensorboard import SummaryWriter  # slow to import
+
+        self._writer = SummaryWriter(str(folder), purge_step=start)
+        self._name = name
+        self._progress = progress.Progress(name, total, start=start)
+        self._measured = start, time.process_time()
+
+    def __enter__(self) -> Self:
+        self._progress.__enter__()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._progress.__exit__(kind, error, trace)
+        self._writer.close()
+
+    def advance(self) -> None:
+        """Count one step."""
+        self._progress.advance()
+
+    def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
+        """Log ``values`` after ``step`` updates and, with ``line``, show them."""
+        for name, value in values.items():
+            self._writer.add_scalar(name, value, step)
+        if not line:
+            return
+        self._log_cost(step)
+        shown = [f"{name} {value:.4g}" for name, value in values.items()]
+        self._progress.advance(0, note=shown[0])
+        if not sys.stdout.isatty():
+            left = progress.duration(self._progress.left())
+            self.say("  ".join([f"step {step}/{self._progress.total}", *shown, f"{left} left"]))
+
+    def _log_cost(self, step: int) -> None:
+        before, then = self._measured
+        self._measured = self._progress.done, time.process_time()
+        steps = max(1, self._progress.done - before)
+        self._writer.add_scalar(CPU, (self._measured[1] - then) / steps, step)
+
+    def figures(self, step: int, pictures: dict[str, np.ndarray]) -> None:
+        """Log uint8 pictures ``[H, W, 3]``."""
+        for name, picture in pictures.items():
+            self._writer.add_image(name, picture, step, dataformats="HWC")
+
+    def say(self, text: str) -> None:
+        """Print one line without breaking the bar."""
+        self._progress.say(f"{self._name}: {text}")

@@ -1,0 +1,85 @@
+"""Success rates by corruption, which a success-distributed schedule draws by."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mitigate.core import workers as processes
+from mitigate.core.progress import Progress
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule
+from mitigate.evaluation.evaluator import WORTH, EpisodeTask
+from mitigate.evaluation.rows import read
+from mitigate.worlds.apartments.renderer import Renderer
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import draw_training_episode
+
+
+def measure(
+    agent: Any,
+    schedule: Schedule,
+    renderer: Renderer,
+    *,
+    episodes: int,
+    apartments: int,
+    seed: int,
+    step: int,
+    workers: int | None = None,
+) -> dict[str, float]:
+    """Success of ``agent`` under every corruption of ``schedule``, in [0, 1] by name.
+
+    ``episodes`` instruction-following episodes of the first ``apartments`` training layouts are
+    drawn from (seed, step), the same ones under every corruption. ``agent`` is a module with reset
+    and act; it is left in eval mode. ``workers``: processes, on which the rates do not depend;
+    None: one a core if there is work for them, and this one alone for an agent on a GPU.
+    """
+    rng = generator(seed, "refresh", step)
+    drawn = [draw_training_episode(rng, apartments, 0.0) for _ in range(episodes)]
+    met = [schedule.corruption(name) for name in schedule.names]
+    groups = [[(e, c, {"corruption": c.name, "seed": seed}) for c in met] for e in drawn]
+    simulator = Simulator(renderer.size, renderer=renderer)
+    task = EpisodeTask(agent, renderer.size, simulator=simulator)
+    if workers is None and any(p.device.type != "cpu" for p in agent.parameters()):
+        workers = 1
+    total = len(drawn) * len(met)
+    started = processes.count(workers, total, WORTH)
+    with Progress(f"success at step {step}", total, unit="episode") as progress:
+        found = []
+        for item in processes.results(task, groups, started, progress):
+            if item is not None:
+                found.append(item[1])
+                progress.advance()
+    return success_rates(found)
+
+
+def prior_rates(path: Path | str) -> dict[str, float]:
+    """Success by corruption in a file of result rows.
+
+    Raises FileNotFoundError or ValueError for a file that is not there or broken, and ValueError
+    if it mixes agents, splits or severities.
+    """
+    found = read(path)
+    kinds = {
+        "agents": {row["name"] for row in found},
+        "splits": {row["split"] for row in found},
+        "severities": {f"{row['severity']:g}" for row in found} - {"0"},
+    }
+    for what, held in kinds.items():
+        if len(held) > 1:
+            raise ValueError(
+                f"{path} holds rows of several {what} ({', '.join(sorted(held))}), so its success "
+                "rates say nothing about one agent. Name a file of one evaluation (prior=...)."
+            )
+    return success_rates(found)
+
+
+def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
+    """Mean success by corruption of rows or measures; clean ones are left out."""
+    names = {row["corruption"] for row in results} - {"clean"}
+    return {
+        n: float(np.mean([r["success"] for r in results if r["corruption"] == n]))
+        for n in sorted(names)
+    }

@@ -1,0 +1,258 @@
+"""The paper's Table II with our agent: ``python -m mitigate.table2 seeds=[0] jobs=2``.
+
+Trains and evaluates every column for every seed, several cells at a time, each in processes of its
+own. The same command again goes on where the last one stopped: trainings resume, evaluations go on,
+finished cells are kept. Then the report is written from the rows of all cells.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from omegaconf import DictConfig
+from tqdm import tqdm
+
+from mitigate.core import conf
+from mitigate.core.files import atomic_text
+from mitigate.evaluation.evaluate import ROWS, episodes, load
+
+BASE = "checkpoints/base"
+COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"
+
+
+@dataclass
+class Table2Config:
+    """Types of ``conf/table2.yaml``; the meaning of each entry is written there."""
+
+    out: str = "runs/table2"
+    rows: list[str] = field(default_factory=list)
+    columns: dict[str, Any] = field(default_factory=dict)
+    seeds: list[int] = field(default_factory=list)
+    split: str = "val_unseen"
+    episodes: int | None = None
+    severity: float = 0.6
+    train: list[str] = field(default_factory=list)
+    jobs: int = 2
+    walks: list[str] = field(default_factory=list)
+    paper: dict[str, Any] = field(default_factory=dict)
+
+
+ConfigStore.instance().store(name="table2_schema", node=Table2Config)
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One column under one seed, in a folder of its own."""
+
+    column: str
+    options: tuple[str, ...]
+    seed: int
+    folder: Path
+
+    @property
+    def weights(self) -> str:
+        """Where the agent's weights are, or will be."""
+        return str(self.folder / "run" / "agent") if self.options else BASE
+
+    @property
+    def evaluation(self) -> Path:
+        """The folder of the cell's result rows."""
+        return self.folder / "evaluation"
+
+    def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
+        """What makes the cell: ("train" or "evaluate", arguments after ``python -m``)."""
+        found = []
+        if self.options:
+            found.append(
+                (
+                    "train",
+                    [
+                        "mitigate.train",
+                        *self.options,
+                        *cfg.train,
+                        f"seed={self.seed}",
+                        f"folder={self.folder / 'run'}",
+                        "evaluation.enabled=false",
+                        "workers=0",  # a cell has one core
+                    ],
+                )
+            )
+        count = "null" if cfg.episodes is None else cfg.episodes
+        found.append(
+            (
+                "evaluate",
+                [
+                    "mitigate.evaluate",
+                    f"checkpoint={self.weights}",
+                    f"name={self.column}",
+                    f"seed={self.seed}",
+                    f"split={cfg.split}",
+                    f"episodes={count}",
+                    f"severity={cfg.severity}",
+                    f"out={self.evaluation}",
+                ],
+            )
+        )
+        return found
+
+
+def run(cfg: DictConfig) -> Path:
+    """Make all cells and the report; return the report's path.
+
+    With ``cfg.rows`` the report is made of those rows, and no cell is run. Raises ValueError for
+    settings that make no sense, and if a cell failed (after the others are done), with the end of
+    its log; FileNotFoundError for rows that are not there.
+    """
+    out = Path(cfg.out)
+    if cfg.rows:
+        return write_report(cfg, out, list(cfg.rows))
+    made = cells(cfg)
+    with ThreadPoolExecutor(cfg.jobs) as pool, tqdm(total=len(made), desc="cells") as bar:
+        failed = []
+        for cell, problem in zip(made, pool.map(lambda c: make(c, cfg, bar), made), strict=True):
+            if problem:
+                failed.append(f"{cell.column}, seed {cell.seed}: {problem}")
+    if len(failed) == len(made):
+        raise ValueError("Every cell failed. " + " ".join(failed))
+    problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
+    measured = [c.evaluation for c in made if (c.evaluation / ROWS).is_file()]
+    if failed and not measured:
+        raise ValueError(problem)
+    report = write_report(cfg, out, measured)
+    if failed:
+        raise ValueError(problem)
+    print("\n".join(f"wrote {path}" for path in draw_walks(cfg, out)), flush=True)
+    return report
+
+
+def cells(cfg: DictConfig) -> list[Cell]:
+    """All cells of the table, seed by seed, so that a partial table holds every column."""
+    if not cfg.seeds or not cfg.columns or cfg.jobs < 1:
+        raise ValueError(
+            f"columns, seeds ({list(cfg.seeds)}) and jobs ({cfg.jobs}) must not be empty or 0."
+        )
+    out = Path(cfg.out)
+    return [
+        Cell(
+            str(column),
+            tuple(options),
+            seed,
+            out / "cells" / f"{column}-seed{seed}",
+        )
+        for seed in cfg.seeds
+        for column, options in cfg.columns.items()
+    ]
+
+
+def make(cell: Cell, cfg: DictConfig, bar: tqdm) -> str | None:
+    """Train and evaluate one cell; return what went wrong, if anything did."""
+    cell.folder.mkdir(parents=True, exist_ok=True)
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"}
+    with open(cell.folder / LOG, "a", encoding="utf-8") as log:
+        for kind, arguments in cell.commands(cfg):
+            process = subprocess.Popen(
+                [sys.executable, "-m", *arguments],
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                env=environment,
+            )
+            _, status, used = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            _add_cost(cell.folder / COST, kind, used.ru_utime + used.ru_stime)
+            if process.returncode:
+                end = (cell.folder / LOG).read_text(encoding="utf-8").strip().splitlines()[-1:]
+                return f"{kind} ended with {process.returncode} ({' '.join(end)})"
+    bar.update()
+    return None
+
+
+_LOCK = threading.Lock()
+
+
+def _add_cost(path: Path, kind: str, seconds: float) -> None:
+    """Add CPU seconds to a cell's account, which counts all its runs."""
+    with _LOCK:
+        cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+        cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
+        with atomic_text(path) as file:
+            json.dump(cost, file)
+
+
+def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:
+    """Write ``table.md`` with its pictures, and ``table2.md`` with the paper beside it, from the
+    rows under ``paths``."""
+    from mitigate.evaluation import report, rows
+    from mitigate.evaluation.paper import beside
+    from mitigate.evaluation.sections import sections
+
+    found = rows.gather(paths)
+    report.write(found, out)
+    made = [s for s in sections(found) if (s.grid.split, s.severity) == (cfg.split, cfg.severity)]
+    if not made:
+        held = sorted({f"{row['split']} at {row['severity']:g}" for row in found})
+        raise ValueError(
+            f"There are no rows of {cfg.split} at severity {cfg.severity:g}, only of "
+            f"{', '.join(held)}. Set split= and severity=."
+        )
+    figures = {str(name): list(values) for name, values in cfg.paper.items()}
+    spent = {} if cfg.rows else costs(out)
+    with atomic_text(out / REPORT) as file:
+        file.write("\n".join(beside(section, figures, spent) for section in made))
+    print((out / REPORT).read_text(encoding="utf-8"), flush=True)
+    return out / REPORT
+
+
+def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
+    """Write pictures of episodes that the last of ``cfg.walks`` wins back for the first, by the
+    agents of the first seed; nothing if one of them has no cell."""
+    from mitigate.evaluation import rows
+    from mitigate.evaluation.trajectories import write_pictures
+
+    made = {c.column: c for c in cells(cfg) if c.seed == cfg.seeds[0] and c.column in cfg.walks}
+    if len(made) < len(cfg.walks) or not made:
+        return []
+    node = conf.load_config("evaluate")
+    agents: dict[str, Any] = {name: load(node.agent, made[name].weights) for name in cfg.walks}
+    chosen = episodes(node.env, cfg.split, cfg.episodes)
+    drawn = {episode.episode_id for episode in chosen}
+    found = [
+        row
+        for row in rows.gather([cell.evaluation for cell in made.values()])
+        if row["split"] == cfg.split
+        and row["severity"] in (0.0, cfg.severity)
+        and row["episode_id"] in drawn
+    ]
+    seed, size = cfg.seeds[0], node.env.size
+    return write_pictures(agents, chosen, found, out / "pictures", seed=seed, size=size)
+
+
+def costs(out: Path) -> dict[str, float]:
+    """Mean CPU minutes of training by column."""
+    spent: dict[str, list[float]] = {}
+    for path in sorted((out / "cells").glob(f"*/{COST}")):
+        seconds = json.loads(path.read_text(encoding="utf-8")).get("train")
+        if seconds is not None:
+            spent.setdefault(path.parent.name.rpartition("-seed")[0], []).append(seconds / 60)
+    return {column: sum(minutes) / len(minutes) for column, minutes in spent.items()}
+
+
+@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table2")
+def hydra_main(cfg: DictConfig) -> None:
+    """Hydra's entry."""
+    run(cfg)
+
+
+def main() -> None:
+    """Run from the command line."""
+    conf.main(hydra_main, "table2")

@@ -1,0 +1,258 @@
+"""Train an agent by a recipe: ``python -m mitigate.train recipe=da_per_episode severity=0.6``.
+
+A recipe config names one or more stages; one agent goes through them in order, each stage a
+:class:`~mitigate.training.trainer.Trainer` run in its own subfolder. The same command again goes
+on where the last one stopped. Afterwards the agent is evaluated before and after.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from hydra.core.hydra_config import HydraConfig
+from hydra.types import RunMode
+from hydra.utils import get_method
+from omegaconf import MISSING, DictConfig, OmegaConf
+from torch import nn
+
+from mitigate.core import checkpoint, conf, precision, seeding
+from mitigate.core.build import build, build_agent
+from mitigate.core.files import atomic_text
+from mitigate.core.progress import duration, say
+from mitigate.core.workers import cores
+from mitigate.evaluation.evaluate import EvaluationConfig, conditions, episodes, load
+from mitigate.training.batches import MOST, Workers
+from mitigate.training.trainer import Trainer
+
+LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
+EPISODE_COST = 0.12  # seconds of one core for an episode, on the machine of precision.REFERENCE
+EPISODES = 300  # of a list, where the estimate need not open it
+IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
+NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
+
+
+@dataclass
+class TrainerConfig:
+    """Settings of a Trainer; None means "as the stage says", or else the Trainer's default."""
+
+    steps: int | None = None
+    lr: float | None = None
+    weight_decay: float | None = None
+    warmup: int | None = None
+    schedule: str | None = None
+    grad_clip: float | None = None
+    log_every: int | None = None
+    save_every: int | None = None
+    eval_every: int | None = None
+    figure_every: int | None = None
+    keep: int | None = None
+    precision: str | None = None
+    device: str | None = None
+
+
+@dataclass
+class StageConfig:
+    """One stage: what to train (a ``_target_`` node), how, and what a step costs: seconds on the
+    machine of ``precision.REFERENCE``, for the estimate at the start alone."""
+
+    recipe: Any = MISSING
+    trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    cost: float | None = None
+
+
+@dataclass
+class TrainConfig:
+    """Types of ``conf/train.yaml``; the meaning of each entry is written there."""
+
+    name: str = MISSING
+    seed: int = 0
+    severity: float = 0.6
+    severity_depth: float | None = None
+    init: str | None = None
+    rollouts: int = 24
+    runs: str = "runs"
+    folder: str | None = None
+    workers: int | None = None
+    report: str = "mitigate.evaluation.evaluate.report_before_after"
+    agent: Any = MISSING
+    env: Any = MISSING
+    schedule: Any = MISSING
+    suite: Any = MISSING
+    stages: dict[str, StageConfig | None] = field(default_factory=dict)
+    trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    evaluation: EvaluationConfig = field(default_factory=EvaluationConfig)
+
+
+ConfigStore.instance().store(name="train_schema", node=TrainConfig)
+
+
+def run(cfg: DictConfig) -> Path:
+    """Train as ``cfg`` says, evaluate, and return the run's folder.
+
+    The folder holds ``config.yaml``, one subfolder for each stage, ``agent/model.safetensors``, and
+    what the evaluation writes. Raises ValueError or FileNotFoundError for a user's mistake.
+    """
+    check(cfg)
+    folder = Path(cfg.folder or default_folder(cfg))
+    say(plan(cfg, folder))
+    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
+    with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
+        for name, stage in cfg.stages.items():
+            if stage is not None:
+                stage.trainer.precision = train_stage(
+                    cfg, name, stage, agent, folder / name, workers
+                )
+    agent.cpu().eval()
+    checkpoint.save_agent(agent, folder / "agent")
+    with atomic_text(folder / "agent" / "config.yaml") as file:
+        file.write(OmegaConf.to_yaml({"agent": _plain(cfg.agent) | _settings_of(agent)}))
+    OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
+    if cfg.evaluation.enabled:
+        base = None
+        if cfg.init:
+            base = load(cfg.agent, cfg.init, cfg.seed)
+        get_method(cfg.report)(cfg, base, agent, folder)
+    print(f"done: {folder}", flush=True)
+    return folder
+
+
+def train_stage(
+    cfg: DictConfig,
+    name: str,
+    stage: DictConfig,
+    agent: nn.Module,
+    folder: Path,
+    workers: Workers | None = None,
+) -> str:
+    """Train ``agent`` in place through one stage, and return the precision it was trained in; a
+    finished stage is loaded from ``folder``."""
+    seeding.seed_everything(cfg.seed, "stage", name)
+    start = checkpoint.weights_sha(agent)
+    agent.requires_grad_(True)
+    recipe = build(stage.recipe, agent=agent)
+    identity = {
+        "agent": _plain(cfg.agent),
+        "start": start,
+        "recipe": dict(_identity(_plain(stage.recipe))),
+        **recipe.identity(),
+    }
+    if not checkpoint.checkpoints(folder):  # else the trainer compares first, and may refuse
+        with atomic_text(folder / IDENTITY) as file:
+            json.dump(identity, file, indent=2)
+    settings = {"name": name, "workers": workers, **_settings(cfg, stage)}
+    trainer = Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings)
+    trainer.fit()
+    return trainer.precision
+
+
+def plan(cfg: DictConfig, folder: Path) -> str:
+    """Return what a run is going to do and how long that will take here, for all of it."""
+    stages = {str(name): stage for name, stage in cfg.stages.items() if stage is not None}
+    steps = {name: _settings(cfg, stage).get("steps", 0) for name, stage in stages.items()}
+    seconds: list[float] = []
+    for name, stage in stages.items():
+        done = checkpoint.checkpoints(folder / name)
+        left = steps[name] - (checkpoint.steps_done(done[-1]) if done else 0)
+        seconds.append(math.nan if stage.cost is None else max(0, left) * stage.cost)
+    quick, agents = cfg.evaluation, 1 if cfg.init is None else 2
+    listed = "all" if quick.episodes is None else quick.episodes
+    parts = [f"{name} {count} steps" for name, count in steps.items()]
+    if quick.enabled and cfg.report == TrainConfig.report:
+        walked = agents * len(cfg.suite.conditions) * (quick.episodes or EPISODES)
+        seconds.append(walked * EPISODE_COST / (quick.workers or cores()))
+        parts.append(f"{agents} x {listed} episodes x {len(cfg.suite.conditions)} conditions")
+    total = sum(seconds) * precision.probe().fp32 / precision.REFERENCE
+    about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
+    return f"{cfg.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"
+
+
+def _settings(cfg: DictConfig, stage: DictConfig) -> dict[str, Any]:
+    return {**_set(stage.trainer), **_set(cfg.trainer)}
+
+
+def check(cfg: DictConfig) -> None:
+    """Raise ValueError for settings that are well typed but make no sense."""
+    for key in ("severity", "severity_depth"):
+        value = cfg[key]
+        if value is not None and not 0.0 <= value <= 1.0:
+            raise ValueError(
+                f"{key}={value:g} is out of range: a severity is a number from 0 (clean) to 1 "
+                f"(strongest). Write, for instance, {key}=0.6."
+            )
+    if cfg.workers is not None and cfg.workers < 0:
+        raise ValueError(
+            f"workers={cfg.workers}: give a number of processes that make batches, 0 for none "
+            f"beside this one, or null for one a core ({MOST} at most)."
+        )
+    if not any(cfg.stages.values()):
+        raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
+    for name, stage in cfg.stages.items():
+        if stage is not None and not OmegaConf.select(stage, "recipe._target_", default=None):
+            own = [n for n, s in cfg.stages.items() if s and OmegaConf.select(s, "recipe._target_")]
+            raise ValueError(
+                f"The recipe {cfg.name} has no stage {name!r}: its stages are {', '.join(own)}. "
+                "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
+            )
+    if cfg.evaluation.enabled:  # a mistake there must not show only after hours of training
+        count = cfg.evaluation.episodes
+        episodes(cfg.env, cfg.evaluation.split, count if count is None else min(count, 1))
+        conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+
+
+def default_folder(cfg: DictConfig, variant: str = "") -> str:
+    """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
+    depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
+    variant = re.sub(r"=(True|False)\b", lambda found: found[0].lower(), variant)  # sweeps' case
+    end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))  # Hydra splits at "="
+    if len(end) > LONGEST:
+        end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]
+    end = f"-{end}" if end else ""
+    return f"{cfg.runs}/{cfg.name}-s{cfg.severity:g}{depth}-seed{cfg.seed}{end}"
+
+
+def _settings_of(agent: nn.Module) -> dict[str, Any]:
+    """What an agent says that its config must hold, such as its vocabulary."""
+    return getattr(agent, "settings", dict)()
+
+
+def _set(node: DictConfig) -> dict[str, Any]:
+    return {str(name): value for name, value in node.items() if value is not None}
+
+
+def _plain(node: DictConfig) -> dict[str, Any]:
+    plain = OmegaConf.to_container(node, resolve=True)
+    assert isinstance(plain, dict)
+    return {str(name): value for name, value in plain.items()}
+
+
+def _identity(node: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    for name, value in node.items():
+        if name not in NOT_IDENTITY:
+            yield name, dict(_identity(value)) if isinstance(value, dict) else value
+
+
+@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="train")
+def hydra_main(cfg: DictConfig) -> None:
+    """Name the folder after the options that differ from the defaults, then run."""
+    if cfg.folder is None:
+        cfg.folder = default_folder(cfg, HydraConfig.get().job.override_dirname)
+    try:
+        run(cfg)
+    except Exception as error:
+        if HydraConfig.get().mode == RunMode.MULTIRUN:  # Hydra goes on and shows the first only
+            print(f"failed: {cfg.folder}: {error}", file=sys.stderr, flush=True)
+        raise
+
+
+def main() -> None:
+    """Run from the command line."""
+    conf.main(hydra_main, "train")

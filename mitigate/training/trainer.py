@@ -1,0 +1,315 @@
+"""The one training loop: step, log, evaluate, save, resume. It knows no recipe by name.
+
+Data order and noise are functions of (seed, step): the global generators are set anew at each
+step, so neither logging, nor evaluation, nor a kill and a resume changes the weights by one bit
+(on the same machine, with the same number of threads).
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor
+from torch.optim.lr_scheduler import LambdaLR
+
+from mitigate.core import checkpoint, seeding
+from mitigate.core.precision import choose, computing
+from mitigate.core.progress import say
+from mitigate.training.batches import Batches, Workers
+from mitigate.training.journal import Journal
+from mitigate.training.recipe import Recipe
+
+SCHEDULES = ("cosine", "constant", "linear")
+
+
+class LossNotFinite(ValueError):
+    """The loss or its gradient is NaN or infinite; the weights were not changed by that step."""
+
+
+class Trainer:
+    """Train ``recipe`` for ``steps`` updates of AdamW in ``folder``.
+
+    Args:
+        recipe: what to train; see :class:`mitigate.training.recipe.Recipe`.
+        steps: number of updates.
+        folder: holds ``step-*.pt`` and TensorBoard files; a checkpoint there is resumed.
+        lr, weight_decay: AdamW's, for groups that name none.
+        warmup: updates over which the learning rate rises from 0.
+        schedule: learning rate after warm-up: one of ``SCHEDULES``, ending at 0 unless constant.
+        grad_clip: largest global gradient norm; 0 turns clipping off.
+        log_every, save_every, eval_every, figure_every: in updates; 0 means never (a checkpoint is
+            always written at the end).
+        keep: how many checkpoints to keep.
+        seed: of data order and noise.
+        precision: one of ``precision.CHOICES``, of all that networks compute here; bf16 is
+            autocast, weights stay float32. A checkpoint keeps what "auto" was; a run that is
+            resumed goes on in that.
+        device: "auto" (CUDA if there), or any torch device.
+        workers: processes that make batches (``Recipe.jobs``); None makes them in this one, to
+            the same bits.
+        name: of the stage in what is printed; None: of the recipe's class.
+        config: JSON-able description of the run. A checkpoint made under another is refused.
+
+    Raises:
+        ValueError: for a setting out of its range.
+    """
+
+    def __init__(
+        self,
+        recipe: Recipe,
+        *,
+        steps: int,
+        folder: str | Path,
+        lr: float = 1e-3,
+        weight_decay: float = 0.01,
+        warmup: int = 0,
+        schedule: str = "cosine",
+        grad_clip: float = 1.0,
+        log_every: int = 50,
+        save_every: int = 1000,
+        eval_every: int = 0,
+        figure_every: int = 0,
+        keep: int = 2,
+        seed: int = 0,
+        precision: str = "auto",
+        device: str = "auto",
+        workers: Workers | None = None,
+        name: str | None = None,
+        config: dict[str, Any] | None = None,
+    ) -> None:
+        _check("trainer.schedule", schedule, SCHEDULES)
+        if steps < 1 or keep < 1 or lr <= 0:
+            raise ValueError(
+                f"trainer.steps ({steps}) and trainer.keep ({keep}) must be at least 1, "
+                f"trainer.lr ({lr}) above 0. Set them on the command line, e.g. trainer.steps=100."
+            )
+        if not grad_clip >= 0:
+            raise ValueError(
+                f"trainer.grad_clip ({grad_clip}) must be a norm above 0, or 0 to clip nothing."
+            )
+        self.folder, self.steps, self.seed, self.keep = Path(folder), steps, seed, keep
+        self.log_every, self.save_every = log_every, save_every
+        self.eval_every, self.figure_every = eval_every, figure_every
+        self.grad_clip = grad_clip
+        found = "cuda" if torch.cuda.is_available() else "cpu"
+        self.device = torch.device(found if device == "auto" else device)
+        self.asked, self.precision = precision, choose(precision, self.device)
+        self.workers = workers
+        self.recipe = recipe.to(self.device)
+        self.name = name or type(recipe).__name__
+        self.config = {
+            **(config or {}),
+            "trainer": {
+                "steps": steps,
+                "lr": lr,
+                "weight_decay": weight_decay,
+                "warmup": warmup,
+                "schedule": schedule,
+                "grad_clip": grad_clip,
+                "seed": seed,
+                "precision": self.precision,
+            },
+        }
+        groups = _trainable(recipe.parameter_groups(), self.name)
+        self.optimizer = torch.optim.AdamW(groups, lr=lr, weight_decay=weight_decay)
+        self.scheduler = LambdaLR(self.optimizer, lambda n: _rate(n, steps, warmup, schedule))
+        self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
+
+    def fit(self) -> Recipe:
+        """Train, from the newest checkpoint in the folder if there is one; return the recipe.
+
+        Raises LossNotFinite, and ValueError for a checkpoint that cannot be resumed.
+        """
+        start = self._resume()
+        if start >= self.steps:
+            say(f"{self.name}: already trained for {start} steps in {self.folder}")
+            return self.recipe
+        count = len(self.workers) if self.workers is not None else 0
+        say(
+            f"{self.name}: in {self.precision} on {self.device}, batches by {count or 'no'} workers"
+        )
+        with Journal(self.folder, total=self.steps, start=start, name=self.name) as journal:
+            if start:
+                journal.say(f"resumed at step {start} from {self.folder}")
+            self._train(start, journal)
+        return self.recipe
+
+    def _train(self, start: int, journal: Journal) -> None:
+        sums: dict[str, float] = defaultdict(float)
+        counted, since = 0, time.monotonic()
+        with computing(self.precision, self.device):
+            self.recipe.start()
+        self.recipe.train()
+        batches = Batches(self.recipe, self.workers, self.steps, self.precision, self.device)
+        for step in range(start, self.steps):
+            for name, value in self._step(step, batches).items():
+                sums[name] += value
+            counted, done = counted + 1, step + 1
+            journal.advance()
+            if self._due(self.log_every, done):
+                means = {name: total / counted for name, total in sums.items()}
+                pace = counted / max(1e-9, time.monotonic() - since)
+                journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
+                sums.clear()
+                counted, since = 0, time.monotonic()
+            if self._due(self.eval_every, done):
+                self._evaluate(done, journal)
+            if self._due(self.figure_every, done):
+                journal.figures(done, self.recipe.figures(done))
+            if done == self.steps or (self.save_every and done % self.save_every == 0):
+                self._save(done)
+
+    def _due(self, every: int, done: int) -> bool:
+        return bool(every) and (done % every == 0 or done == self.steps)
+
+    def _step(self, step: int, batches: Batches) -> dict[str, float]:
+        began = time.monotonic()
+        seeding.seed_everything(self.seed, "step", step)
+        batch = to_device(batches.batch(step), self.device)
+        waited = time.monotonic() - began
+        with computing(self.precision, self.device):
+            values = self.recipe(batch)
+        loss = values["loss"]
+        self.optimizer.zero_grad(set_to_none=True)
+        if torch.isfinite(loss):
+            loss.backward()
+        norm = torch.nn.utils.clip_grad_norm_(self.trained, self.grad_clip or math.inf)
+        if not (torch.isfinite(loss) and torch.isfinite(norm)):
+            raise LossNotFinite(self._diverged(step, loss, norm, batch))
+        self.optimizer.step()
+        self.scheduler.step()
+        values = {**values, "grad_norm": norm, "batch_s": waited}
+        return {name: float(torch.as_tensor(value).detach()) for name, value in values.items()}
+
+    def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
+        episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
+        kept = checkpoint.checkpoints(self.folder)
+        own = type(self.recipe).__name__
+        kind = "" if own == self.name else f" ({own})"
+        last = f"The last good checkpoint is {kept[-1]}" if kept else "No checkpoint was saved yet"
+        return (
+            f"Training stopped at step {step} of {self.name}{kind}: the loss is {loss.item():g} "
+            f"and its gradient norm {norm.item():g}, which must be finite. Episodes of that batch: "
+            f"{episodes}. {last}; the step was not applied. Lower trainer.lr, use "
+            "trainer.precision=fp32, or look at those episodes."
+        )
+
+    def _evaluate(self, done: int, journal: Journal) -> None:
+        self.recipe.eval()
+        with torch.no_grad():
+            values = self.recipe.evaluate(done)
+        self.recipe.train()
+        if values:
+            journal.scalars(done, {f"eval/{k}": v for k, v in values.items()}, line=False)
+            shown = "  ".join(f"{name} {value:.4g}" for name, value in values.items())
+            journal.say(f"evaluated at step {done}  {shown}")
+
+    def _lr(self) -> float:
+        return max(group["lr"] for group in self.optimizer.param_groups)
+
+    def _save(self, done: int) -> None:
+        state = {
+            "step": done,
+            "model": self.recipe.state_dict(),
+            "optimizer": self.optimizer.state_dict(),
+            "scheduler": self.scheduler.state_dict(),
+            "rng": seeding.global_state(),
+            "config": self.config,
+        }
+        checkpoint.save(self.folder, state, keep=self.keep)
+
+    def _keep_precision(self, config: dict[str, Any]) -> None:
+        """Go on in the precision of the checkpoint, if none was asked for by name."""
+        kept = config.get("trainer", {}).get("precision")
+        if self.asked != "auto" or kept in (None, self.precision):
+            return
+        cost = (
+            "which is up to 2 times slower here"
+            if kept == "fp32"
+            else "which this machine emulates, 3 to 10 times slower"
+        )
+        say(
+            f"{self.name}: goes on in {kept}, as it began, {cost} than {self.precision}. To train "
+            f"in {self.precision}, start anew in another folder (folder=...)."
+        )
+        self.precision = self.config["trainer"]["precision"] = kept
+
+    def _resume(self) -> int:
+        """Load the newest sound checkpoint, if any, and return the number of updates done."""
+        found = checkpoint.load_newest(self.folder)
+        if found is None:
+            return 0
+        path, state = found
+        self._keep_precision(state["config"])
+        different = differences(state["config"], self.config)
+        if different:
+            raise ValueError(
+                f"{self.folder} holds a run with other settings ({'; '.join(different[:6])}). "
+                "Use the old settings to resume it, choose another folder, or delete it."
+            )
+        try:
+            self.recipe.load_state_dict(state["model"])
+            self.optimizer.load_state_dict(state["optimizer"])
+        except (RuntimeError, ValueError, KeyError) as error:
+            raise ValueError(
+                f"The checkpoint {path} does not fit {self.name} as configured now: "
+                f"{str(error).splitlines()[0]} Choose another folder or delete it."
+            ) from error
+        self.scheduler.load_state_dict(state["scheduler"])
+        seeding.set_global_state(state["rng"])
+        return int(state["step"])
+
+
+def to_device(value: Any, device: torch.device) -> Any:
+    """Move what has ``to`` (tensors, batches of them) in nested dicts, lists and tuples to
+    ``device``; leave the rest."""
+    if hasattr(value, "to"):
+        return value.to(device)
+    if isinstance(value, dict):
+        return {name: to_device(item, device) for name, item in value.items()}
+    if isinstance(value, (list, tuple)) and not hasattr(value, "_fields"):
+        return type(value)(to_device(item, device) for item in value)
+    return value
+
+
+def differences(old: Any, new: Any, path: str = "") -> list[str]:
+    """Return one ``key: old -> new`` for each leaf in which two JSON-able configs differ."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        names = [*old, *(name for name in new if name not in old)]
+        return [
+            line
+            for name in names
+            for line in differences(old.get(name), new.get(name), f"{path}.{name}".lstrip("."))
+        ]
+    return [] if old == new else [f"{path}: {old} -> {new}"]
+
+
+def _check(name: str, value: str, allowed: tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise ValueError(f"{name}={value} is unknown; choose one of {', '.join(allowed)}.")
+
+
+def _trainable(groups: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+    """Drop frozen parameters and empty groups."""
+    kept = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
+    kept = [group for group in kept if group["params"]]
+    if not kept:
+        raise ValueError(
+            f"{name} has nothing to train: every parameter is frozen. Unfreeze a part of the agent."
+        )
+    return kept
+
+
+def _rate(step: int, steps: int, warmup: int, schedule: str) -> float:
+    """Return the factor on the learning rate of update ``step`` (from 0)."""
+    if step < warmup:
+        return (step + 1) / (warmup + 1)
+    if schedule == "constant":
+        return 1.0
+    share = min(1.0, (step - warmup) / max(1, steps - warmup))
+    return 1.0 - share if schedule == "linear" else 0.5 * (1.0 + math.cos(math.pi * share))

@@ -1,0 +1,120 @@
+"""One apartment from one seed: rooms, furniture, faces to draw, free space to walk."""
+
+from __future__ import annotations
+
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from mitigate.worlds.apartments.faces import FaceBuilder, Faces
+from mitigate.worlds.apartments.furniture import CATALOGUE
+from mitigate.worlds.apartments.layout import (
+    DOOR,
+    WALL,
+    Door,
+    Furniture,
+    Rect,
+    Room,
+    furnish,
+    name_rooms,
+    place_doors,
+    split_rooms,
+)
+from mitigate.worlds.apartments.navigation import CELL, FreeSpace
+from mitigate.worlds.apartments.palette import COLOUR_NAMES, split_of
+
+_ATTEMPTS = 60
+
+
+class Apartment:
+    """Rooms, doors and furniture of a seed; the split follows from the seed's range."""
+
+    def __init__(self, seed: int) -> None:
+        self.seed, self.split = int(seed), split_of(int(seed))
+        for attempt in range(_ATTEMPTS):
+            rng = np.random.default_rng([seed, attempt])
+            rects = split_rooms(rng)
+            self.doors: list[Door] = place_doors(rects, rng)
+            self.rooms: list[Room] = name_rooms(rects, rng)
+            self.furniture: list[Furniture] = furnish(self.rooms, self.doors, COLOUR_NAMES, rng)
+            self.space = FreeSpace(self._blocked())
+            if self._walkable():
+                return
+        raise RuntimeError(f"No walkable apartment for seed {seed} in {_ATTEMPTS} attempts.")
+
+    @property
+    def scene_id(self) -> str:
+        return f"apartments/{self.split}/{self.seed:06d}"
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Width and depth in metres."""
+        return max(r.rect[2] for r in self.rooms), max(r.rect[3] for r in self.rooms)
+
+    def room_at(self, xy: np.ndarray) -> int:
+        """Index of the room that holds a plan position; the nearest room outside all."""
+        for index, room in enumerate(self.rooms):
+            if room.holds(xy[0], xy[1]):
+                return index
+        centres = np.array(
+            [((r.rect[0] + r.rect[2]) / 2, (r.rect[1] + r.rect[3]) / 2) for r in self.rooms]
+        )
+        return int(np.argmin(((centres - xy) ** 2).sum(1)))
+
+    @cached_property
+    def faces(self) -> Faces:
+        return FaceBuilder(self).build()
+
+    def _walkable(self) -> bool:
+        """Every door's centre and the larger part of the free cells form one component."""
+        cells = [self.space.index[int(d.y / CELL), int(d.x / CELL)] for d in self.doors]
+        reached = {self.room_at(self.space.centre(c)) for c in range(0, len(self.space.cells), 7)}
+        return min(cells) >= 0 and self.space.share > 0.8 and len(reached) == len(self.rooms)
+
+    def _blocked(self) -> np.ndarray:
+        width, depth = self.extent
+        blocked = np.zeros((int(np.ceil(depth / CELL)), int(np.ceil(width / CELL))), bool)
+        for room in self.rooms:
+            x0, y0, x1, y1 = room.rect
+            for rect in ((x0, y0, x1, y0), (x0, y1, x1, y1), (x0, y0, x0, y1), (x1, y0, x1, y1)):
+                _fill(blocked, _pad(rect, WALL / 2), True)
+        for door in self.doors:
+            half = (WALL, DOOR / 2) if door.axis == 0 else (DOOR / 2, WALL)
+            _fill(
+                blocked,
+                (door.x - half[0], door.y - half[1], door.x + half[0], door.y + half[1]),
+                False,
+            )
+        for piece in self.furniture:
+            if CATALOGUE[piece.category].solid:
+                _fill(blocked, piece.rect, True)
+        return np.pad(blocked[1:-1, 1:-1], 1, constant_values=True)
+
+
+@lru_cache(maxsize=2048)
+def apartment_of(scene_id: str) -> Apartment:
+    """The apartment of a scene id "apartments/<split>/<seed>". Raises ``ValueError`` for others."""
+    parts = scene_id.split("/")
+    if len(parts) != 3 or parts[0] != "apartments" or not parts[2].isdigit():
+        raise ValueError(
+            f"Scene {scene_id!r} is not an apartment; expected 'apartments/<split>/<seed>'. "
+            "Episodes of Matterport3D scans need the Habitat simulator, which this environment is "
+            "not."
+        )
+    apartment = Apartment(int(parts[2]))
+    if apartment.split != parts[1]:
+        raise ValueError(
+            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}, "
+            f"not {parts[1]!r}."
+        )
+    return apartment
+
+
+def _pad(rect: Rect, by: float) -> Rect:
+    return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
+
+
+def _fill(grid: np.ndarray, rect: Rect, value: bool) -> None:
+    """Set the cells whose centres lie in the rectangle."""
+    x0, y0, x1, y1 = (max(0, int(round(v / CELL))) for v in rect)
+    grid[y0 : max(y1, y0 + 1), x0 : max(x1, x0 + 1)] = value

@@ -1,0 +1,118 @@
+"""Pictures of apartments: the panorama, its depth, the plan with paths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from mitigate.worlds.apartments.apartment import Apartment
+from mitigate.worlds.apartments.furniture import CATALOGUE
+from mitigate.worlds.apartments.layout import DOOR
+from mitigate.worlds.apartments.palette import palette
+
+_ROOMS = {
+    "bedroom": "#e8ecf8",
+    "bathroom": "#e0f4f4",
+    "kitchen": "#fbeedd",
+    "living room": "#eef6e4",
+    "office": "#f3e9f6",
+    "dining room": "#faf6da",
+}
+
+
+def draw_plan(axes: Any, apartment: Apartment) -> None:
+    """Rooms, doorways and furniture seen from above on matplotlib axes, metres."""
+    from matplotlib.patches import Rectangle
+
+    paint = palette(apartment.split)
+    for room in apartment.rooms:
+        x0, y0, x1, y1 = room.rect
+        axes.add_patch(
+            Rectangle((x0, y0), x1 - x0, y1 - y0, fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
+        )
+        axes.text(
+            (x0 + x1) / 2,
+            (y0 + y1) / 2,
+            room.kind,
+            ha="center",
+            va="center",
+            fontsize=10,
+            color="#333333",
+            zorder=4,
+        )
+    for door in apartment.doors:
+        half = (0.07, DOOR / 2) if door.axis == 0 else (DOOR / 2, 0.07)
+        axes.add_patch(
+            Rectangle(
+                (door.x - half[0], door.y - half[1]),
+                2 * half[0],
+                2 * half[1],
+                fc="white",
+                ec="none",
+                zorder=2,
+            )
+        )
+    for piece in apartment.furniture:
+        x0, y0, x1, y1 = piece.rect
+        colour = paint.colours[piece.colour].mean(0) if piece.colour else (0.62, 0.62, 0.64)
+        solid = CATALOGUE[piece.category].solid
+        axes.add_patch(
+            Rectangle(
+                (x0, y0),
+                x1 - x0,
+                max(y1 - y0, 0.05),
+                fc=colour,
+                ec="#222222",
+                lw=0.7,
+                alpha=0.9 if solid else 0.45,
+                zorder=3,
+            )
+        )
+        axes.text(
+            *piece.centre,
+            piece.category,
+            ha="center",
+            va="center",
+            fontsize=5,
+            zorder=5,
+            bbox={"fc": "white", "ec": "none", "alpha": 0.6, "pad": 0.4},
+        )
+    width, depth = apartment.extent
+    axes.set_xlim(-0.2, width + 0.2)
+    axes.set_ylim(-0.2, depth + 0.2)
+    axes.set_aspect("equal")
+    axes.axis("off")
+
+
+def draw_path(
+    axes: Any,
+    path: Sequence[np.ndarray] | np.ndarray,
+    colour: str,
+    label: str | None = None,
+    style: str = "-",
+) -> None:
+    """A walked or reference path (plan metres [n, 2]) on axes of ``draw_plan``."""
+    points = np.asarray(path)
+    axes.plot(points[:, 0], points[:, 1], style, color=colour, lw=2, label=label, zorder=6)
+    axes.plot(*points[0], "o", color=colour, ms=6, zorder=7)
+    axes.plot(*points[-1], "X", color=colour, ms=8, zorder=7)
+
+
+def side_by_side(views: np.ndarray) -> np.ndarray:
+    """Views [V, H, W, 3] uint8, or [V, H, W, 1] metres drawn as grey, as uint8 [H, V * W, 3]."""
+    if views.shape[-1] == 1:
+        grey = np.nan_to_num(views, posinf=0.0) / max(1e-6, float(np.nanmax(views)))
+        views = np.repeat((255 * grey.clip(0, 1)).astype(np.uint8), 3, axis=-1)
+    return np.concatenate(list(views), axis=1)
+
+
+def strip(
+    views: np.ndarray, order: Sequence[int] = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
+) -> np.ndarray:
+    """The 12 views side by side, each cropped to its own 30 degrees, ahead in the middle."""
+    size = views.shape[2]
+    half = int(round(np.tan(np.radians(15)) * size / 2))
+    low, high = size // 2 - half, size // 2 + half
+    return np.concatenate([views[k, :, low:high] for k in order], axis=1)

@@ -1,0 +1,220 @@
+"""The faces of an apartment: rectangles with colours, textures and baked shading."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mitigate.worlds.apartments.furniture import CATALOGUE, CATEGORIES
+from mitigate.worlds.apartments.layout import DOOR, HEIGHT, LINTEL, WALL, Door, Furniture
+from mitigate.worlds.apartments.palette import PATTERNS, Palette, palette
+
+if TYPE_CHECKING:
+    from mitigate.worlds.apartments.apartment import Apartment
+
+STRUCTURE = -1  # category of walls, floors, ceilings
+
+
+@dataclass(frozen=True)
+class Faces:
+    """Axis-aligned rectangles to draw. All arrays share their first dimension [n].
+
+    corners float32 [n, 4, 3] metres; plane float32 [n, 2] = (axis 0-2, coordinate in metres);
+    colour float32 [n, 4, 3] per corner; pattern int [n]; repeat float32 [n, 2] texture repeats;
+    category, room, instance int16 [n]: semantic label (``STRUCTURE`` = -1), indices of room and
+    furniture.
+    """
+
+    corners: np.ndarray
+    plane: np.ndarray
+    colour: np.ndarray
+    pattern: np.ndarray
+    repeat: np.ndarray
+    category: np.ndarray
+    room: np.ndarray
+    instance: np.ndarray
+
+
+class FaceBuilder:
+    """Collects the rectangles of an apartment with colours, textures and baked shading."""
+
+    _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}  # axis -> light from (-, +) side
+
+    def __init__(self, apartment: Apartment) -> None:
+        self.apartment = apartment
+        self.paint: Palette = palette(apartment.split)
+        self.rng = np.random.default_rng([apartment.seed, 77])
+        self.light = self.rng.uniform(0.88, 1.08, len(apartment.rooms))
+        self.kinds: list[tuple[int, ...]] = []
+        self.places: list[tuple[float, ...]] = []
+        self.colours: list[np.ndarray] = []
+
+    def build(self) -> Faces:
+        for index in range(len(self.apartment.rooms)):
+            self._room(index)
+        for door in self.apartment.doors:
+            self._frame(door)
+        for instance, piece in enumerate(self.apartment.furniture):
+            self._piece(instance, piece)
+        return self._faces()
+
+    def _faces(self) -> Faces:
+        """The arrays of all rectangles collected, made at one go."""
+        axis, sign, pattern, room, category, instance = np.array(self.kinds).T
+        at, tile, *span = np.array(self.places, float).T
+        low, high = np.stack(span[:2], 1), np.stack(span[2:], 1)
+        corners = _corners(axis, sign, at, low, high)
+        return Faces(
+            corners,
+            np.stack([axis, at], 1).astype(np.float32),
+            self._tints(axis, sign, room, corners),
+            pattern.astype(np.int16),
+            ((high - low) / tile[:, None]).astype(np.float32),
+            category.astype(np.int16),
+            room.astype(np.int16),
+            instance.astype(np.int16),
+        )
+
+    def _tints(
+        self, axis: np.ndarray, sign: np.ndarray, room: np.ndarray, corners: np.ndarray
+    ) -> np.ndarray:
+        """Colours by the light of side and room; upright faces are darker towards the floor."""
+        sides = np.array([self._SHADE[k] for k in range(3)])
+        shade = sides[axis, (sign > 0).astype(int)] * self.light[room]
+        dim = (0.82 + 0.18 * np.clip(corners[..., 2:] / 1.2, 0, 1)).astype(float)
+        dim[axis == 2] = 1.0
+        lit = np.array(self.colours)[:, None] * shade[:, None, None] * dim
+        return np.clip(lit, 0, 1).astype(np.float32)
+
+    def _add(
+        self,
+        axis: int,
+        sign: int,
+        at: float,
+        low: tuple[float, float],
+        high: tuple[float, float],
+        colour: np.ndarray,
+        pattern: int,
+        room: int,
+        category: int = STRUCTURE,
+        instance: int = -1,
+        tile: float = 1.0,
+    ) -> None:
+        """One rectangle on plane ``axis = at`` seen from side ``sign``; low/high: other axes."""
+        self.kinds.append((axis, sign, pattern, room, category, instance))
+        self.places.append((at, tile, *low, *high))
+        self.colours.append(colour)
+
+    def _room(self, index: int) -> None:
+        room, rng, paint = self.apartment.rooms[index], self.rng, self.paint
+        x0, y0, x1, y1 = room.rect
+        walls, floors = (
+            paint.walls[rng.integers(len(paint.walls))],
+            paint.floors[rng.integers(len(paint.floors))],
+        )
+        wet = room.kind in ("bathroom", "kitchen")
+        wall_pattern = PATTERNS.index(
+            str(rng.choice(["tiles", "plain"] if wet else ["plain", "noise", "stripes"]))
+        )
+        floor_pattern = PATTERNS.index(
+            str(rng.choice(["tiles", "checks"] if wet else ["planks", "noise", "speckle"]))
+        )
+        self._add(2, 1, 0.0, (x0, y0), (x1, y1), floors, floor_pattern, index)
+        self._add(2, -1, HEIGHT, (x0, y0), (x1, y1), np.ones(3), PATTERNS.index("plain"), index)
+        inset = WALL / 2
+        for axis, sign, at in (
+            (0, 1, x0 + inset),
+            (0, -1, x1 - inset),
+            (1, 1, y0 + inset),
+            (1, -1, y1 - inset),
+        ):
+            low, high = (y0, y1) if axis == 0 else (x0, x1)
+            gaps = sorted(self._gaps(index, axis, at))
+            edges = [low, *(e for gap in gaps for e in gap), high]
+            for a, b in zip(edges[::2], edges[1::2], strict=True):
+                self._add(axis, sign, at, (a, 0.0), (b, HEIGHT), walls, wall_pattern, index)
+            for a, b in gaps:
+                self._add(axis, sign, at, (a, LINTEL), (b, HEIGHT), walls, wall_pattern, index)
+
+    def _gaps(self, room: int, axis: int, at: float) -> list[tuple[float, float]]:
+        doors = [d for d in self.apartment.doors if room in d.rooms and d.axis == axis]
+        near = [d for d in doors if abs((d.x, d.y)[axis] - at) < WALL]
+        return [((d.x, d.y)[1 - axis] - DOOR / 2, (d.x, d.y)[1 - axis] + DOOR / 2) for d in near]
+
+    def _frame(self, door: Door) -> None:
+        wood, plain = np.array((0.50, 0.36, 0.24)), PATTERNS.index("plain")
+        centre, along = (door.x, door.y)[door.axis], (door.x, door.y)[1 - door.axis]
+        thick = (centre - WALL / 2, centre + WALL / 2)
+        for sign, at in ((1, along - DOOR / 2), (-1, along + DOOR / 2)):
+            self._add(
+                1 - door.axis,
+                sign,
+                at,
+                (thick[0], 0.0),
+                (thick[1], LINTEL),
+                wood,
+                plain,
+                door.rooms[0],
+            )
+        low, high = [thick[0], along - DOOR / 2], [thick[1], along + DOOR / 2]
+        order = (0, 1) if door.axis == 0 else (1, 0)
+        self._add(
+            2,
+            -1,
+            LINTEL,
+            (low[order[0]], low[order[1]]),
+            (high[order[0]], high[order[1]]),
+            wood,
+            plain,
+            door.rooms[0],
+        )
+
+    def _piece(self, instance: int, piece: Furniture) -> None:
+        category = CATALOGUE[piece.category]
+        label = CATEGORIES.index(piece.category)
+        variants = self.paint.colours[piece.colour] if piece.colour else None
+        main = variants[self.rng.integers(len(variants))] if variants is not None else np.ones(3)
+        pattern = PATTERNS.index("noise" if self.rng.random() < 0.5 else "plain")
+        for part in category.parts:
+            low, high = _turned(part, piece, category.width, category.depth)
+            colour = main if part[6] == "main" else np.array(part[6])
+            for axis in range(3):
+                others = [k for k in range(3) if k != axis]
+                span = (low[others[0]], low[others[1]]), (high[others[0]], high[others[1]])
+                for sign, at in ((-1, low[axis]), (1, high[axis])):
+                    if axis == 2 and sign < 0 and low[2] < 0.3:
+                        continue
+                    self._add(axis, sign, at, *span, colour, pattern, piece.room, label, instance)
+
+
+def _corners(
+    axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> np.ndarray:
+    """Corners float32 [n, 4, 3] of rectangles on planes ``axis = at``, in the order in which each
+    is seen from its side ``sign``. low, high: [n, 2] on the other two axes."""
+    n = len(axis)
+    others = np.array([[1, 2], [0, 2], [0, 1]])[axis]
+    corners, every = np.zeros((n, 4, 3), np.float32), np.arange(n)
+    corners[every, :, axis] = at[:, None]
+    corners[every, :, others[:, 0]] = np.stack([low[:, 0], high[:, 0], high[:, 0], low[:, 0]], 1)
+    corners[every, :, others[:, 1]] = np.stack([low[:, 1], low[:, 1], high[:, 1], high[:, 1]], 1)
+    flipped = (sign > 0) == (axis == 1)
+    corners[flipped] = corners[flipped, ::-1]
+    return corners
+
+
+def _turned(part: tuple, piece: Furniture, width: float, depth: float) -> tuple[tuple, tuple]:
+    """World box of a part. Turn 0 backs on low y, 1 on high x, 2 on high y, 3 on low x."""
+    px0, px1, py0, py1, z0, z1, _ = part
+    x0, y0, x1, y1 = piece.rect
+    if piece.turn == 0:
+        box = (x0 + px0, y0 + py0, x0 + px1, y0 + py1)
+    elif piece.turn == 2:
+        box = (x1 - px1, y1 - py1, x1 - px0, y1 - py0)
+    elif piece.turn == 1:
+        box = (x1 - py1, y0 + px0, x1 - py0, y0 + px1)
+    else:
+        box = (x0 + py0, y1 - px1, x0 + py1, y1 - px0)
+    return (box[0], box[1], z0), (box[2], box[3], z1)

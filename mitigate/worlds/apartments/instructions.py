@@ -1,0 +1,220 @@
+"""Language: what a person would say about a path, in templates that no two splits share.
+
+Every split owns its phrasings (``TEMPLATES``); the words of the validation splits all occur in the
+training phrasings, so an agent meets new sentences, not new words.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mitigate.worlds.apartments.furniture import CATALOGUE
+
+if TYPE_CHECKING:  # the words are used where there is no simulator
+    from mitigate.worlds.apartments.apartment import Apartment
+
+TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
+    "train": {
+        "ahead": ("walk straight ahead", "go straight", "head forward",
+            "keep going straight ahead", "move forward"),
+        "left": ("turn left", "take a left", "go to your left", "make a turn to the left"),
+        "right": ("turn right", "take a right", "go to your right", "make a turn to the right"),
+        "around": ("turn around", "make a full turn and go back", "turn back the other way"),
+        "door": ("go through the doorway", "walk through the door",
+            "leave the {here} through the doorway", "exit the {here}", "pass through the door"),
+        "enter": ("enter the {room}", "go into the {room}", "walk into the {room}",
+            "head through the door into the {room}", "continue to the {room}"),
+        "past": ("walk past the {thing}", "go past the {thing}", "pass the {thing}",
+            "keep going past the {thing}", "move along the {thing}"),
+        "pass_left": ("walk past the {thing} on your left", "keep the {thing} on the left",
+            "pass the {thing} on your left side"),
+        "pass_right": ("walk past the {thing} on your right", "keep the {thing} on the right",
+            "pass the {thing} on your right side"),
+        "stop": ("stop next to the {thing}", "stop in front of the {thing}", "wait by the {thing}",
+            "stop at the {thing}", "wait near the {thing}", "walk to the {thing} and stop",
+            "go to the {thing} and wait there", "you are done when you reach the {thing}"),
+        "stop_room": ("stop next to the {thing} in the {room}",
+            "wait by the {thing} in the {room}", "go to the {thing} in the {room} and stop there",
+            "stop at the {thing} of the {room}", "in the {room} walk to the {thing} and wait"),
+        "find": ("find a {thing}", "go to a {thing}", "look for a {thing} and stop next to it",
+            "walk to the {thing} and wait"),
+        "join": (" and ", " , then ", ". ", ". then ", " , "),
+    },
+    "val_seen": {
+        "ahead": ("go straight ahead", "walk forward"),
+        "left": ("make a left", "turn to your left"),
+        "right": ("make a right", "turn to your right"),
+        "around": ("turn back", "go back the other way"),
+        "door": ("go through the door", "exit through the doorway"),
+        "enter": ("head into the {room}", "pass into the {room}"),
+        "past": ("head past the {thing}", "walk along the {thing}"),
+        "pass_left": ("go past the {thing} on the left",),
+        "pass_right": ("go past the {thing} on the right",),
+        "stop": ("wait at the {thing}", "go to the {thing} and stop", "stop near the {thing}"),
+        "stop_room": ("stop near the {thing} in the {room}",
+            "walk to the {thing} in the {room} and wait"),
+        "find": ("look for a {thing}", "go to the {thing} and stop"),
+        "join": (", then ", ". and then "),
+    },
+    "val_unseen": {
+        "ahead": ("continue straight", "move straight ahead"),
+        "left": ("head left", "take a turn to your left"),
+        "right": ("head right", "take a turn to your right"),
+        "around": ("turn all the way around", "make a turn and go back"),
+        "door": ("leave through the door", "head through the doorway"),
+        "enter": ("move into the {room}", "go through to the {room}"),
+        "past": ("continue past the {thing}", "go along the {thing}"),
+        "pass_left": ("move past the {thing} on your left",),
+        "pass_right": ("move past the {thing} on your right",),
+        "stop": ("stop by the {thing}", "walk up to the {thing} and wait there",
+            "wait in front of the {thing}"),
+        "stop_room": ("in the {room} stop by the {thing}", "wait near the {thing} of the {room}"),
+        "find": ("walk to a {thing} and stop", "look for the {thing} and wait next to it"),
+        "join": (" and then ", ". next , "),
+    },
+}  # fmt: skip
+# words that only validation joins or adverbs use are put before training sentences now and then
+OPENERS = ("", "", "", "", "next , ", "all the way , ", "up , ")
+_NEAR_PATH = 1.3  # metres from the path to a landmark that is worth naming
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happens ``at`` metres along a path."""
+
+    at: float
+    kind: str
+    room: int = -1
+    thing: int = -1
+
+
+def name_of(apartment: Apartment, instance: int, coloured: bool = True) -> str:
+    """What a person calls a piece of furniture, for example "red sofa"."""
+    piece = apartment.furniture[instance]
+    return f"{piece.colour} {piece.category}" if coloured and piece.colour else piece.category
+
+
+def describe(
+    apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
+) -> str:
+    """An instruction for a path (float [n, 2], metres) that ends beside furniture ``target``."""
+    clauses = [
+        _clause(apartment, event, rng) for event in _events(apartment, path, heading, target, rng)
+    ]
+    words = TEMPLATES[apartment.split]
+    final = "stop_room" if rng.random() < 0.6 else "stop"
+    room = apartment.rooms[apartment.furniture[target].room].kind
+    clauses.append(_pick(words[final], rng).format(thing=name_of(apartment, target), room=room))
+    opener = str(rng.choice(OPENERS)) if apartment.split == "train" else ""
+    return _sentence(opener, clauses, words["join"], rng)
+
+
+def find(apartment: Apartment, category: str, rng: np.random.Generator) -> str:
+    """An object-goal instruction: "find a <category>"."""
+    text = _pick(TEMPLATES[apartment.split]["find"], rng).format(thing=category)
+    return text[0].upper() + text[1:] + "."
+
+
+def _pick(options: tuple[str, ...], rng: np.random.Generator) -> str:
+    return options[int(rng.integers(len(options)))]
+
+
+def _sentence(
+    opener: str, clauses: list[str], joins: tuple[str, ...], rng: np.random.Generator
+) -> str:
+    text = opener + clauses[0]
+    for clause in clauses[1:]:
+        text += _pick(joins, rng) + clause
+    text = text.replace(" ,", ",")
+    sentences = [part.strip() for part in text.split(". ")]
+    return ". ".join(part[0].upper() + part[1:] for part in sentences if part) + "."
+
+
+def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str:
+    words = TEMPLATES[apartment.split]
+    if event.kind in ("ahead", "left", "right", "around"):
+        return _pick(words[event.kind], rng)
+    if event.kind in ("door", "enter"):
+        here = apartment.rooms[event.thing].kind
+        return _pick(words[event.kind], rng).format(
+            room=apartment.rooms[event.room].kind, here=here
+        )
+    return _pick(words[event.kind], rng).format(thing=name_of(apartment, event.thing))
+
+
+def _events(
+    apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
+) -> list[Event]:
+    """First turn, room changes with the turn before them, up to two landmarks, in order."""
+    steps = np.hypot(*np.diff(path, axis=0).T)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    events = [Event(0.0, turn_word(_direction(path, along, 0.0), heading))]
+    rooms = [apartment.room_at(p) for p in path]
+    changes = [i for i in range(1, len(path)) if rooms[i] != rooms[i - 1]]
+    for i in changes:
+        before, after = _direction(path, along, along[i] - 1.6), _direction(path, along, along[i])
+        turn = turn_word(after, before)
+        if turn in ("left", "right") and along[i] > 1.6:
+            events.append(Event(along[i] - 0.1, turn))
+        kind = "enter" if rng.random() < 0.7 else "door"
+        events.append(Event(along[i], kind, rooms[i], rooms[i - 1]))
+    events += _landmarks(apartment, path, along, target, rng)
+    return sorted(events, key=lambda event: event.at)
+
+
+def _direction(path: np.ndarray, along: np.ndarray, at: float, span: float = 1.2) -> float:
+    """Heading (radians) from the point ``at`` metres along the path to ``span`` metres further."""
+    i = int(np.searchsorted(along, max(at, 0.0)))
+    j = int(np.searchsorted(along, max(at, 0.0) + span))
+    i, j = min(i, len(path) - 2), min(max(j, i + 1), len(path) - 1)
+    dx, dy = path[j] - path[i]
+    return float(np.arctan2(-dx, dy))
+
+
+def turn_word(to: float, heading: float) -> str:
+    """The word for turning from one heading to another (counter-clockwise radians)."""
+    angle = np.degrees((to - heading + np.pi) % (2 * np.pi) - np.pi)
+    if abs(angle) < 35:
+        return "ahead"
+    if abs(angle) > 135:
+        return "around"
+    return "left" if angle > 0 else "right"
+
+
+def _landmarks(
+    apartment: Apartment, path: np.ndarray, along: np.ndarray, target: int, rng: np.random.Generator
+) -> list[Event]:
+    found = []
+    for instance, piece in enumerate(apartment.furniture):
+        if instance == target:
+            continue
+        x0, y0, x1, y1 = piece.rect
+        gap = np.hypot(
+            np.maximum(np.maximum(x0 - path[:, 0], path[:, 0] - x1), 0),
+            np.maximum(np.maximum(y0 - path[:, 1], path[:, 1] - y1), 0),
+        )
+        i = int(gap.argmin())
+        same_room = apartment.room_at(path[i]) == piece.room
+        if gap[i] < _NEAR_PATH and same_room and 0.8 < along[i] < along[-1] - 1.5:
+            found.append(
+                Event(
+                    float(along[i]),
+                    _side(path, i, piece.centre, rng)
+                    if CATALOGUE[piece.category].solid
+                    else "past",
+                    thing=instance,
+                )
+            )
+    keep = rng.permutation(len(found))[: int(rng.integers(0, 3))]
+    return [found[k] for k in keep]
+
+
+def _side(path: np.ndarray, i: int, centre: tuple[float, float], rng: np.random.Generator) -> str:
+    if rng.random() < 0.5:
+        return "past"
+    forward = path[min(i + 4, len(path) - 1)] - path[max(i - 4, 0)]
+    offset = np.array(centre) - path[i]
+    return "pass_left" if forward[0] * offset[1] - forward[1] * offset[0] > 0 else "pass_right"

@@ -1,0 +1,117 @@
+"""What a panorama shows, by the semantic ids that the renderer gives for free.
+
+Labels are of the central 36 degrees of each view, so that those of neighbouring views, 30 degrees
+apart, hardly overlap.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from mitigate.core.observation import VIEWS
+from mitigate.worlds.apartments.apartment import Apartment
+from mitigate.worlds.apartments.furniture import CATEGORIES, ROOM_KINDS
+from mitigate.worlds.apartments.navigation import FreeSpace
+from mitigate.worlds.apartments.palette import COLOUR_NAMES
+
+# visible things, things nearer than 2 m, colours of coloured things, kinds of the rooms seen
+CONCEPTS = (
+    *CATEGORIES,
+    *(f"near {name}" for name in CATEGORIES),
+    *COLOUR_NAMES,
+    *ROOM_KINDS,
+)
+_HALF_ANGLE = np.radians(18.0)
+ANGLES, DISTANCES, STEP = 120, 12, 0.25  # of the free directions: bins, bins, metres a bin
+YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)  # to the right
+
+
+def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
+    """Where one can go straight from a pose: float32 [120, 12] in {0, 1}, by angle to the right of
+    the heading (bin ``10 k + i`` at ``30 k - 15 + 3 (i + 0.5)`` degrees) and distance in steps of
+    0.25 m."""
+    fine = space.rays(xy, 4 * ANGLES, STEP * DISTANCES)
+    world = (np.round((heading - YAWS) / (2 * np.pi) * 4 * ANGLES).astype(int)) % (4 * ANGLES)
+    return (fine[world][:, None] >= STEP * (np.arange(DISTANCES) + 1) - 1e-3).astype(np.float32)
+
+
+def band(size: int) -> tuple[int, int]:
+    """First and last + 1 column of the central 36 degrees of a 90 degree view."""
+    half = np.tan(_HALF_ANGLE) * size / 2
+    return int(round(size / 2 - half)), int(round(size / 2 + half))
+
+
+def view_labels(
+    apartment: Apartment, ids: np.ndarray, depth: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Labels of a panorama from its face ids.
+
+    Returns concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1} and seen bool ``[12, furniture]``:
+    which pieces of furniture show in the central band of each view.
+    """
+    low, high = band(ids.shape[2])
+    instance, room, category, colour, kind = _tables(apartment.scene_id, apartment)
+    return _label(
+        ids,
+        depth[..., 0],
+        low,
+        high,
+        instance,
+        room,
+        category,
+        colour,
+        kind,
+        len(CATEGORIES),
+        len(COLOUR_NAMES),
+        len(CONCEPTS),
+    )
+
+
+@lru_cache(maxsize=1024)
+def _tables(scene_id: str, apartment: Apartment) -> tuple[np.ndarray, ...]:
+    furniture = apartment.furniture
+    category = np.array([CATEGORIES.index(p.category) for p in furniture], np.int64)
+    colour = np.array(
+        [COLOUR_NAMES.index(p.colour) if p.colour else -1 for p in furniture], np.int64
+    )
+    kind = np.array([ROOM_KINDS.index(r.kind) for r in apartment.rooms], np.int64)
+    faces = apartment.faces
+    return faces.instance.astype(np.int64), faces.room.astype(np.int64), category, colour, kind
+
+
+@njit(cache=True)
+def _label(
+    ids, depth, low, high, instance, room, category, colour, kind, things, colours, concepts
+):
+    views, rows = ids.shape[0], ids.shape[1]
+    out = np.zeros((views, concepts), np.float32)
+    seen = np.zeros((views, category.shape[0]), np.bool_)
+    total = (high - low) * rows
+    for v in range(views):
+        count, close = np.zeros(category.shape[0]), np.zeros(category.shape[0])
+        rooms = np.zeros(kind.shape[0])
+        for i in range(rows):
+            for j in range(low, high):
+                face = ids[v, i, j]
+                if face < 0 or face >= room.shape[0]:
+                    continue
+                rooms[room[face]] += 1
+                thing = instance[face]
+                if thing >= 0:
+                    count[thing] += 1
+                    close[thing] += depth[v, i, j] < 2.0
+        for thing in range(category.shape[0]):
+            if count[thing] >= 0.010 * total:
+                seen[v, thing] = True
+                out[v, category[thing]] = 1
+                if close[thing] > 0.5 * count[thing]:
+                    out[v, things + category[thing]] = 1
+                if colour[thing] >= 0:
+                    out[v, 2 * things + colour[thing]] = 1
+        for r in range(kind.shape[0]):
+            if rooms[r] >= 0.05 * total:
+                out[v, 2 * things + colours + kind[r]] = 1
+    return out, seen

@@ -1,0 +1,186 @@
+"""Floor plans: recursive splits into rooms, doorways, room kinds, furniture placement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mitigate.worlds.apartments.furniture import CATALOGUE, ROOMS, Category
+
+WALL = 0.12  # wall thickness, metres
+DOOR = 1.0  # clear doorway width, metres
+HEIGHT = 2.5  # ceiling, metres
+LINTEL = 2.05  # top of a doorway, metres
+_MIN_SIDE = 2.7
+Rect = tuple[float, float, float, float]  # x0, y0, x1, y1
+
+
+@dataclass(frozen=True)
+class Room:
+    rect: Rect
+    kind: str
+
+    def holds(self, x: float, y: float) -> bool:
+        x0, y0, x1, y1 = self.rect
+        return x0 <= x < x1 and y0 <= y < y1
+
+
+@dataclass(frozen=True)
+class Door:
+    """A doorway centred on (x, y) between two rooms; ``axis``: of the wall's normal, 0 x, 1 y."""
+
+    x: float
+    y: float
+    axis: int
+    rooms: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Furniture:
+    """An object against side ``turn`` (0: low y, 1: high x, 2: high y, 3: low x) of a room."""
+
+    category: str
+    colour: str | None
+    rect: Rect
+    turn: int
+    room: int
+
+    @property
+    def centre(self) -> tuple[float, float]:
+        x0, y0, x1, y1 = self.rect
+        return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def split_rooms(rng: np.random.Generator) -> list[Rect]:
+    """4 to 8 rectangles from recursive splits of a 9-12 m by 8-10 m outline."""
+    outline = (0.0, 0.0, float(rng.uniform(9.0, 12.0)), float(rng.uniform(8.0, 10.0)))
+    rects, target = [outline], int(rng.integers(4, 9))
+    while len(rects) < target:
+        areas = [(r[2] - r[0]) * (r[3] - r[1]) for r in rects]
+        order = np.argsort(areas)[::-1]
+        index = next((int(i) for i in order if max(_sides(rects[i])) >= 2 * _MIN_SIDE), None)
+        if index is None:
+            break
+        rects[index : index + 1] = _cut(rects[index], rng)
+    return rects
+
+
+def _sides(rect: Rect) -> tuple[float, float]:
+    return rect[2] - rect[0], rect[3] - rect[1]
+
+
+def _cut(rect: Rect, rng: np.random.Generator) -> list[Rect]:
+    x0, y0, x1, y1 = rect
+    width, depth = _sides(rect)
+    if width >= depth:
+        x = float(rng.uniform(x0 + max(_MIN_SIDE, 0.38 * width), x1 - max(_MIN_SIDE, 0.38 * width)))
+        return [(x0, y0, x, y1), (x, y0, x1, y1)]
+    y = float(rng.uniform(y0 + max(_MIN_SIDE, 0.38 * depth), y1 - max(_MIN_SIDE, 0.38 * depth)))
+    return [(x0, y0, x1, y), (x0, y, x1, y1)]
+
+
+def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
+    """(axis of the normal, wall coordinate, low, high) of the border of two rooms, if any."""
+    for axis in (0, 1):
+        other = 1 - axis
+        for near, far in ((a, b), (b, a)):
+            if abs(near[2 + axis] - far[axis]) < 1e-9:
+                low, high = max(a[other], b[other]), min(a[2 + other], b[2 + other])
+                if high - low > DOOR + 0.5:
+                    return axis, near[2 + axis], low, high
+    return None
+
+
+def place_doors(rects: list[Rect], rng: np.random.Generator) -> list[Door]:
+    """A spanning tree of doorways in random order, plus a loop with probability 0.3 a wall."""
+    pairs = [(i, j) for i in range(len(rects)) for j in range(i) if shared_wall(rects[i], rects[j])]
+    rng.shuffle(pairs)
+    group = list(range(len(rects)))
+    doors = []
+    for i, j in pairs:
+        joined = group[i] == group[j]
+        if joined and rng.random() > 0.3:
+            continue
+        group = [group[j] if g == group[i] else g for g in group]
+        axis, at, low, high = shared_wall(rects[i], rects[j])  # type: ignore[misc]
+        along = float(rng.uniform(low + 0.25 + DOOR / 2, high - 0.25 - DOOR / 2))
+        x, y = (at, along) if axis == 0 else (along, at)
+        doors.append(Door(x, y, axis, (int(i), int(j))))
+    return doors
+
+
+def name_rooms(rects: list[Rect], rng: np.random.Generator) -> list[Room]:
+    """Kinds: one of each as far as they go, then a second bedroom, bathroom or office."""
+    kinds = list(ROOMS)
+    rng.shuffle(kinds)
+    kinds += [str(kind) for kind in rng.permutation(["bedroom", "bathroom", "office"])]
+    return [Room(rect, kind) for rect, kind in zip(rects, kinds, strict=False)]
+
+
+def furnish(
+    rooms: list[Room], doors: list[Door], colours: tuple[str, ...], rng: np.random.Generator
+) -> list[Furniture]:
+    """Furniture of every room: its signature pieces first, then a few of the others."""
+    placed: list[Furniture] = []
+    for index, room in enumerate(rooms):
+        always, choice = ROOMS[room.kind]
+        extra = [str(c) for c in rng.permutation(choice)[: int(rng.integers(2, 5))]]
+        taken = [_door_clearance(door) for door in doors if index in door.rooms]
+        for name in [*always, *extra]:
+            piece = _place(CATALOGUE[name], room, index, taken, colours, rng)
+            if piece is None:
+                continue
+            placed.append(piece)
+            if CATALOGUE[name].solid:
+                taken.append(_grow(piece.rect, 0.05))
+    return placed
+
+
+def _place(
+    category: Category,
+    room: Room,
+    index: int,
+    taken: list[Rect],
+    colours: tuple[str, ...],
+    rng: np.random.Generator,
+) -> Furniture | None:
+    colour = str(rng.choice(colours)) if category.coloured else None
+    x0, y0, x1, y1 = (
+        room.rect[0] + WALL / 2,
+        room.rect[1] + WALL / 2,
+        room.rect[2] - WALL / 2,
+        room.rect[3] - WALL / 2,
+    )
+    for _ in range(24):
+        turn = int(rng.integers(4))
+        w, d = (
+            (category.width, category.depth) if turn % 2 == 0 else (category.depth, category.width)
+        )
+        if w > x1 - x0 - 0.1 or d > y1 - y0 - 0.1:
+            continue
+        if category.name in ("rug", "table"):
+            x, y = (
+                (x0 + x1 - w) / 2 + rng.uniform(-0.3, 0.3),
+                (y0 + y1 - d) / 2 + rng.uniform(-0.3, 0.3),
+            )
+        else:
+            along_x, along_y = rng.uniform(x0, x1 - w), rng.uniform(y0, y1 - d)
+            x, y = [(along_x, y0), (x1 - w, along_y), (along_x, y1 - d), (x0, along_y)][turn]
+        rect = (float(x), float(y), float(x + w), float(y + d))
+        if not any(_overlap(rect, other) for other in (taken if category.name != "rug" else [])):
+            return Furniture(category.name, colour, rect, turn, index)
+    return None
+
+
+def _door_clearance(door: Door) -> Rect:
+    half = (0.9, 0.65) if door.axis == 0 else (0.65, 0.9)
+    return door.x - half[0], door.y - half[1], door.x + half[0], door.y + half[1]
+
+
+def _grow(rect: Rect, by: float) -> Rect:
+    return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by
+
+
+def _overlap(a: Rect, b: Rect) -> bool:
+    return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]

@@ -1,0 +1,284 @@
+"""Panda3D renderer: one off-screen buffer holds the 12 RGB views and the 12 face-id views.
+
+Software pipe by default (``p3tinydisplay``: no GPU, GL or display); ``p3headlessgl`` on a GPU
+machine. The software pipe cannot read depth back, so a second pass draws every planar face in a
+flat id colour: the id gives the semantic label, and ray-plane intersection gives exact metric
+depth.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections import OrderedDict
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
+from mitigate.worlds.apartments.apartment import Apartment
+from mitigate.worlds.apartments.faces import Faces
+from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
+
+EYE = 1.25  # camera height, metres (VLN-CE)
+FARTHEST = 17.0  # metres; longer than any line through an apartment
+LEAST = 4  # pixels of a view (ours)
+SCENES = 512  # apartments whose geometry a shared renderer keeps, 0.2 MB each (ours)
+_COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
+_NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
+
+
+def _panda(pipe: str) -> Any:
+    from panda3d import core
+
+    settings = "\n".join(
+        [
+            "window-type offscreen",
+            "notify-level error",
+            "notify-level-x11display fatal",
+            "notify-level-display fatal",
+            "textures-power-2 none",
+            "audio-library-name null",
+            "framebuffer-srgb 0",
+            f"load-display {pipe}",
+        ]
+    )
+    core.load_prc_file_data("mitigate", settings)
+    return core
+
+
+class Renderer:
+    """Renders RGB and face ids of apartments; keeps the scenes of the ``scenes`` latest ones.
+
+    Raises ValueError for a ``size`` in pixels below ``LEAST``.
+    """
+
+    def __init__(self, size: int = 64, pipe: str = "p3tinydisplay", scenes: int = 48) -> None:
+        if size < LEAST:
+            raise ValueError(f"A view of size={size} shows nothing: give {LEAST} pixels or more.")
+        self.size, self.core = size, _panda(pipe)
+        core = self.core
+        self.engine = core.GraphicsEngine.get_global_ptr()
+        self.pipe = _make_pipe(core, pipe)
+        properties = core.FrameBufferProperties()
+        properties.set_rgb_color(True)
+        properties.set_rgba_bits(8, 8, 8, 8)
+        properties.set_depth_bits(16)
+        window = core.WindowProperties.size(_COLUMNS * size, 2 * _ROWS * size)
+        flags = core.GraphicsPipe.BF_refuse_window
+        self.buffer = self.engine.make_output(self.pipe, "panorama", 0, properties, window, flags)
+        if self.buffer is None:
+            raise RuntimeError(
+                f"Panda3D could not open an off-screen buffer with the {pipe} pipe; run "
+                "`make doctor`."
+            )
+        self.buffer.set_active(False)  # a frame draws every active buffer of the process
+        weakref.finalize(self, self.engine.remove_window, self.buffer)
+        self.image = core.Texture()
+        self.buffer.add_render_texture(self.image, core.GraphicsOutput.RTM_copy_ram)
+        self.buffer.set_clear_color((0, 0, 0, 1))
+        self.textures = [self._texture(pattern) for pattern in PATTERNS]
+        self.regions: list[list[Any]] = []  # of the RGB views, and of the id views
+        self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
+        self.scenes: OrderedDict[int, tuple[Any, Any, Faces]] = OrderedDict()
+        self.capacity, self.current = scenes, -1
+
+    def load(self, apartment: Apartment) -> None:
+        """Make an apartment the current scene, building its geometry on first use."""
+        if apartment.seed not in self.scenes:
+            self.scenes[apartment.seed] = self._scene(apartment.faces)
+            if len(self.scenes) > self.capacity:
+                _, (old_rgb, old_ids, _) = self.scenes.popitem(last=False)
+                old_rgb.remove_node()
+                old_ids.remove_node()
+        self.scenes.move_to_end(apartment.seed)
+        rgb, ids, self.faces = self.scenes[apartment.seed]
+        self.rig_rgb.reparent_to(rgb)
+        self.rig_ids.reparent_to(ids)
+        self.current = apartment.seed
+
+    def render(
+        self,
+        x: float,
+        y: float,
+        heading: float,
+        *,
+        views: Iterable[int] = range(VIEWS),
+        rgb: bool = True,
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S].
+
+        ``views``: those that are wanted; the others stay 0, in ids -1. ``rgb`` False leaves the
+        colours out. Both save time and change no pixel of what is drawn.
+        """
+        for rig in (self.rig_rgb, self.rig_ids):
+            rig.set_pos(x, y, EYE)
+            rig.set_h(np.degrees(heading))
+        wanted = np.zeros(VIEWS, np.bool_)
+        wanted[list(views)] = True
+        for layer, drawn in zip(self.regions, (wanted & rgb, wanted), strict=True):
+            for region, active in zip(layer, drawn, strict=True):
+                region.set_active(bool(active))
+        self.buffer.set_active(True)
+        self.engine.render_frame()
+        self.buffer.set_active(False)
+        raw = np.frombuffer(self.image.get_ram_image(), np.uint8)
+        frame = raw.reshape(2 * _ROWS * self.size, _COLUMNS * self.size, 4)
+        plane = self.faces.plane
+        return _split(frame, self.size, plane, x, y, EYE, heading, _NEAR, wanted, rgb)
+
+    def _rig(self, layer: int) -> Any:
+        core = self.core
+        rig = core.NodePath(f"rig{layer}")
+        regions = []
+        for k in range(VIEWS):
+            lens = core.PerspectiveLens()
+            lens.set_fov(HFOV_DEGREES, HFOV_DEGREES)
+            lens.set_near_far(_NEAR, 40.0)
+            camera = rig.attach_new_node(core.Camera(f"view{k}", lens))
+            camera.set_h(-VIEW_STEP_DEGREES * k)
+            column, row = k % _COLUMNS, layer * _ROWS + k // _COLUMNS
+            left, bottom = column / _COLUMNS, row / (2 * _ROWS)
+            region = self.buffer.make_display_region(
+                left, left + 1 / _COLUMNS, bottom, bottom + 0.5 / _ROWS
+            )
+            region.set_camera(camera)
+            region.set_clear_depth_active(True)
+            regions.append(region)
+        self.regions.append(regions)
+        return rig
+
+    def _texture(self, pattern: str) -> Any:
+        core = self.core
+        image = core.Texture(pattern)
+        image.setup_2d_texture(
+            TEXTURE_PIXELS, TEXTURE_PIXELS, core.Texture.T_unsigned_byte, core.Texture.F_rgb
+        )
+        image.set_ram_image(np.repeat(texture(pattern, 0)[:, :, None], 3, 2).tobytes())
+        image.set_minfilter(core.SamplerState.FT_nearest)
+        image.set_magfilter(core.SamplerState.FT_nearest)
+        return image
+
+    def _scene(self, faces: Faces) -> tuple[Any, Any, Faces]:
+        rgb, ids = self.core.NodePath("rgb"), self.core.NodePath("ids")
+        for room in range(int(faces.room.max()) + 1):
+            here = faces.room == room
+            group = rgb.attach_new_node(f"room{room}")  # rooms out of view are culled whole
+            for pattern, image in enumerate(self.textures):
+                chosen = np.flatnonzero(here & (faces.pattern == pattern))
+                if len(chosen):
+                    shape = self._geometry(faces, chosen, faces.colour[chosen])
+                    node = group.attach_new_node(shape)
+                    node.set_texture(image)
+                    node.set_bin("fixed", room * len(self.textures) + pattern)
+            chosen = np.flatnonzero(here)
+            flat = np.repeat(_id_colours(chosen)[:, None, :], 4, 1)
+            ids.attach_new_node(self._geometry(faces, chosen, flat)).set_bin("fixed", room)
+        return rgb, ids, faces
+
+    def _geometry(self, faces: Faces, chosen: np.ndarray, colour: np.ndarray) -> Any:
+        core = self.core
+        n = len(chosen)
+        packed = np.zeros((n * 4, 6), np.float32)
+        packed[:, :3] = faces.corners[chosen].reshape(-1, 3)
+        packed[:, 4:] = (
+            np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)[None]
+            * faces.repeat[chosen][:, None]
+        ).reshape(-1, 2)
+        bytes_ = np.zeros((n * 4, 4), np.uint8)
+        bytes_[:, :3] = np.rint(colour.reshape(-1, 3) * 255)
+        bytes_[:, 3] = 255
+        packed[:, 3] = np.ascontiguousarray(bytes_).view(np.float32)[:, 0]
+        layout = core.GeomVertexArrayFormat()
+        layout.add_column(
+            core.InternalName.get_vertex(), 3, core.Geom.NT_float32, core.Geom.C_point
+        )
+        layout.add_column(core.InternalName.get_color(), 4, core.Geom.NT_uint8, core.Geom.C_color)
+        layout.add_column(
+            core.InternalName.get_texcoord(), 2, core.Geom.NT_float32, core.Geom.C_texcoord
+        )
+        form = core.GeomVertexFormat()
+        form.add_array(layout)
+        data = core.GeomVertexData(
+            "faces", core.GeomVertexFormat.register_format(form), core.Geom.UH_static
+        )
+        data.unclean_set_num_rows(n * 4)
+        data.modify_array_handle(0).copy_data_from(packed.tobytes())
+        triangles = core.GeomTriangles(core.Geom.UH_static)
+        for first in range(0, 4 * n, 4):
+            triangles.add_vertices(first, first + 1, first + 2)
+            triangles.add_vertices(first, first + 2, first + 3)
+        geometry = core.Geom(data)
+        geometry.add_primitive(triangles)
+        node = core.GeomNode("faces")
+        node.add_geom(geometry)
+        return node
+
+
+@lru_cache(maxsize=4)
+def shared_renderer(size: int) -> Renderer:
+    """The one renderer of this process for views of ``size`` pixels: whoever draws through it finds
+    the scenes that others have built. It keeps ``SCENES`` of them."""
+    return Renderer(size, scenes=SCENES)
+
+
+def _make_pipe(core: Any, name: str) -> Any:
+    selection = core.GraphicsPipeSelection.get_global_ptr()
+    kind = "TinyOffscreenGraphicsPipe" if name == "p3tinydisplay" else ""
+    selection.make_module_pipe(name)
+    for index in range(selection.get_num_pipe_types()):
+        if kind and str(selection.get_pipe_type(index)) == kind:
+            return selection.make_pipe(selection.get_pipe_type(index))
+    return selection.make_module_pipe(name)
+
+
+def _id_colours(ids: np.ndarray) -> np.ndarray:
+    """Face id + 1 in base 32 as colours far from rounding: float32 [n, 3] in [0, 1]."""
+    code = ids + 1
+    digits = np.stack([code % 32, code // 32 % 32, code // 1024 % 32], 1)
+    return (digits * 8 + 4).astype(np.float32) / 255
+
+
+@njit(cache=True)
+def _split(frame, size, plane, x, y, z, heading, near, wanted, colours):
+    """Tiles (bottom-up BGRA) to views; ids from the upper half; depth by ray-plane meeting."""
+    rgb = np.zeros((12, size, size, 3), np.uint8)
+    depth = np.zeros((12, size, size, 1), np.float32)
+    ids = np.full((12, size, size), -1, np.int32)
+    for k in range(12):
+        if not wanted[k]:
+            continue
+        angle = heading - k * np.pi / 6
+        fx, fy, rx, ry = -np.sin(angle), np.cos(angle), np.cos(angle), np.sin(angle)
+        row0, column0 = (k // 4) * size, (k % 4) * size
+        for i in range(size):
+            up = 1 - (2 * i + 1) / size
+            r1 = row0 + size - 1 - i
+            for j in range(size):
+                right = (2 * j + 1) / size - 1
+                if colours:
+                    for c in range(3):
+                        rgb[k, i, j, c] = frame[r1, column0 + j, 2 - c]
+                r2, c2 = r1 + 3 * size, column0 + j
+                code = (
+                    (frame[r2, c2, 2] >> 3)
+                    + 32 * (frame[r2, c2, 1] >> 3)
+                    + 1024 * (frame[r2, c2, 0] >> 3)
+                )
+                face = np.int32(code) - 1
+                ids[k, i, j] = face
+                if face < 0 or face >= plane.shape[0]:
+                    continue
+                axis = int(plane[face, 0])
+                if axis == 0:
+                    t = (plane[face, 1] - x) / (fx + right * rx)
+                elif axis == 1:
+                    t = (plane[face, 1] - y) / (fy + right * ry)
+                else:
+                    t = (plane[face, 1] - z) / up
+                if not near <= t <= FARTHEST:  # a face seen edge-on: take the pixel beside it
+                    t = depth[k, i, j - 1, 0] if j > 0 else 0.0
+                depth[k, i, j, 0] = t
+    return rgb, depth, ids

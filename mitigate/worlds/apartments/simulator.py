@@ -1,0 +1,116 @@
+"""The simulator: continuous motion in an apartment, RGB-D panoramas on demand, geodesics."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from mitigate.core.observation import (
+    DEPTH,
+    FORWARD,
+    FORWARD_METRES,
+    LEFT,
+    MAX_STEPS,
+    POSE,
+    RGB,
+    RIGHT,
+    STOP,
+    TURN_DEGREES,
+)
+from mitigate.worlds.apartments.apartment import apartment_of
+from mitigate.worlds.apartments.renderer import Renderer
+from mitigate.worlds.apartments.tasks import from_vlnce, heading_of
+from mitigate.worlds.episodes import Episode, Vector
+
+NEAR = 0.5  # metres from a free cell that a start or goal may lie (ours): furniture may be a goal
+
+
+@lru_cache(maxsize=30_000)
+def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> np.ndarray:
+    """Geodesic metres from every free cell of a scene to the nearest goal."""
+    space = apartment_of(scene_id).space
+    return space.distances([space.cell_of(from_vlnce(goal)) for goal in goals])
+
+
+class Simulator:
+    """One agent in one apartment. Actions and step limit are VLN-CE's (``core/observation.py``)."""
+
+    def __init__(
+        self, size: int = 64, pipe: str = "p3tinydisplay", renderer: Renderer | None = None
+    ) -> None:
+        self.size, self.pipe = size, pipe
+        self._renderer = renderer  # several simulators may share one
+
+    @property
+    def renderer(self) -> Renderer:
+        if self._renderer is None:
+            self._renderer = Renderer(self.size, self.pipe)
+        return self._renderer
+
+    def reset(self, episode: Episode) -> None:
+        """Put the agent at the start of an episode.
+
+        Raises ValueError if start or goal lie farther than ``NEAR`` from where one can stand.
+        """
+        self.episode, self.apartment = episode, apartment_of(episode.scene_id)
+        self.space = self.apartment.space
+        self._check_place("starts", episode.start_position)
+        for goal in episode.goals:
+            self._check_place("has a goal", goal.position)
+        self.field = goal_field(episode.scene_id, tuple(goal.position for goal in episode.goals))
+        self.xy, self.heading = (
+            from_vlnce(episode.start_position),
+            heading_of(episode.start_rotation),
+        )
+        self.path = [self.xy.copy()]
+        self.steps = self.collisions = 0
+        self.stopped = False
+
+    def _check_place(self, what: str, position: Vector) -> None:
+        xy = from_vlnce(position)
+        away = float(np.hypot(*(self.space.centre(self.space.cell_of(xy)) - xy)))
+        if not away <= NEAR:
+            raise ValueError(
+                f"The episode {self.episode.episode_id} {what} at {list(position)}, {away:.1f} m "
+                f"from where one can stand in {self.episode.scene_id}. Positions are VLN-CE's: "
+                "(x, up, z) with z = -y of the plan."
+            )
+
+    @property
+    def done(self) -> bool:
+        return self.stopped or self.steps >= MAX_STEPS
+
+    def odometry(self) -> dict[str, np.ndarray]:
+        """The pose alone: float32 [3] = (x, y, heading)."""
+        return {POSE: np.array([self.xy[0], self.xy[1], self.heading], np.float32)}
+
+    def observe(self) -> dict[str, np.ndarray]:
+        """A full observation (see ``mitigate.core.observation``)."""
+        rgb, depth, _ = self.observe_faces()
+        return {RGB: rgb, DEPTH: depth, **self.odometry()}
+
+    def observe_faces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """RGB, depth and face ids of the panorama at the current pose."""
+        self.renderer.load(self.apartment)
+        return self.renderer.render(float(self.xy[0]), float(self.xy[1]), float(self.heading))
+
+    def step(self, action: int) -> None:
+        """One low-level action. Raises ``ValueError`` for an action that does not exist."""
+        if action == FORWARD:
+            self.xy, collided = self.space.move(self.xy, self.heading, FORWARD_METRES)
+            self.collisions += collided
+            self.path.append(self.xy.copy())
+        elif action in (LEFT, RIGHT):
+            self.heading += np.radians(TURN_DEGREES) * (1 if action == LEFT else -1)
+        elif action == STOP:
+            self.stopped = True
+        else:
+            raise ValueError(
+                f"Unknown action {action}; allowed: 0 STOP, 1 FORWARD, 2 LEFT, 3 RIGHT."
+            )
+        self.steps += 1
+
+    def distance_to_goal(self, xy: np.ndarray | None = None) -> float:
+        """Geodesic metres from a position (default: the agent's) to the nearest goal."""
+        return float(self.field[self.space.cell_of(self.xy if xy is None else xy)])

@@ -1,0 +1,228 @@
+"""Episodes of an apartment: VLN (follow an instruction) and OGN (find a category).
+
+``python -m mitigate.worlds.apartments.tasks OUT.json.gz --split val_unseen --task vln`` writes the
+fixed validation lists; training episodes are generated on the fly from (seed, index).
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mitigate.worlds.apartments.apartment import Apartment, apartment_of
+from mitigate.worlds.apartments.instructions import describe, find
+from mitigate.worlds.apartments.palette import SEED_RANGES, SPLITS
+from mitigate.worlds.episodes import (
+    Episode,
+    Goal,
+    Instruction,
+    Vector,
+    read_episodes,
+    write_episodes,
+)
+
+SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (docs/base-agent.md)
+SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
+TASKS = ("vln", "ogn")
+_TRIES = 60
+_POOL = 60  # training paths of one apartment
+_PER_APARTMENT = 10  # episodes of one apartment in the fixed lists
+
+
+def to_vlnce(xy: np.ndarray) -> tuple[float, float, float]:
+    """Plan position to a VLN-CE position (x, y up, z)."""
+    return round(float(xy[0]), 4), 0.0, round(-float(xy[1]), 4)
+
+
+def from_vlnce(position: Vector) -> np.ndarray:
+    """VLN-CE position to plan metres: float64 [2]."""
+    return np.array([position[0], -position[2]], np.float64)
+
+
+def rotation_of(heading: float) -> tuple[float, float, float, float]:
+    """Heading (radians, counter-clockwise) to a quaternion [x, y, z, w]."""
+    return 0.0, float(np.sin(heading / 2)), 0.0, float(np.cos(heading / 2))
+
+
+def heading_of(rotation: Vector) -> float:
+    """Quaternion [x, y, z, w] about the vertical to a heading in radians."""
+    return float(2 * np.arctan2(rotation[1], rotation[3]))
+
+
+def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> Episode:
+    """Episode ``index`` of an apartment: a pure function of (apartment, task, index, seed).
+
+    Raises ``RuntimeError`` if no start lies ``SHORTEST`` to ``LONGEST`` metres from a goal.
+    """
+    rng = np.random.default_rng([apartment.seed, TASKS.index(task), index, seed])
+    for _ in range(_TRIES):
+        goals, target = _draw_vln(apartment, rng) if task == "vln" else _draw_ogn(apartment, rng)
+        if not goals:
+            continue
+        field = apartment.space.distances(goals)
+        starts = np.flatnonzero((field > SHORTEST) & (field < LONGEST))
+        if len(starts):
+            return _episode(
+                apartment, task, index, seed, goals, target, field, int(rng.choice(starts)), rng
+            )
+    raise RuntimeError(
+        f"Apartment {apartment.seed} offers no {task} episode of {SHORTEST}-{LONGEST} m."
+    )
+
+
+def _draw_vln(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
+    target = int(rng.integers(len(apartment.furniture)))
+    piece = apartment.furniture[target]
+    kind = apartment.rooms[piece.room].kind
+    twins = [
+        p
+        for p in apartment.furniture
+        if (p.category, p.colour) == (piece.category, piece.colour)
+        and apartment.rooms[p.room].kind == kind
+    ]
+    cells = _beside(apartment, target)
+    if len(twins) > 1 or not len(cells):
+        return [], target
+    return [int(rng.choice(cells))], target
+
+
+def _draw_ogn(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
+    category = str(rng.choice(sorted({p.category for p in apartment.furniture})))
+    same = [i for i, p in enumerate(apartment.furniture) if p.category == category]
+    cells = [_beside(apartment, i) for i in same]
+    return [int(c[len(c) // 2]) for c in cells if len(c)], same[0]
+
+
+def _beside(apartment: Apartment, instance: int) -> np.ndarray:
+    """Free cells of the same room within 0.8 m of a piece of furniture."""
+    space, piece = apartment.space, apartment.furniture[instance]
+    xy = (space.cells[:, ::-1] + 0.5) * 0.1
+    x0, y0, x1, y1 = piece.rect
+    gap = np.hypot(
+        np.maximum(np.maximum(x0 - xy[:, 0], xy[:, 0] - x1), 0),
+        np.maximum(np.maximum(y0 - xy[:, 1], xy[:, 1] - y1), 0),
+    )
+    rx0, ry0, rx1, ry1 = apartment.rooms[piece.room].rect
+    inside = (xy[:, 0] > rx0) & (xy[:, 0] < rx1) & (xy[:, 1] > ry0) & (xy[:, 1] < ry1)
+    return np.flatnonzero((gap < 0.8) & inside)
+
+
+def _episode(
+    apartment: Apartment,
+    task: str,
+    index: int,
+    seed: int,
+    goals: list[int],
+    target: int,
+    field: np.ndarray,
+    start: int,
+    rng: np.random.Generator,
+) -> Episode:
+    path = apartment.space.shortest_path(start, field)
+    heading = float(np.radians(15.0 * rng.integers(24)))
+    piece = apartment.furniture[target]
+    text = (
+        describe(apartment, path, heading, target, rng)
+        if task == "vln"
+        else find(apartment, piece.category, rng)
+    )
+    thinned = np.concatenate([path[:-1:5], path[-1:]])
+    info: dict[str, Any] = {
+        "geodesic_distance": round(float(field[start]), 4),
+        "task": task,
+        "category": piece.category,
+        "landmark": target,
+    }
+    return Episode(
+        episode_id=f"{apartment.seed:06d}-{task}-{index}" + (f"-{seed}" if seed else ""),
+        trajectory_id=f"{apartment.seed:06d}-{index}",
+        scene_id=apartment.scene_id,
+        start_position=to_vlnce(path[0]),
+        start_rotation=rotation_of(heading),
+        goals=tuple(Goal(to_vlnce(apartment.space.centre(g)), SUCCESS_METRES) for g in goals),
+        instruction=Instruction(text, None, "en-US", {}),
+        reference_path=tuple(to_vlnce(p) for p in thinned),
+        geodesic_distance=info["geodesic_distance"],
+        info=info,
+    )
+
+
+def share_of(apartments: int, piece: int, pieces: int) -> range:
+    """The training seeds, of the first ``apartments``, that piece ``piece`` of ``pieces`` of every
+    step draws from: a worker process then builds only the apartments of its pieces."""
+    return range(piece % apartments, apartments, pieces)
+
+
+def landmarks(episode: Episode) -> list[int]:
+    """Furniture that marks the goal: the one an instruction ends at, or all of an OGN category."""
+    if episode.info["task"] == "vln":
+        return [int(episode.info["landmark"])]
+    furniture = apartment_of(episode.scene_id).furniture
+    return [i for i, piece in enumerate(furniture) if piece.category == episode.info["category"]]
+
+
+def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
+    """A split's validation list: ``_PER_APARTMENT`` episodes an apartment, in seed order."""
+    low, _ = SEED_RANGES[split]
+    for number in range(count):
+        yield make_episode(Apartment(low + number // _PER_APARTMENT), task, number % _PER_APARTMENT)
+
+
+@lru_cache(maxsize=30_000)
+def _pooled(seed: int, task: str, index: int) -> Episode:
+    return make_episode(apartment_of(f"apartments/train/{seed:06d}"), task, index, seed=1)
+
+
+def draw_training_episode(
+    rng: np.random.Generator, apartments: int | range, ogn_share: float
+) -> Episode:
+    """A training episode in one of ``apartments``, training seeds or how many of the first, its
+    instruction told anew.
+
+    A pure function of the generator's state and the arguments; ``_POOL`` paths an apartment.
+    """
+    seeds = range(apartments) if isinstance(apartments, int) else apartments
+    seed, index = seeds[int(rng.integers(len(seeds)))], int(rng.integers(_POOL))
+    task = "ogn" if rng.random() < ogn_share else "vln"
+    episode = _pooled(seed, task, index)
+    if task == "vln":
+        path = np.stack([from_vlnce(p) for p in episode.reference_path])
+        heading = heading_of(episode.start_rotation)
+        text = describe(
+            apartment_of(episode.scene_id), path, heading, episode.info["landmark"], rng
+        )
+        episode = replace(episode, instruction=Instruction(text, None, "en-US", {}))
+    return episode
+
+
+def episode_file(split: str, task: str = "vln") -> Path:
+    """The shipped list of a validation split."""
+    return Path(__file__).parent / "episodes" / f"{split}_{task}.json.gz"
+
+
+def load_episodes(split: str, task: str = "vln") -> list[Episode]:
+    """The shipped episodes of a validation split, in order."""
+    return list(read_episodes(episode_file(split, task)))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description="Write the fixed episode list of a split as a VLN-CE file."
+    )
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--split", choices=SPLITS, default="val_unseen")
+    parser.add_argument("--task", choices=TASKS, default="vln")
+    parser.add_argument("--count", type=int, default=300)
+    args = parser.parse_args()
+    write_episodes(args.out, fixed_episodes(args.split, args.task, args.count))
+    print(f"wrote {args.count} {args.task} episodes of {args.split} to {args.out}")
+
+
+if __name__ == "__main__":
+    main()

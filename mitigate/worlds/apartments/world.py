@@ -1,0 +1,219 @@
+"""The apartments as a world (``worlds/world.py``): episodes, measures, oracle, labels, poses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.memory import Memory
+from mitigate.core.observation import (
+    DEPTH,
+    FORWARD,
+    FORWARD_METRES,
+    LEFT,
+    POSE,
+    RGB,
+    RIGHT,
+    STOP,
+    TURN_DEGREES,
+    VIEWS,
+    Observation,
+    Sensor,
+    panorama,
+)
+from mitigate.evaluation import metrics
+from mitigate.worlds.apartments.apartment import Apartment, apartment_of
+from mitigate.worlds.apartments.labels import free_directions, view_labels
+from mitigate.worlds.apartments.renderer import shared_renderer
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, from_vlnce, landmarks
+from mitigate.worlds.episodes import Episode
+
+KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
+STOP_WITHIN = 1.0  # metres from the goal at which the oracle stops
+
+
+class ApartmentsWorld:
+    """One agent in one apartment; all of a process draw through one renderer.
+
+    Args: size: pixels of a square view. layouts: how many training layouts ``scenes`` names.
+    """
+
+    rule = metrics.rule(SUCCESS_METRES)
+
+    def __init__(self, size: int = 64, layouts: int = 400) -> None:
+        self.size, self.layouts = size, layouts
+        self.sensors: dict[str, Sensor] = panorama(size)
+        self._memory = Memory(0)
+        self._simulator: Simulator | None = None
+        self._rendered: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"size": self.size, "layouts": self.layouts}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__init__(**state)  # type: ignore[misc]
+
+    @property
+    def simulator(self) -> Simulator:
+        if self._simulator is None:
+            self._simulator = Simulator(self.size, renderer=shared_renderer(self.size))
+        return self._simulator
+
+    @contextmanager
+    def remembering(self) -> Iterator[None]:
+        """Within it, a pose that is met again is not rendered again."""
+        before, self._memory = self._memory, Memory(KEPT)
+        try:
+            yield
+        finally:
+            self._memory = before
+
+    # episodes ---------------------------------------------------------------------------------
+
+    @property
+    def done(self) -> bool:
+        return self.simulator.done
+
+    def reset(self, episode: Episode) -> Observation:
+        """Raises ValueError for an episode that is not one of an apartment."""
+        self.simulator.reset(episode)
+        return self._observation()
+
+    def step(self, action: int) -> Observation:
+        self.simulator.step(action)
+        return self._observation()
+
+    def measures(self) -> dict[str, float]:
+        """success, spl, path_length, geodesic_distance, distance_to_goal, ndtw (metres),
+        collisions and steps."""
+        simulator = self.simulator
+        episode, walked = simulator.episode, np.array(simulator.path)
+        length, left = metrics.path_length(walked), simulator.distance_to_goal()
+        reference = np.stack([from_vlnce(p) for p in episode.reference_path])
+        geodesic = float(episode.geodesic_distance or simulator.distance_to_goal(reference[0]))
+        won = metrics.success(left, simulator.stopped, threshold=SUCCESS_METRES)
+        return {
+            "success": int(won),
+            "spl": round(metrics.spl(won, geodesic, length), 6),
+            "path_length": round(length, 4),
+            "geodesic_distance": geodesic,
+            "distance_to_goal": round(left, 4),
+            "ndtw": round(metrics.ndtw(walked, reference, threshold=SUCCESS_METRES), 6),
+            "collisions": int(simulator.collisions),
+            "steps": simulator.steps,
+        }
+
+    def expert(self) -> GeodesicExpert:
+        return GeodesicExpert(self.simulator)
+
+    def truth(self) -> Mapping[str, np.ndarray]:
+        """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),
+        free float32 [120, 12] (where one can go straight), goal float32 [12] (which views show what
+        the instruction ends at)."""
+        simulator = self.simulator
+        _, depth, ids = self._frames()
+        concepts, seen = view_labels(simulator.apartment, ids, depth)
+        shown = seen[:, landmarks(simulator.episode)].any(1)
+        return {
+            "concepts": concepts,
+            "free": free_directions(simulator.space, simulator.xy, simulator.heading),
+            "goal": np.asarray(shown, np.float32),
+        }
+
+    def _observation(self) -> Observation:
+        self._rendered = None
+        return Observation(self.simulator.odometry(), self._given, (RGB, DEPTH))
+
+    def _given(self) -> dict[str, np.ndarray]:
+        """Copies of what is kept: an agent may write into what it gets."""
+        rgb, depth, _ = self._frames()
+        return {RGB: rgb.copy(), DEPTH: depth.copy()}
+
+    def _frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        if self._rendered is None:
+            simulator = self.simulator
+            pose = (float(simulator.xy[0]), float(simulator.xy[1]), float(simulator.heading))
+            key = (simulator.episode.scene_id, *pose)
+            self._rendered = self._memory.recall(key, simulator.observe_faces)
+        return self._rendered
+
+    # poses ------------------------------------------------------------------------------------
+
+    @property
+    def scenes(self) -> Sequence[str]:
+        return [f"apartments/train/{seed:06d}" for seed in range(self.layouts)]
+
+    def enter(self, scene: str) -> None:
+        """Go to a scene, to look around in; raises ValueError for an unknown one."""
+        self._entered: Apartment = apartment_of(scene)
+
+    def point(self, rng: np.random.Generator) -> np.ndarray:
+        space = self._entered.space
+        return space.centre(int(rng.integers(len(space.cells)))) + rng.uniform(-0.05, 0.05, 2)
+
+    def put(
+        self,
+        xy: np.ndarray,
+        heading: float,
+        *,
+        views: Sequence[int] | None = None,
+        rgb: bool = True,
+    ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
+        """Frames with the pose, and the truth without "goal"."""
+        apartment = self._entered
+        renderer = shared_renderer(self.size)
+        renderer.load(apartment)
+        wanted = range(VIEWS) if views is None else views
+        frames, depth, ids = renderer.render(
+            float(xy[0]), float(xy[1]), heading, views=wanted, rgb=rgb
+        )
+        pose = np.array([*xy, heading], np.float32)
+        return {RGB: frames, DEPTH: depth, POSE: pose}, Labels(apartment, xy, heading, ids, depth)
+
+
+class Labels(Mapping[str, np.ndarray]):
+    """The truth of a pose, each label computed when it is read (free directions take longest)."""
+
+    def __init__(
+        self, apartment: Apartment, xy: np.ndarray, heading: float, ids: np.ndarray, depth: Any
+    ) -> None:
+        self._make = {
+            "concepts": lambda: view_labels(apartment, ids, depth)[0],
+            "free": lambda: free_directions(apartment.space, xy, heading),
+        }
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self._make[name]()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._make)
+
+    def __len__(self) -> int:
+        return len(self._make)
+
+
+class GeodesicExpert:
+    """Distances and the greedy follower of the geodesic field: it turns to the heading whose step
+    lowers the distance most."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        self.simulator = simulator
+
+    def distance(self, xy: np.ndarray) -> float:
+        return self.simulator.distance_to_goal(xy)
+
+    def action(self) -> int:
+        simulator = self.simulator
+        if simulator.distance_to_goal() < STOP_WITHIN:
+            return STOP
+        turns = sorted(range(-12, 13), key=abs)
+        headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
+        ends = [
+            simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings
+        ]
+        best = turns[int(np.argmin([simulator.distance_to_goal(end) for end in ends]))]
+        return FORWARD if best == 0 else LEFT if best > 0 else RIGHT

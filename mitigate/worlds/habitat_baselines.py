@@ -1,0 +1,236 @@
+"""Corruptions inside habitat-baselines: an observation transformer, and the sensor that keys it.
+
+Importing this module registers both where habitat-lab and habitat-baselines are installed; without
+them the transformer is a plain torch module with the same three methods.
+
+habitat-baselines calls a transformer with a batch of frames and nothing else: no episode, no step,
+no mask. So the lab sensor ``CorruptionKeySensor`` adds the entry ``corruption_key`` to every
+observation; the transformer takes it out again, and the policy never meets it.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import torch
+
+from mitigate.core.names import unknown
+from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule
+from mitigate.corruptions.keying import digest
+from mitigate.corruptions.normalised import check_sensor
+from mitigate.worlds.habitat import TURNS, check_cameras, corrupt_habitat, is_camera
+
+try:
+    from habitat_baselines.common.baseline_registry import baseline_registry
+    from habitat_baselines.common.obs_transformers import ObservationTransformer
+    from habitat_baselines.config.default_structured_configs import ObsTransformConfig
+except ImportError:
+    baseline_registry = None
+    ObservationTransformer, ObsTransformConfig = torch.nn.Module, object
+
+KEY = "corruption_key"
+_HEADINGS = ("compass", "heading")  # sensors that give radians, counter-clockwise
+
+
+class CorruptObservation(ObservationTransformer):
+    """Corrupts the cameras of a batch of Habitat observations (see ``corrupt_habitat``).
+
+    Batches hold ``corruption_key`` int64 [B, 2] (from ``CorruptionKeySensor``), ``rgb*`` uint8
+    [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] in [0, 1]; tensors stay on their device. The
+    ``compass`` or ``heading`` sensor, if it is there, keeps a flare at its place in the world.
+
+    Args:
+        schedule: which frame is hurt by what.
+        seed: of every random draw.
+        sensor: depth range and sentinel.
+        turn: where ``rgb_30`` looks from ``rgb``: "left" (ETPNav) or "right".
+
+    Raises ValueError if the space, or a batch, has no camera for a corruption of the schedule;
+    ``forward`` also without ``corruption_key``, and as ``corrupt_habitat`` does.
+    """
+
+    def __init__(
+        self,
+        schedule: Schedule,
+        seed: int = 0,
+        *,
+        sensor: DepthSensor | None = None,
+        turn: str = "left",
+    ) -> None:
+        super().__init__()
+        self.schedule, self.seed, self.turn = schedule, seed, turn
+        self.sensor = sensor or DepthSensor()
+        check_sensor(self.sensor)
+        if turn not in TURNS:
+            raise ValueError(f"turn must be 'left' or 'right', but it is {turn!r}.")
+
+    @classmethod
+    def from_config(cls, config: Any) -> CorruptObservation:
+        """Build from a ``CorruptObservationConfig``, or a mapping with any of its entries.
+
+        Raises ValueError for an entry that is none of them.
+        """
+        given = dict(config) if isinstance(config, Mapping) else dict(vars(config))
+        known = [field.name for field in fields(CorruptObservationConfig)]
+        for name in given:
+            if name not in known:
+                raise ValueError(
+                    unknown("option of CorruptObservation", name, known)
+                    + " Pass the transformer's own part of the config, not the whole."
+                )
+        options = CorruptObservationConfig(**given)
+        schedule = Schedule(
+            options.mode,
+            options.severity,
+            options.severity_depth,
+            clean_share=options.clean_share,
+            names=options.names or NAMES,
+        )
+        sensor = DepthSensor(options.depth_min, options.depth_max, options.depth_missing)
+        return cls(schedule, options.seed, sensor=sensor, turn=options.turn)
+
+    def transform_observation_space(self, observation_space: Any, **kwargs: Any) -> Any:
+        """A copy of the space without ``corruption_key``; the rest does not change."""
+        space = copy.deepcopy(observation_space)
+        space.spaces.pop(KEY, None)
+        self._check(space.spaces)
+        return space
+
+    @torch.no_grad()
+    def forward(self, observations: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
+        """The batch with corrupted cameras and without ``corruption_key``; the input stays."""
+        keys = _keys(observations)
+        self._check(observations)
+        heading = next((observations[h] for h in _HEADINGS if h in observations), None)
+        frames = {
+            entry: tensor.cpu().numpy()
+            for entry, tensor in observations.items()
+            if is_camera(entry)
+        }
+        hurt: dict[str, np.ndarray] = {}
+        for row, (episode, frame) in enumerate(keys):
+            corruption, key = self.schedule.draw(self.seed, str(episode), frame)
+            instant = {entry: views[row] for entry, views in frames.items()}
+            after = corrupt_habitat(
+                instant,
+                corruption,
+                key,
+                self.sensor,
+                heading=None if heading is None else float(heading[row].reshape(-1)[0]),
+                turn=self.turn,
+            )
+            for entry, view in after.items():
+                if view is not instant[entry]:
+                    hurt.setdefault(entry, frames[entry].copy())[row] = view
+        out = copy.copy(observations)
+        del out[KEY]
+        for entry, views in hurt.items():
+            out[entry] = torch.from_numpy(views).to(observations[entry].device)
+        return out
+
+    def _check(self, entries: Iterable[str]) -> None:
+        if self.schedule.mode != "clean":
+            check_cameras((entry for entry in entries if entry != KEY), self.schedule.names)
+
+
+@dataclass
+class CorruptObservationConfig(ObsTransformConfig):
+    """The options of ``CorruptObservation`` in a habitat-baselines config."""
+
+    type: str = "CorruptObservation"
+    mode: str = "per_episode"  # see mitigate.corruptions.Schedule
+    names: tuple[str, ...] = ()  # corruptions to draw from; empty means all 12
+    severity: float = 0.6
+    severity_depth: float | None = None  # None means severity
+    clean_share: float = 0.0
+    seed: int = 0
+    depth_min: float = 0.0  # metres; RxR-CE 0.5
+    depth_max: float = 10.0  # metres; RxR-CE 5.0
+    depth_missing: float = 0.0  # metres that a hole reads
+    turn: str = "left"  # where rgb_30 looks from rgb
+
+
+def key_of(scene_id: str, episode_id: str | int, step: int) -> np.ndarray:
+    """int64 [2]: a number for the episode (63 bits of a digest of its ids), and the step.
+
+    Of the scene's path only the file name counts. The same episode gets the same number each time
+    it is run, in every process.
+    """
+    name = f"{str(scene_id).rpartition('/')[2]}/{episode_id}"
+    return np.array([digest(Key(0, name), "habitat") >> 1, step], np.int64)
+
+
+class EpisodeSteps:
+    """Counts the steps of a Habitat environment from what its sensors are told."""
+
+    def __init__(self) -> None:
+        self._step = 0
+
+    def key(self, episode: Any, **given: Any) -> np.ndarray:
+        """The key of one observation. Habitat passes ``action`` on a step and not on a reset."""
+        self._step = self._step + 1 if "action" in given else 0
+        return key_of(episode.scene_id, episode.episode_id, self._step)
+
+
+def _keys(observations: Mapping[str, torch.Tensor]) -> list[list[int]]:
+    given = observations.get(KEY)
+    if given is None or given.dtype != torch.int64 or given.shape[1:] != (2,):
+        what = "no" if given is None else f"{given.dtype} {tuple(given.shape)} as"
+        raise ValueError(
+            f"The batch holds {what} {KEY!r}, but the corruption of a frame is keyed by it, int64 "
+            f"[B, 2]. Add {KEY!r} to the task's lab_sensors (importing mitigate.worlds."
+            "habitat_baselines registers it, see docs/corruption-entry-points.md); outside "
+            "habitat-baselines call mitigate.worlds.habitat.corrupt_habitat."
+        )
+    return given.tolist()
+
+
+def _register() -> None:
+    """Make the transformer, the sensor and their configs known to Habitat."""
+    from gym import spaces
+    from habitat.config.default_structured_configs import LabSensorConfig
+    from habitat.core.registry import registry
+    from habitat.core.simulator import Sensor, SensorTypes
+    from hydra.core.config_store import ConfigStore
+
+    class CorruptionKeySensor(Sensor):
+        """``corruption_key``: int64 [2], the episode's number and the step."""
+
+        def __init__(self, *args: Any, **kwargs: Any) -> None:
+            self._steps = EpisodeSteps()
+            super().__init__(*args, **kwargs)
+
+        def _get_uuid(self, *args: Any, **kwargs: Any) -> str:
+            return KEY
+
+        def _get_sensor_type(self, *args: Any, **kwargs: Any) -> SensorTypes:
+            return SensorTypes.TENSOR
+
+        def _get_observation_space(self, *args: Any, **kwargs: Any) -> spaces.Box:
+            return spaces.Box(0, np.iinfo(np.int64).max, (2,), np.int64)
+
+        def get_observation(self, *args: Any, episode: Any, **kwargs: Any) -> np.ndarray:
+            return self._steps.key(episode, **kwargs)
+
+    registry.register_sensor(CorruptionKeySensor, name="CorruptionKeySensor")
+    baseline_registry.register_obs_transformer(CorruptObservation, name="CorruptObservation")
+    store = ConfigStore.instance()
+    store.store(
+        group="habitat/task/lab_sensors",
+        name=KEY,
+        package=f"habitat.task.lab_sensors.{KEY}",
+        node=LabSensorConfig(type="CorruptionKeySensor"),
+    )
+    store.store(
+        group="habitat_baselines/rl/policy/obs_transforms",
+        name="corrupt_observation",
+        node=CorruptObservationConfig,
+    )
+
+
+if baseline_registry is not None:
+    _register()

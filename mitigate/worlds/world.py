@@ -1,0 +1,161 @@
+"""What evaluation, training and pictures know of a world, and the corrupted world.
+
+A world gives observations of episodes and says how well they went; it knows no agent. How to bring
+one: ``docs/bring-your-own.md``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+
+from mitigate.core.observation import Observation, Sensor
+from mitigate.corruptions import Corruption, Key, Schedule, corrupt_observation
+from mitigate.worlds.episodes import Episode
+
+
+class Expert(Protocol):
+    """What a shortest-path oracle knows of the episode that is on."""
+
+    def distance(self, xy: np.ndarray) -> float:
+        """Metres along the shortest way from the point ``xy`` [2] to the nearest goal."""
+
+    def action(self) -> int:
+        """The low-level action that an oracle takes next."""
+
+
+class World(Protocol):
+    """One agent in one place, an episode at a time.
+
+    sensors: what each entry of an observation is. rule: what its ``measures`` count as success, in
+    words, such as "STOP and geodesic < 3 m"; it is part of every row. done: no step may follow.
+    """
+
+    sensors: Mapping[str, Sensor]
+    rule: str
+
+    @property
+    def done(self) -> bool: ...
+
+    def reset(self, episode: Episode) -> Observation:
+        """Begin an episode; frames are rendered when they are read. Raises ValueError for an
+        episode of another world."""
+
+    def step(self, action: int) -> Observation: ...
+
+    def measures(self) -> dict[str, float]:
+        """How the episode went so far: ``success`` (0 or 1) and ``spl`` at least."""
+
+    def expert(self) -> Expert | None:
+        """The oracle of the episode that is on; None in a world that has none: agents can be
+        evaluated there, not trained by imitation."""
+
+    def truth(self) -> Mapping[str, np.ndarray]:
+        """Labels of what is seen from here, by name; empty in a world that has none."""
+
+
+@runtime_checkable
+class Placeable(Protocol):
+    """A world that can look from anywhere, for pretraining without episodes.
+
+    scenes: names of the places to train in.
+    """
+
+    scenes: Sequence[str]
+
+    def enter(self, scene: str) -> None: ...
+
+    def point(self, rng: np.random.Generator) -> np.ndarray:
+        """A random point [2] of the scene where an agent can stand."""
+
+    def put(
+        self, xy: np.ndarray, heading: float, *, views: Sequence[int] | None, rgb: bool
+    ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
+        """Frames and pose from there, and the truth. ``views``: those that are needed, None: all;
+        the others may be 0. ``rgb`` False: colours are not needed."""
+
+
+class TrainingEpisodes(Protocol):
+    """Where the episodes of a training come from."""
+
+    def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
+        """An episode: a function of the generator's state and of ``share`` = (piece, of how many),
+        by which worker processes that draw different pieces of a batch may split the scenes."""
+
+
+class Corrupted:
+    """A world whose frames meet a corruption, or what a schedule draws; itself a world.
+
+    The draws are keyed by (seed, name, number of the look): an observation whose frames nobody
+    reads is no look. ``observation.clean`` is what it was before. ``name``: of the episode in the
+    keys; None: its id. Instructions are corrupted before the agent hears them
+    (``evaluation/episode.py``), not here.
+    """
+
+    def __init__(
+        self, world: World, by: Corruption | Schedule, seed: int, name: str | None = None
+    ) -> None:
+        self.world, self.by, self.seed, self.name = world, by, seed, name
+        self.looks = 0
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__") or name == "world":
+            raise AttributeError(name)
+        return getattr(self.world, name)
+
+    @property
+    def sensors(self) -> Mapping[str, Sensor]:
+        return self.world.sensors
+
+    @property
+    def done(self) -> bool:
+        return self.world.done
+
+    def reset(self, episode: Episode) -> Observation:
+        """Begin an episode, and the count of looks."""
+        self.episode, self.looks = episode, 0
+        return self._seen(self.world.reset(episode))
+
+    def step(self, action: int) -> Observation:
+        return self._seen(self.world.step(action))
+
+    def measures(self) -> dict[str, float]:
+        return self.world.measures()
+
+    def expert(self) -> Expert | None:
+        return self.world.expert()
+
+    def truth(self) -> Mapping[str, np.ndarray]:
+        return self.world.truth()
+
+    def _seen(self, clean: Observation) -> Observation:
+        def corrupted() -> dict[str, np.ndarray]:
+            corruption, key = self._draw()
+            self.looks += 1
+            return corrupt_observation(dict(clean), corruption, key)
+
+        return Observation(clean.ready, corrupted, clean.frames, clean=clean)
+
+    def _draw(self) -> tuple[Corruption, Key]:
+        name = self.episode.episode_id if self.name is None else self.name
+        if isinstance(self.by, Schedule):
+            return self.by.draw(self.seed, name, self.looks)
+        return self.by, Key(self.seed, name, self.looks)
+
+
+def remembering(thing: Any) -> AbstractContextManager:
+    """``thing.remembering()``, within which an agent or a world keeps what it computed for equal
+    input, where it has that; its results do not depend on it."""
+    return getattr(thing, "remembering", nullcontext)()
+
+
+def walk(world: World, agent: Any, first: Observation) -> Iterator[Observation]:
+    """Let an agent act from its first observation to the end; each observation on the way."""
+    observation = first
+    yield observation
+    while not world.done:
+        observation = world.step(agent.act(observation))
+        yield observation

@@ -1,0 +1,124 @@
+"""The topological map on hand-made cases: where ghosts stand, how they merge, which way leads."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mitigate.agents.topological.mapping import GEOMETRY, MERGE, TopologicalMap
+
+RIGHT, BACK, LEFT = np.pi / 2, np.pi, 3 * np.pi / 2
+
+
+def pose(x: float, y: float, heading: float = 0.0) -> np.ndarray:
+    return np.array([x, y, heading])
+
+
+def waypoints(*pairs: tuple[float, float]) -> np.ndarray:
+    return np.array(pairs, np.float32).reshape(-1, 2)
+
+
+def places(graph: TopologicalMap) -> list[list[float]]:
+    return [np.round(ghost.position, 3).tolist() for ghost in graph.ghosts.values()]
+
+
+def corridor() -> TopologicalMap:
+    """Nodes at y = 0, 2, 4; a ghost to the right of the first and one ahead of the last."""
+    graph = TopologicalMap()
+    graph.add(pose(0, 0), waypoints((RIGHT, 1.5), (0, 2)))
+    graph.add(pose(0, 2), waypoints((0, 2)))
+    graph.add(pose(0, 4), waypoints((0, 2)))
+    return graph
+
+
+def test_a_waypoint_becomes_a_ghost_clockwise_from_the_heading():
+    graph = TopologicalMap()
+    graph.add(pose(0, 0), waypoints((0, 1), (RIGHT, 1.5), (LEFT, 2)))
+    assert places(graph) == [[0, 1], [1.5, 0], [-2, 0]]
+    turned = TopologicalMap()
+    turned.add(pose(1, 1, np.pi / 2), waypoints((0, 1), (RIGHT, 1)))  # looks along -x
+    assert places(turned) == [[0, 1], [1, 2]]
+
+
+def test_near_waypoints_merge_into_their_mean_and_keep_every_sighting():
+    graph = TopologicalMap()
+    graph.add(pose(0, 0), waypoints((0, 2)))
+    graph.add(pose(1, 0), waypoints((LEFT, 0.2)))  # joins nothing: it is the second node itself
+    graph.add(pose(0, 3.2), waypoints((BACK, 1)))  # 0.2 m from the first ghost
+    assert places(graph) == [[0, 2.1]]
+    ghost = next(iter(graph.ghosts.values()))
+    assert ghost.parents == [0, 2] and ghost.sightings == [(0, 0), (2, 6)]
+
+
+def test_a_waypoint_at_a_visited_place_is_an_edge_and_no_ghost():
+    graph = TopologicalMap()
+    graph.add(pose(0, 0), waypoints())
+    graph.add(pose(3, 0), waypoints())
+    graph.add(pose(3, 3), waypoints((0, 1)))
+    before = len(graph.ghosts)
+    graph.add(pose(3, 0.1), waypoints((LEFT, 2.9)))  # looks at the first node
+    assert len(graph.ghosts) == before and graph.edges[1][0] == pytest.approx(3)
+
+
+def test_arriving_near_a_ghost_turns_it_into_the_node():
+    graph = TopologicalMap()
+    graph.add(pose(0, 0), waypoints((0, 2), (RIGHT, 2)))
+    graph.add(pose(0.1, 2 + MERGE / 3), waypoints())
+    assert places(graph) == [[2, 0]] and len(graph.positions) == 2
+    assert 1 in graph.edges[0]
+
+
+def test_coming_back_to_a_node_renews_its_panorama():
+    graph = corridor()
+    graph.add(pose(0.1, 0.1), waypoints())
+    assert len(graph.positions) == 3 and graph.current == 0 and graph.node_panorama == [3, 1, 2]
+
+
+def test_a_route_leads_back_over_the_visited_nodes():
+    graph = corridor()
+    ghost = next(i for i, g in graph.ghosts.items() if g.position[0] > 1)
+    assert np.allclose(graph.route(ghost), [[0, 2], [0, 0], [1.5, 0]], atol=1e-6)
+    assert np.allclose(graph.route_to_node(0), [[0, 2], [0, 0]])
+    assert graph.route_to_node(2) == []
+
+
+def test_a_route_takes_the_shorter_way():
+    graph = corridor()
+    graph.add(pose(1.5, 3), waypoints())
+    graph.add(pose(1.5, 0), waypoints((RIGHT, 2)))  # where the first ghost was: joined to node 0
+    assert 0 in graph.edges[4]
+    assert np.allclose(graph.route_to_node(2), [[1.5, 3], [0, 4]])  # 4.8 m, not 5.5 m
+    assert np.allclose(graph.route_to_node(1), [[0, 0], [0, 2]])
+    assert np.allclose(graph.route(max(graph.ghosts)), [[3.5, 0]], atol=1e-6)
+
+
+def test_a_decision_lists_stop_nodes_and_ghosts_with_metres_to_travel():
+    graph = corridor()
+    made = graph.decision(pose(0, 4))
+    assert made.panorama == 2 and made.nodes.tolist() == [0, 1, 2]
+    assert made.geometry.shape == (1 + 3 + 2, GEOMETRY)
+    assert made.travel == pytest.approx([5.5, 2.0])
+    assert made.sightings[:, 0].tolist() == [[0, 3], [2, 0]]  # panorama and view that saw each
+    assert (made.sightings[:, 1:] == -1).all()
+
+
+def test_geometry_does_not_depend_on_where_the_world_lies():
+    def geometry(shift: np.ndarray, turn: float) -> np.ndarray:
+        graph = TopologicalMap()
+        c, s = np.cos(turn), np.sin(turn)
+        for x, y, heading in ((0, 0, 0.3), (0, 2, 0.0), (1, 3, -1.2)):
+            where = shift + np.array([c * x - s * y, s * x + c * y])
+            graph.add(np.array([*where, heading + turn]), waypoints((0, 2), (RIGHT, 1.7)))
+        return graph.decision(np.array([*where, heading + turn])).geometry
+
+    here = geometry(np.zeros(2), 0.0)
+    assert np.allclose(here, geometry(np.array([3.0, -5.0]), 0.8), atol=1e-5)
+    assert not np.allclose(here[1:], here[:1])
+
+
+def test_a_chosen_ghost_is_forgotten():
+    graph = corridor()
+    for ghost in list(graph.ghosts):
+        graph.arrive(ghost)
+    graph.arrive(99)
+    assert not graph.ghosts and graph.decision(pose(0, 4)).ghosts == []

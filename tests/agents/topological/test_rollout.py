@@ -1,0 +1,150 @@
+"""Imitation rollouts: the oracle's answers, scheduled sampling, and worlds of stored features."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from mitigate.agents.topological import cache
+from mitigate.agents.topological.rollout import STOP_BEST, roll_out
+from mitigate.agents.topological.text import Vocabulary, pad
+from mitigate.agents.topological.waypoints import select
+from mitigate.core.observation import VIEWS
+from mitigate.worlds.apartments.apartment import apartment_of
+from mitigate.worlds.apartments.renderer import Renderer
+from mitigate.worlds.apartments.tasks import load_episodes, make_episode
+from tests.agents.rooms import room, sure, wanderer
+
+SIZE = 16
+
+
+class RoomWorld:
+    """An empty room whose views are noise; routes are walked at once."""
+
+    def __init__(self, number: int, width: int) -> None:
+        rng = np.random.default_rng(number)
+        self.episode, self.space = load_episodes("val_seen")[number], room(7, 7)
+        self.xy, self.heading = rng.uniform(1, 6, 2), rng.uniform(-3, 3)
+        self.goal = np.array([6.0, 6.0]) if self.xy.sum() < 7 else np.array([1.0, 1.0])
+        self.views = rng.normal(size=(VIEWS, width)).astype(np.float32)
+
+    def pose(self) -> np.ndarray:
+        return np.array([*self.xy, self.heading])
+
+    def go(self, route: list[np.ndarray]) -> None:
+        dx, dy = route[-1] - self.xy
+        self.xy, self.heading = route[-1], float(np.arctan2(-dx, dy))
+
+    def distance(self, xy: np.ndarray) -> float:
+        return float(np.hypot(*(xy - self.goal)))
+
+
+def look(worlds: list[RoomWorld]) -> list[tuple[torch.Tensor, np.ndarray]]:
+    return [(w.views, select(sure(w.space, w.xy, w.heading))) for w in worlds]
+
+
+def traces_of(follow_oracle: float, seed: int = 0, limit: int = 12):
+    agent = wanderer()
+    worlds = [RoomWorld(n, sum(agent.planner.widths)) for n in range(5)]
+    tokens = pad([Vocabulary().encode(w.episode.instruction.text) for w in worlds])
+    rngs = [np.random.default_rng([seed, i]) for i in range(len(worlds))]
+    made = roll_out(
+        agent.planner, tokens, worlds, look, follow_oracle=follow_oracle, rngs=rngs, limit=limit
+    )
+    return made, worlds
+
+
+@pytest.mark.parametrize("follow_oracle", [1.0, 0.3, 0.0])
+def test_targets_sum_to_one_over_stop_and_ghosts(follow_oracle):
+    traces, _ = traces_of(follow_oracle)
+    assert len(traces) == 5
+    for trace in traces:
+        assert len(trace.views) == len(trace.steps) > 0
+        for step in trace.steps:
+            nodes, ghosts = len(step.decision.nodes), len(step.decision.ghosts)
+            assert step.target.shape == (1 + ghosts,) and step.metres.shape == (1 + nodes + ghosts,)
+            assert step.target.sum() == pytest.approx(1) and (step.target >= 0).all()
+            assert step.target[0] in (0.0, 1.0)
+
+
+def test_the_oracle_walks_to_the_goal_and_stops_there():
+    traces, worlds = traces_of(1.0)
+    for trace, world in zip(traces, worlds, strict=True):
+        assert trace.steps[-1].target[0] == 1.0
+        assert world.distance(world.xy) <= STOP_BEST
+        assert all(step.target[0] == 0.0 for step in trace.steps[:-1])
+
+
+def test_the_limit_bounds_the_decisions():
+    traces, _ = traces_of(0.0, limit=2)
+    assert max(len(trace.steps) for trace in traces) <= 2
+
+
+def test_a_rollout_is_a_function_of_its_generator():
+    def walked(seed):
+        return [world.xy.tolist() for world in traces_of(0.2, seed)[1]]
+
+    assert walked(1) == walked(1) != walked(2)
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory):
+    """An untrained agent and its features of the first training apartment."""
+    agent, folder = wanderer(), tmp_path_factory.mktemp("cache")
+    cache.build(agent, folder, range(1), SIZE)
+    return agent, cache.load(folder, 0), folder
+
+
+def test_a_world_turned_in_the_cache_is_the_one_rendered_at_that_heading(stored):
+    agent, features, _ = stored
+    apartment, renderer = apartment_of("apartments/train/000000"), Renderer(SIZE)
+    renderer.load(apartment)
+    world = cache.CachedWorld(make_episode(apartment, "vln", 0), features)
+    for turn in (0, 1, 4, 11):
+        world.turn, world.index = turn, 7 * turn
+        x, y, heading = world.pose()
+        assert heading == pytest.approx(np.radians(30 * turn))
+        rgb, depth, _ = renderer.render(x, y, heading)
+        with torch.no_grad():
+            seen, _, _ = agent.perceive(*(torch.from_numpy(a)[None] for a in (rgb, depth)))
+        views, _ = world.look()
+        errors = [
+            float(np.abs(np.roll(views, k, 0) - seen[0].float().numpy()).mean())
+            for k in range(VIEWS)
+        ]
+        assert int(np.argmin(errors)) == 0 and errors[0] < 0.2 * np.median(errors[1:])
+
+
+def test_waypoints_in_the_cache_point_to_the_same_places_at_every_heading(stored):
+    _, features, _ = stored
+    world = cache.CachedWorld(
+        make_episode(apartment_of("apartments/train/000000"), "vln", 1), features
+    )
+
+    def ends() -> np.ndarray:
+        _, waypoints = world.look()
+        angles = world.pose()[2] - waypoints[:, 0]
+        return waypoints[:, 1:] * np.stack([-np.sin(angles), np.cos(angles)], 1)
+
+    world.turn = 0
+    wanted = ends()
+    for turn in (1, 5, 9):
+        world.turn = turn
+        assert np.allclose(ends(), wanted, atol=1e-5) and len(wanted) > 0
+
+
+def test_a_cached_world_stands_on_free_lattice_poses(stored):
+    _, features, _ = stored
+    apartment = apartment_of("apartments/train/000000")
+    world = cache.CachedWorld(make_episode(apartment, "vln", 0), features)
+    world.go([apartment.space.centre(10), apartment.space.centre(200)])
+    assert np.hypot(*(world.pose()[:2] - apartment.space.centre(200))) < cache.SPACING
+    assert apartment.space.index[tuple((features.xy.T[::-1] / 0.1).astype(int))].min() >= 0
+
+
+def test_building_again_keeps_what_is_there(stored):
+    agent, _, folder = stored
+    before = cache.path_of(folder, 0).stat().st_mtime_ns
+    cache.build(agent, folder, range(1), SIZE)
+    assert cache.path_of(folder, 0).stat().st_mtime_ns == before

@@ -1,0 +1,102 @@
+"""Waypoints point where one can go, and the controller gets there by odometry alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mitigate.agents.topological.controller import Controller
+from mitigate.agents.topological.waypoints import (
+    ANGLES,
+    COUNT,
+    LONGEST,
+    SHORTEST,
+    YAWS,
+    select,
+)
+from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, TURN_DEGREES
+from mitigate.worlds.apartments.labels import free_directions
+from mitigate.worlds.apartments.navigation import CELL
+from tests.agents.rooms import room, sure
+
+
+def walk(space, xy, heading, route) -> tuple[np.ndarray, int]:
+    """Where a controller ends and how many actions it took."""
+    controller, xy, steps = Controller(), np.array(xy, float), 0
+    controller.follow([np.array(p, float) for p in route])
+    while (action := controller.action(np.array([*xy, heading]))) is not None:
+        if action == FORWARD:
+            xy, _ = space.move(xy, heading, FORWARD_METRES)
+        else:
+            heading += np.radians(TURN_DEGREES) * (1 if action == LEFT else -1)
+        steps += 1
+    return xy, steps
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_the_controller_reaches_its_targets(number):
+    rng = np.random.default_rng(number)
+    space = room(8, 8)
+    points = rng.uniform(1, 7, (4, 2))
+    end, steps = walk(space, points[0], rng.uniform(-3, 3), points[1:])
+    assert np.hypot(*(end - points[-1])) < 0.2
+    length = np.hypot(*np.diff(points, axis=0).T).sum()
+    assert steps < 1.5 * length / FORWARD_METRES + 3 * 12 + 6
+
+
+def test_the_controller_gives_up_on_a_wall_and_goes_on():
+    space = room(4, 4)
+    end, steps = walk(space, (2, 2), 0.0, [(2, 6), (1, 1)])  # the first lies outside
+    assert np.hypot(*(end - (1, 1))) < 0.2 and steps < 60
+
+
+def test_no_route_no_action():
+    controller = Controller()
+    assert controller.action(np.zeros(3)) is None
+    controller.follow([np.zeros(2)])
+    assert controller.action(np.array([0.1, 0.0, 1.0])) is None
+
+
+def test_free_directions_says_how_far_one_can_go():
+    space = room(6, 6)
+    grid = free_directions(space, np.array([3.0, 5.0]), 0.0)  # the wall is about 0.7 m ahead
+    metres = 0.25 * grid.sum(1)
+    assert grid.shape == (ANGLES, 12) and set(np.unique(grid)) == {0, 1}
+    assert metres[np.abs(YAWS).argmin()] <= 0.75 < 2.9 < metres[np.abs(YAWS - np.pi).argmin()]
+    assert (np.diff(grid, axis=1) <= 0).all()  # free up to somewhere, then not
+
+
+@pytest.mark.parametrize("quarters", [1, 2, 3])
+def test_free_directions_turns_against_the_heading(quarters):
+    space, xy = room(5, 3), np.array([1.0, 1.2])
+    turned = free_directions(space, xy, quarters * np.pi / 2)  # left by so much: all moves right
+    assert np.array_equal(
+        np.roll(free_directions(space, xy, 0.0), quarters * ANGLES // 4, 0), turned
+    )
+
+
+@pytest.mark.parametrize("heading", [0.0, 1.1])
+def test_waypoints_are_free_apart_and_within_reach(heading):
+    space, xy = room(6, 4), np.array([2.0, 1.5])
+    chosen = select(sure(space, xy, heading))
+    assert 3 <= len(chosen) <= COUNT and chosen.dtype == np.float32
+    for yaw, metres in chosen:
+        assert SHORTEST <= metres <= LONGEST
+        angle = heading - yaw
+        end = xy + metres * np.array([-np.sin(angle), np.cos(angle)])
+        assert space.free[int(end[1] / CELL), int(end[0] / CELL)]
+    yaws = np.sort(np.degrees(chosen[:, 0]) % 360)
+    gaps = np.diff(yaws, append=yaws[0] + 360)
+    assert gaps.min() > 24
+
+
+def test_a_corridor_offers_its_two_ends():
+    space = room(1.0, 9)
+    chosen = select(sure(space, np.array([0.5, 4.5]), 0.0))
+    assert abs(np.cos(chosen[:2, 0])).min() > 0.99
+    assert np.cos(chosen[0, 0]) * np.cos(chosen[1, 0]) < 0  # one ahead, one behind
+    assert chosen[:2, 1] == pytest.approx(LONGEST)
+
+
+def test_nothing_free_no_waypoint():
+    assert select(np.full((ANGLES, 12), -20.0)).shape == (0, 2)

@@ -1,0 +1,121 @@
+"""Checkpoints are whole or refused, rotate, and hold no code."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import random
+
+import numpy
+import pytest
+import torch
+from torch import nn
+
+from mitigate.core import checkpoint, checksums, seeding
+
+STATE = {
+    "step": 3,
+    "model": {"w": torch.arange(100.0)},
+    "optimizer": {},
+    "scheduler": {},
+    "rng": {},
+    "config": {},
+}
+
+
+def test_what_is_saved_is_loaded(tmp_path):
+    path = checkpoint.save(tmp_path, STATE)
+    loaded = checkpoint.load(path)
+    assert loaded["step"] == 3 and torch.equal(loaded["model"]["w"], STATE["model"]["w"])
+    names = sorted(p.name for p in tmp_path.iterdir())
+    assert names == ["step-00000003.pt", "step-00000003.pt.sha256"]
+
+
+def test_only_the_newest_are_kept(tmp_path):
+    for step in (1, 2, 10, 100):
+        checkpoint.save(tmp_path, {**STATE, "step": step}, keep=2)
+    names = [path.name for path in checkpoint.checkpoints(tmp_path)]
+    assert names == ["step-00000010.pt", "step-00000100.pt"]
+    sums = sorted(path.name for path in tmp_path.glob("*.sha256"))
+    assert sums == [f"{name}.sha256" for name in names]
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path):
+    path = checkpoint.save(tmp_path, STATE)
+    before = path.read_bytes()
+
+    def fail(file):
+        file.write_bytes(b"half")
+        raise OSError("disk full")
+
+    with pytest.raises(OSError, match="disk full"):
+        checksums.write(path, fail)
+    assert path.read_bytes() == before
+    assert sorted(tmp_path.iterdir()) == [path, checksums.sidecar(path)]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.99])
+def test_a_truncated_checkpoint_is_named_with_the_older_one(tmp_path, share):
+    checkpoint.save(tmp_path, {**STATE, "step": 1})
+    path = checkpoint.save(tmp_path, {**STATE, "step": 2})
+    os.truncate(path, int(path.stat().st_size * share))
+    with pytest.raises(ValueError, match="step-00000002.pt") as error:
+        checkpoint.load(path)
+    assert "goes on from step-00000001.pt" in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_foreign_file_is_named_and_runs_no_code(tmp_path):
+    class Evil:
+        def __reduce__(self):
+            return (os.mkdir, (str(tmp_path / "owned"),))
+
+    for number, content in enumerate((Evil(), {"weights": 1}, [1, 2])):
+        path = tmp_path / f"step-{number:08d}.pt"
+        torch.save(content, path)
+        with pytest.raises(ValueError, match=path.name):
+            checkpoint.load(path)
+    (tmp_path / "step-00000009.pt").write_bytes(pickle.dumps(Evil()))
+    with pytest.raises(ValueError, match=r"step-00000009\.pt"):
+        checkpoint.load(tmp_path / "step-00000009.pt")
+    assert not (tmp_path / "owned").exists()
+
+
+def test_a_missing_checkpoint_is_named(tmp_path):
+    with pytest.raises(FileNotFoundError, match="step-7"):
+        checkpoint.load(tmp_path / "step-7.pt")
+
+
+def test_random_state_goes_through_a_checkpoint(tmp_path):
+    seeding.seed_everything(5, "anything")
+    state = {**STATE, "rng": seeding.global_state()}
+    first = (torch.rand(3), numpy.random.rand(), random.random())
+    seeding.set_global_state(checkpoint.load(checkpoint.save(tmp_path, state))["rng"])
+    again = (torch.rand(3), numpy.random.rand(), random.random())
+    assert torch.equal(first[0], again[0]) and first[1:] == again[1:]
+
+
+def test_weights_round_trip_and_keep_their_hash(tmp_path):
+    one, two = nn.Linear(3, 2), nn.Linear(3, 2)
+    assert checkpoint.weights_sha(one) != checkpoint.weights_sha(two)
+    checkpoint.save_weights(one, tmp_path)
+    checkpoint.load_weights(two, tmp_path / "model.safetensors")
+    assert checkpoint.weights_sha(one) == checkpoint.weights_sha(two)
+    assert len(checkpoint.weights_sha(one)) == 12
+
+
+def test_weights_of_another_module_are_refused(tmp_path):
+    checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
+    with pytest.raises(ValueError, match="weight"):
+        checkpoint.load_weights(nn.Linear(4, 2), tmp_path)
+
+
+def test_truncated_weights_are_refused(tmp_path):
+    path = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
+    os.truncate(path, path.stat().st_size - 4)
+    with pytest.raises(ValueError, match="cut short"):
+        checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+
+
+def test_missing_weights_say_what_to_train(tmp_path):
+    with pytest.raises(FileNotFoundError, match="make train RECIPE=base"):
+        checkpoint.load_weights(nn.Linear(3, 2), tmp_path)

@@ -1,0 +1,242 @@
+"""Every flipped bit of a checkpoint or of weights is found; a kill leaves nothing refused."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+import torch
+from torch import nn
+
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import checkpoint, checksums, seeding
+
+ROOT = Path(__file__).parents[2]
+FLIPS = 50
+STATE = {
+    "model": {"w": torch.arange(300.0), "deep": {"b": torch.ones(7)}},
+    "optimizer": {"state": {0: {"exp_avg": torch.zeros(300)}}},
+    "scheduler": {},
+    "rng": {},
+    "config": {"a": 1},
+}
+
+
+class Killed(BaseException):
+    """What a kill looks like from inside: nothing after it runs but ``finally``."""
+
+
+def state(step: int) -> dict:
+    return {"step": step, **STATE}
+
+
+def flipped(data: bytes, bit: int) -> bytes:
+    """``data`` with one other bit."""
+    changed = bytearray(data)
+    changed[bit // 8] ^= 1 << bit % 8
+    return bytes(changed)
+
+
+def flips(data: bytes, name: str) -> list[bytes]:
+    """``data`` with one flipped bit, at ``FLIPS`` places drawn for ``name``."""
+    places = seeding.generator(0, "flipped bits", name).integers(0, 8 * len(data), FLIPS)
+    return [flipped(data, int(bit)) for bit in places]
+
+
+def note_of(path: Path) -> Path:
+    return path.with_name(path.name + ".sha256")
+
+
+def checked(folder: Path) -> int:
+    """The exit status of ``sha256sum -c`` over all sidecars in ``folder``."""
+    names = sorted(path.name for path in folder.glob("*.sha256"))
+    assert names
+    command = ["sha256sum", "--strict", "--status", "-c", *names]
+    return subprocess.run(command, cwd=folder).returncode
+
+
+def test_every_flipped_bit_of_a_checkpoint_is_found(tmp_path):
+    checkpoint.save(tmp_path, state(1))
+    path = checkpoint.save(tmp_path, state(2))
+    for changed in flips(path.read_bytes(), "step"):
+        path.write_bytes(changed)
+        with pytest.raises(checkpoint.Damaged, match="step-00000002.pt"):
+            checkpoint.load(path)
+        newest, found = checkpoint.load_newest(tmp_path)
+        assert newest.name == "step-00000001.pt" and found["step"] == 1
+
+
+def test_every_flipped_bit_of_weights_is_found(tmp_path):
+    path = checkpoint.save_weights(nn.Linear(30, 20), tmp_path)
+    for changed in flips(path.read_bytes(), "weights"):
+        path.write_bytes(changed)
+        with pytest.raises(ValueError, match="Fetch or train them again"):
+            checkpoint.load_weights(nn.Linear(30, 20), path)
+
+
+def test_without_a_sidecar_no_flipped_bit_changes_what_a_checkpoint_says(tmp_path):
+    """Its zip file holds sums of the contents: a flip outside of them is harmless."""
+    path = checkpoint.save(tmp_path, state(1))
+    note_of(path).unlink()
+    wanted, sound, refused = checkpoint.load(path), path.read_bytes(), 0
+    for changed in flips(sound, "no sidecar"):
+        path.write_bytes(changed)
+        try:
+            found = checkpoint.load(path)
+        except checkpoint.Damaged:
+            refused += 1
+            continue
+        assert str(found) == str(wanted)
+        assert torch.equal(found["model"]["w"], wanted["model"]["w"])
+    assert refused > FLIPS / 2
+    path.write_bytes(sound)
+    at = sound.index(STATE["model"]["w"].numpy().tobytes())
+    path.write_bytes(flipped(sound, 8 * at + 77))
+    with pytest.raises(checkpoint.Damaged, match="has other bytes"):
+        checkpoint.load(path)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
+@pytest.mark.parametrize("noted", [True, False])
+def test_a_truncated_checkpoint_is_passed_over(tmp_path, share, noted, capsys):
+    checkpoint.save(tmp_path, state(1))
+    path = checkpoint.save(tmp_path, state(2))
+    os.truncate(path, int(path.stat().st_size * share))
+    if not noted:
+        note_of(path).unlink()
+    assert checkpoint.load_newest(tmp_path)[0].name == "step-00000001.pt"
+    said = capsys.readouterr().out
+    assert said == f"{path} is damaged; going on from step-00000001.pt\n"
+
+
+def test_weights_without_a_sidecar_are_loaded(tmp_path):
+    one, two = nn.Linear(3, 2), nn.Linear(3, 2)
+    note_of(checkpoint.save_weights(one, tmp_path)).unlink()
+    checkpoint.load_weights(two, tmp_path)
+    assert torch.equal(one.weight, two.weight)
+
+
+@pytest.mark.parametrize("text", ["", "\n", "0" * 64, "0" * 64 + "  other\n", "\xff", "x  model"])
+def test_a_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
+    file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
+    note_of(file).write_bytes(text.encode("latin-1"))
+    with pytest.raises(ValueError, match="model.safetensors.sha256 alone is damaged, delete it"):
+        checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+    path = checkpoint.save(tmp_path, state(1))
+    note_of(path).write_bytes(text.encode("latin-1"))
+    with pytest.raises(checkpoint.Damaged, match=r"If their \.sha256 files alone are damaged"):
+        checkpoint.load_newest(tmp_path)
+    for kept in (file, path):
+        note_of(kept).unlink()
+    checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+    assert checkpoint.load_newest(tmp_path)[1]["step"] == 1
+
+
+def test_if_every_checkpoint_is_damaged_none_is_deleted(tmp_path):
+    for step in (1, 2):
+        path = checkpoint.save(tmp_path, state(step))
+        path.write_bytes(flipped(path.read_bytes(), 4000))
+    before = {p: p.read_bytes() for p in tmp_path.iterdir()}
+    with pytest.raises(checkpoint.Damaged, match="step-00000002.pt, step-00000001.pt.*none was"):
+        checkpoint.load_newest(tmp_path)
+    assert before == {p: p.read_bytes() for p in tmp_path.iterdir()}
+    assert checkpoint.load_newest(tmp_path / "nothing") is None
+
+
+def test_sidecars_are_what_sha256sum_checks(tmp_path):
+    checkpoint.save(tmp_path, state(1))
+    file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
+    assert checked(tmp_path) == 0
+    file.write_bytes(flipped(file.read_bytes(), 500))
+    assert checked(tmp_path) != 0
+
+
+@pytest.mark.parametrize("noted", [True, False])
+@pytest.mark.parametrize("when", range(4))
+def test_a_kill_at_any_moment_leaves_the_old_file_or_the_new_one(
+    tmp_path, monkeypatch, when, noted
+):
+    """A file is replaced in three renamings: its sidecar with both sums, itself, its sidecar."""
+    old, new = nn.Linear(3, 2), nn.Linear(3, 2)
+    file = checkpoint.save_weights(old, tmp_path)
+    if not noted:
+        note_of(file).unlink()
+    replace, calls = os.replace, []
+
+    def replace_until_killed(*names):
+        calls.append(names)
+        if len(calls) > when:
+            raise Killed
+        replace(*names)
+
+    monkeypatch.setattr(os, "replace", replace_until_killed)
+    if when < 3:
+        with pytest.raises(Killed):
+            checkpoint.save_weights(new, tmp_path)
+    else:
+        checkpoint.save_weights(new, tmp_path)
+    monkeypatch.undo()
+    found = nn.Linear(3, 2)
+    checkpoint.load_weights(found, tmp_path)
+    assert torch.equal(found.weight, (old if when < 2 else new).weight)
+    checkpoint.save_weights(new, tmp_path)
+    checkpoint.load_weights(found, tmp_path)
+    assert torch.equal(found.weight, new.weight)
+    assert len(note_of(file).read_text().splitlines()) == 1
+
+
+def test_a_damaged_file_that_is_replaced_does_not_become_a_sound_one(tmp_path, monkeypatch):
+    file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
+    file.write_bytes(flipped(file.read_bytes(), 700))
+
+    def settle(path, digest):
+        raise Killed
+
+    before = file.read_bytes()
+    monkeypatch.setattr(checksums, "settle", settle)
+    with pytest.raises(Killed):
+        checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
+    checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+    file.write_bytes(before)
+    with pytest.raises(ValueError, match="damaged"):
+        checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+
+
+def test_rotation_deletes_sidecars_too_and_those_that_a_kill_left(tmp_path):
+    (tmp_path / "step-00000001.pt.sha256").write_text("left by a kill")
+    for step in (2, 3, 4, 5):
+        checkpoint.save(tmp_path, state(step), keep=2)
+    left = [f"step-0000000{step}.pt{end}" for step in (4, 5) for end in ("", ".sha256")]
+    assert sorted(path.name for path in tmp_path.iterdir()) == left
+
+
+def test_what_is_written_is_kept_though_a_damaged_later_step_lies_there(tmp_path):
+    late = checkpoint.save(tmp_path, state(9))
+    late.write_bytes(b"")
+    for step in (4, 5):
+        checkpoint.save(tmp_path, state(step), keep=1)
+    assert [path.name for path in checkpoint.checkpoints(tmp_path)] == [
+        "step-00000005.pt",
+        "step-00000009.pt",
+    ]
+    assert checkpoint.load_newest(tmp_path)[1]["step"] == 5
+
+
+@pytest.mark.parametrize("name", ["base", "teacher", "safeguard"])
+def test_shipped_weights_have_their_sums_beside_them(name):
+    assert checked(ROOT / "checkpoints" / name) == 0
+
+
+def test_shipped_hardened_folders_have_none(tmp_path):
+    assert not list((ROOT / "checkpoints/hardened").rglob("*.sha256"))
+
+
+def test_shipped_weights_with_a_flipped_bit_are_refused(tmp_path):
+    folder = shutil.copytree(ROOT / "checkpoints/base", tmp_path / "base")
+    file = folder / checkpoint.WEIGHTS
+    file.write_bytes(flipped(file.read_bytes(), 8 * 2_000_000))
+    with pytest.raises(ValueError, match="does not have the sha256"):
+        checkpoint.load_weights(TopologicalAgent(), folder)

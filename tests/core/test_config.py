@@ -1,0 +1,269 @@
+"""Every YAML in conf/ composes, names what exists, and a wrong option is explained."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from dataclasses import replace
+
+import pytest
+from hydra.utils import get_object
+from omegaconf import DictConfig, OmegaConf
+
+from mitigate.core import conf
+from mitigate.corruptions import NAMES
+from mitigate.evaluation import columns, evaluate
+from mitigate.training import table2, train
+from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
+
+YAMLS = sorted(path.relative_to(conf.CONF) for path in conf.CONF.rglob("*.yaml"))
+PRIMARY = tuple(module.__name__.split(".")[-1] for module in (train, evaluate, table2))
+GROUPS = [path for path in YAMLS if len(path.parts) > 1]
+
+
+def targets(node) -> list[str]:
+    if isinstance(node, dict):
+        own = [node["_target_"]] if "_target_" in node else []
+        return own + [name for value in node.values() for name in targets(value)]
+    return []
+
+
+def resolved(cfg: DictConfig) -> dict:
+    return OmegaConf.to_container(cfg, resolve=True, throw_on_missing=True)
+
+
+def composed(path) -> dict:
+    if len(path.parts) == 1:
+        return resolved(conf.load_config(path.stem))
+    return resolved(conf.load_config("train", [f"{path.parent}={path.stem}"]))
+
+
+@pytest.mark.parametrize("path", YAMLS, ids=str)
+def test_every_yaml_composes_and_resolves(path):
+    assert len(path.parts) == 2 or path.stem in PRIMARY
+    assert composed(path)
+
+
+@pytest.mark.parametrize("path", YAMLS, ids=str)
+def test_every_target_can_be_imported(path):
+    for name in targets(composed(path)):
+        assert callable(get_object(name))
+
+
+@pytest.mark.parametrize("path", YAMLS, ids=str)
+def test_every_yaml_says_what_it_is_for(path):
+    assert "# " in (conf.CONF / path).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("path", [p for p in GROUPS if p.parts[0] == "recipe"], ids=str)
+def test_a_recipe_is_named_after_its_file_and_has_stages(path):
+    cfg = conf.load_config("train", [f"recipe={path.stem}"])
+    assert cfg.name == path.stem and len(cfg.stages) >= 1
+
+
+def test_the_full_suite_is_clean_and_all_corruptions():
+    cfg = conf.load_config("evaluate")
+    assert list(cfg.suite.conditions) == ["clean", *NAMES]
+
+
+def test_conditions_take_the_severity_of_their_modality():
+    made = evaluate.conditions(["clean", "flare", "multipath"], 0.9, 0.8)
+    assert [(c.name, c.severity) for c in made] == [
+        ("clean", 0),
+        ("flare", 0.9),
+        ("multipath", 0.8),
+    ]
+
+
+def test_a_severity_out_of_range_is_refused_with_any_condition():
+    for given in ((1.2, None), (0.5, 1.2)):
+        with pytest.raises(ValueError, match="from 0 .clean. to 1 .worst., but it is 1.2"):
+            evaluate.conditions(["clean"], *given)
+
+
+def test_weights_are_named_after_their_folder_or_run():
+    for path in (
+        "checkpoints/base",
+        "runs/base/agent",
+        "runs/table2/cells/base/run/agent",
+        "x/base/model.safetensors",
+        "base.safetensors",
+    ):
+        assert columns.name_of(path) == "base"
+    assert columns.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
+
+
+def test_an_unknown_condition_or_split_names_the_nearest():
+    with pytest.raises(ValueError, match="Did you mean flare"):
+        evaluate.conditions(["flair"], 0.5, None)
+    with pytest.raises(ValueError, match="Did you mean val_seen"):
+        evaluate.episodes(conf.load_config("evaluate").env, "val_sen", 1)
+
+
+def test_a_few_episodes_come_from_many_layouts_and_count_towards_more():
+    env = conf.load_config("evaluate").env
+    chosen = {
+        count: [e.episode_id for e in evaluate.episodes(env, "val_unseen", count)]
+        for count in (1, 40, 100, 300, 999, None)
+    }
+    layouts = {name.partition("-")[0] for name in chosen[40]}
+    assert len(chosen[1]) == 1 and len(chosen[40]) == 40 and len(layouts) > 25
+    assert set(chosen[1]) < set(chosen[40]) < set(chosen[100]) < set(chosen[300])
+    assert chosen[300] == chosen[999] == chosen[None]
+    assert chosen[40] == [name for name in chosen[300] if name in set(chosen[40])]
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (lambda listed: [], "lists no episode"),
+        (lambda listed: [*listed, listed[0]], "-0 twice"),
+        (lambda listed: [replace(listed[0], instruction=Instruction(" "))], "has no instruction"),
+    ],
+)
+def test_a_list_that_cannot_be_scored_is_refused(tmp_path, change, text):
+    cfg = conf.load_config("evaluate", [f"+env.episodes.mine={tmp_path / 'mine.json'}"])
+    listed = list(read_episodes(cfg.env.episodes.val_seen))[:2]
+    write_episodes(tmp_path / "mine.json", change(listed))
+    with pytest.raises(ValueError, match=text):
+        evaluate.episodes(cfg.env, "mine", None)
+
+
+def test_the_experiment_harsh_is_the_papers_stronger_setting():
+    cfg = conf.load_config("train", ["experiment=harsh"])
+    assert (cfg.schedule.severity, cfg.schedule.severity_depth) == (0.9, 0.8)
+
+
+def test_smoke_shortens_every_stage():
+    cfg = conf.load_config("train", ["recipe=base", "debug=smoke"])
+    assert cfg.trainer.steps == 2 and cfg.evaluation.episodes == 2
+
+
+def test_frozen_fits_only_recipes_with_its_stages():
+    train.check(conf.load_config("train", ["recipe=da_success", "experiment=frozen"]))
+    for recipe in ("ts_distill", "conv_adapter"):
+        cfg = conf.load_config("train", [f"recipe={recipe}", "experiment=frozen"])
+        with pytest.raises(ValueError, match="has no stage 'imitation'.*imitation and da_"):
+            train.check(cfg)
+
+
+def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch, tmp_path):
+    """The weights bring settings of their own; what the command names goes before them, and the
+    table's column says so, because the weights' hash does not."""
+    met = {}
+
+    def meet(agent, episodes, conditions, *, name, **others):
+        met[name] = agent
+
+    monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", meet)
+    monkeypatch.setattr(evaluate, "write_table", lambda rows, out: None)
+    for options in (
+        [],
+        ["agent.blind=[rgb]", "agent.planner={fusion: {rate: 4, cap: 3}}", "env.size=32"],
+    ):
+        given = ["checkpoint=checkpoints/hardened/ts_distill", f"out={tmp_path}", *options]
+        monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+        conf.main(evaluate.hydra_main, "evaluate")
+    (plain, agent), (name, changed) = met.items()
+    assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
+    assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3+env.size-32"
+    assert changed.blind == ("rgb",) and changed.planner.fusion == {"rate": 4, "cap": 3}
+
+
+@pytest.mark.parametrize(
+    ("settings", "overrides", "name"),
+    [
+        ({}, [], "base"),
+        ({}, ["agent=topological", "++env.size=64"], "base"),
+        ({"blind": ["depth"]}, ["agent=mine"], "base+blind-depth"),
+        ({"blind": []}, ["agent.blind=[]"], "base"),
+        ({"blind": ["depth"]}, [], "base+blind-depth"),  # an edited conf/agent/topological.yaml
+    ],
+)
+def test_a_columns_name_follows_the_settings_however_they_were_given(settings, overrides, name):
+    cfg = conf.load_config("evaluate")
+    cfg.agent.update(settings)
+    node, found = columns.agent_and_name(cfg, overrides)
+    assert found == name and node.blind == settings.get("blind", [])
+
+
+@pytest.mark.parametrize("sign", ["", "++"])
+def test_views_of_another_size_are_another_column(sign):
+    cfg = conf.load_config("evaluate", [f"{sign}env.size=32"])
+    assert columns.agent_and_name(cfg)[1] == "base+env.size-32"
+    own = conf.load_config("evaluate", ["env.size=32", "agent.size=32"])
+    assert columns.agent_and_name(own, ["agent.size=32"])[1] == "base+size-32"
+
+
+def test_columns_tell_safeguards_apart(tmp_path):
+    """Every trained adapter lies in a folder called agent."""
+    for run, weights in (("first", b"a"), ("second", b"b")):
+        folder = tmp_path / run / "agent"
+        folder.mkdir(parents=True)
+        (folder / "adapter_model.safetensors").write_bytes(weights)
+    first, second = (
+        columns.safeguard_label(str(tmp_path / x / "agent")) for x in ("first", "second")
+    )
+    assert first.startswith("first-") and second.startswith("second-")
+    (tmp_path / "first" / "agent" / "adapter_model.safetensors").write_bytes(b"c")
+    assert columns.safeguard_label(str(tmp_path / "first" / "agent")) != first
+    assert columns.safeguard_label("http://one:80/v1@m") == "one-80-v1@m"
+    assert [columns.safeguard_label(x) for x in ("rules", "lora")] == ["rules", "lora"]
+
+
+def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
+    monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", lambda *a, **k: None)
+    monkeypatch.setattr(evaluate, "write_table", lambda rows, out: None)
+    mine = tmp_path / "mine.json.gz"
+    cfg = conf.load_config(
+        "evaluate", [f"+env.episodes.mine={mine}", "split=mine", f"out={tmp_path}"]
+    )
+    shutil.copy(cfg.env.episodes.val_seen, mine)
+    evaluate.run(cfg)
+    evaluate.run(cfg)
+    seen = conf.load_config("evaluate", ["split=val_seen", f"out={tmp_path}"])
+    evaluate.run(seen)  # another list in one folder is no trouble: rows carry their split
+    shutil.copy(cfg.env.episodes.val_unseen, mine)
+    with pytest.raises(ValueError, match="rows of another"):
+        evaluate.run(cfg)
+
+
+@pytest.mark.parametrize("count", [0, -1])
+def test_no_episodes_are_refused_before_a_training(count):
+    cfg = conf.load_config("train", ["recipe=da_per_episode", f"evaluation.episodes={count}"])
+    with pytest.raises(ValueError, match=f"episodes={count} is none"):
+        train.check(cfg)
+
+
+def complaint(monkeypatch, capsys, *options: str) -> str:
+    monkeypatch.setattr(sys, "argv", ["train", *options])
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    with pytest.raises(SystemExit) as stop:
+        conf.main(train.hydra_main, "train")
+    text = str(stop.value.code)
+    assert text.startswith("error: ") and "\n" not in text
+    assert "Traceback" not in capsys.readouterr().err
+    return text
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("recipe=da_per_epsiode", ["Did you mean da_per_episode?", "ablation, base, "]),
+        ("recpie=base", ["Did you mean recipe?"]),
+        ("severty=0.5", ["Did you mean severity?"]),
+        ("trainer.stps=4", ["Did you mean trainer.steps?"]),
+        ("stages.imitatoin.trainer.steps=4", ["Did you mean stages.imitation"]),
+        ("trainer.steps=four", ["trainer.steps=four", "a whole number"]),
+        ("severity=high", ["severity=high", "a number"]),
+        ("evaluation.enabled=maybe", ["true or false"]),
+        ("severity=1.2", ["severity=1.2", "from 0 (clean) to 1"]),
+        ("severity_depth=-0.1", ["severity_depth=-0.1", "from 0 (clean) to 1"]),
+        ("severity==3", ["key=value"]),
+        ("init=nowhere", ["nowhere", "make train RECIPE=base"]),
+    ],
+)
+def test_a_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, option, words):
+    text = complaint(monkeypatch, capsys, option)
+    for word in words:
+        assert word in text

@@ -1,0 +1,92 @@
+"""The doctor says what the processor can do and whether there is a compiler."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from mitigate.core import doctor
+
+OLD = {"sse4_1", "avx2"}
+MIDDLE = OLD | {"avx512f", "avx512bw", "avx512dq", "avx512vl"}
+NEW = MIDDLE | {"avx512_bf16"}
+NEWEST = NEW | {"amx_bf16", "amx_tile"}
+
+
+@pytest.mark.parametrize(
+    ("flags", "words"),
+    [
+        (OLD, "AVX2, no AVX-512, no native bf16"),
+        (MIDDLE, "AVX2, AVX-512, no native bf16"),
+        (NEW, "AVX2, AVX-512, native bf16"),
+        (NEWEST, "AVX2, AVX-512, native bf16, bf16 matrices (AMX)"),
+        ({"sse4_1"}, "no AVX2, no AVX-512, no native bf16"),
+        (set(), "unknown (no flags in /proc/cpuinfo)"),
+    ],
+)
+def test_the_processor_is_named_by_what_it_has(flags, words):
+    assert doctor.processor(flags, {}) == words
+
+
+@pytest.mark.parametrize(
+    ("environment", "words"),
+    [
+        ({"ONEDNN_MAX_CPU_ISA": "AVX2"}, "ONEDNN_MAX_CPU_ISA=AVX2 forbids AVX-512, native bf16"),
+        ({"ONEDNN_MAX_CPU_ISA": "avx512_core"}, "ONEDNN_MAX_CPU_ISA=avx512_core forbids native"),
+        ({"ATEN_CPU_CAPABILITY": "avx2"}, "ATEN_CPU_CAPABILITY=avx2 forbids AVX-512, native bf16"),
+    ],
+)
+def test_what_the_environment_forbids_is_said(environment, words):
+    assert f"; {words}" in doctor.processor(NEW, environment)
+
+
+@pytest.mark.parametrize(
+    "environment", [{"ONEDNN_MAX_CPU_ISA": "ALL"}, {"ATEN_CPU_CAPABILITY": "avx512"}, {}]
+)
+def test_nothing_is_said_of_variables_that_forbid_nothing(environment):
+    assert "forbids" not in doctor.processor(NEW, environment)
+
+
+def test_a_cap_above_the_processor_forbids_nothing():
+    assert "forbids" not in doctor.processor(OLD, {"ONEDNN_MAX_CPU_ISA": "AVX2"})
+
+
+def test_a_compiler_is_looked_for_in_the_path_or_named_by_cxx(tmp_path, monkeypatch):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CXX", raising=False)
+    assert doctor.compiler() is None
+    for name in ("clang++", "mine"):
+        (tmp_path / name).write_text("#!/bin/sh\n")
+        (tmp_path / name).chmod(0o755)
+    assert doctor.compiler() == str(tmp_path / "clang++")
+    monkeypatch.setenv("CXX", "mine -O2")
+    assert doctor.compiler() == str(tmp_path / "mine")
+
+
+def test_a_missing_compiler_is_no_problem(capsys, monkeypatch):
+    monkeypatch.setattr(doctor, "compiler", lambda: None)
+    problems = doctor._machine()
+    out = capsys.readouterr().out
+    assert "missing (torch.compile needs one, training does not)" in out
+    assert not any("compiler" in problem for problem in problems)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="cores are counted otherwise")
+def test_cores_are_those_that_this_process_may_use(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 1})
+    monkeypatch.setattr(os, "cpu_count", lambda: 8)
+    assert doctor._cores() == "2 of 8"
+
+
+def test_the_report_has_a_line_for_each(capsys):
+    doctor.main()
+    out = capsys.readouterr().out
+    for name in ("cores", "processor", r"C\+\+ compiler"):
+        assert re.search(rf"^{name} +\S", out, re.MULTILINE)
+    flags = Path("/proc/cpuinfo")
+    if flags.is_file() and "avx2" in flags.read_text():
+        assert re.search(r"^processor +AVX2", out, re.MULTILINE)

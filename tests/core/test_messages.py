@@ -1,0 +1,132 @@
+"""A user's mistake ends a program in one paragraph: the cause, the allowed values, the fix.
+
+What options may be is in ``test_config.py``, an unknown recipe among them; here are mistakes that
+show only when files and weights are at hand, as a user meets them.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+
+import numpy as np
+import pytest
+import torch
+from omegaconf import open_dict
+
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import checkpoint, conf
+from mitigate.corruptions import Corruption, Key, Schedule, corrupt
+from mitigate.evaluation import evaluate
+from mitigate.training import train
+from tests.training.test_train import config
+
+NAMES = "motion_blur, low_light, low_light_noise, spatter"
+
+
+def complaint(program, primary: str = "train") -> str:
+    with pytest.raises(SystemExit) as stop:
+        conf.main(program, primary)
+    text = str(stop.value.code)
+    assert text.startswith("error: ") and "\n" not in text and text.endswith(".")
+    return text
+
+
+@pytest.fixture(scope="module")
+def weights(tmp_path_factory):
+    return checkpoint.save_weights(TopologicalAgent(), tmp_path_factory.mktemp("weights")).parent
+
+
+@pytest.fixture
+def evaluation(monkeypatch, tmp_path, weights):
+    """Run ``python -m mitigate.evaluate`` with options and return its complaint."""
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+
+    def run(*options: str) -> str:
+        given = (f"checkpoint={weights}", f"out={tmp_path / 'out'}", "episodes=1", *options)
+        monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+        return complaint(evaluate.hydra_main, "evaluate")
+
+    return run
+
+
+def test_a_severity_out_of_range(evaluation):
+    text = evaluation("severity=1.2", "conditions=[clean,flare]")
+    for part in ("1.2", "from 0 (clean) to 1 (worst)", "divided by 100"):
+        assert part in text
+
+
+def test_an_unknown_corruption(evaluation):
+    text = evaluation("conditions=[clean,spater]")
+    for part in ("no condition 'spater'", "Did you mean spatter?", "clean, motion_blur"):
+        assert part in text
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda name: Corruption(name, 0.5),
+        lambda name: Schedule("per_frame", 0.5, names=(name,)),
+        lambda name: corrupt(np.zeros((4, 4, 3), np.uint8), name, 0.5, key=Key(0, "a")),
+    ],
+    ids=["Corruption", "Schedule", "corrupt"],
+)
+def test_an_unknown_corruption_in_a_program_of_ones_own(call):
+    with pytest.raises(ValueError, match=r"'spater'.*Did you mean spatter\?") as error:
+        call("spater")
+    assert NAMES in str(error.value) and "\n" not in str(error.value)
+
+
+def test_an_episode_file_with_a_missing_key(evaluation, tmp_path):
+    path = tmp_path / "mine.json"
+    path.write_text(json.dumps({"episodes": [{"episode_id": 7, "trajectory_id": 4}]}))
+    text = evaluation(f"+env.episodes.mine={path}", "split=mine")
+    for part in (str(path), "episode_id 7", "lacks the key 'scene_id'", "An episode needs"):
+        assert part in text
+
+
+def test_weights_cut_short(evaluation, weights, tmp_path):
+    whole = (weights / checkpoint.WEIGHTS).read_bytes()
+    (tmp_path / checkpoint.WEIGHTS).write_bytes(whole[: len(whole) // 2])
+    text = evaluation(f"checkpoint={tmp_path}")
+    for part in (checkpoint.WEIGHTS, "cut short or damaged", "Fetch or train them again"):
+        assert part in text
+
+
+def test_weights_of_another_agent(evaluation, tmp_path):
+    checkpoint.save_weights(torch.nn.Linear(2, 2), tmp_path)
+    text = evaluation(f"checkpoint={tmp_path}")
+    for part in ("do not fit this TopologicalAgent", "bias", "config.yaml beside them"):
+        assert part in text
+
+
+def test_a_run_without_a_sound_checkpoint(tmp_path):
+    train.run(config(tmp_path))
+    kept = checkpoint.checkpoints(tmp_path / "second")
+    for path in kept:
+        os.truncate(path, path.stat().st_size // 2)
+    text = complaint(lambda: train.run(config(tmp_path)))
+    for part in (str(tmp_path / "second"), *(path.name for path in kept), "none was deleted"):
+        assert part in text
+    assert checkpoint.checkpoints(tmp_path / "second") == kept
+
+
+def test_a_loss_that_is_not_a_number(tmp_path):
+    cfg = config(tmp_path)
+    with open_dict(cfg):
+        cfg.stages.second.recipe.bad_step = 3
+    text = complaint(lambda: train.run(cfg))
+    for part in ("nan", "step 3", "TinyRecipe", "episode-3", "step-00000002.pt"):
+        assert part in text
+    assert [p.name for p in checkpoint.checkpoints(tmp_path / "second")] == ["step-00000002.pt"]
+
+
+def test_a_run_whose_evaluation_cannot_work_stops_before_it_trains(tmp_path):
+    for option, part in (
+        ("evaluation.split=val_unsen", "Did you mean val_unseen"),
+        ("suite.conditions=[flair]", "Did you mean flare"),
+    ):
+        cfg = config(tmp_path, "evaluation.enabled=true", option)
+        assert part in complaint(lambda cfg=cfg: train.run(cfg))
+    assert not list(tmp_path.iterdir())

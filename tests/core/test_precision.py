@@ -1,0 +1,99 @@
+"""bf16 only where the processor computes it; the choice is made once and obeyed by all."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from mitigate.core import checkpoint, precision
+from mitigate.core.precision import Probe, choose, computing, current, native
+from mitigate.training.trainer import Trainer
+from tests.tiny import TinyRecipe
+
+CPU = torch.device("cpu")
+
+
+@pytest.mark.parametrize(
+    ("capabilities", "cap", "wanted"),
+    [
+        ({"avx2": True}, "", False),
+        ({"avx512_f": True}, "", False),  # AVX-512 alone would emulate it
+        ({"avx512_bf16": True}, "", True),
+        ({"amx_bf16": True}, "", True),
+        ({"bf16": True}, "", True),  # Arm
+        ({"avx512_bf16": True}, "AVX2", False),
+        ({"avx512_bf16": True}, "avx512_core_vnni", False),
+        ({"avx512_bf16": True}, "AVX512_CORE_BF16", True),
+        ({"amx_bf16": True}, "ALL", True),
+    ],
+)
+def test_bf16_is_native_with_its_instructions_and_no_cap_below_them(capabilities, cap, wanted):
+    assert native(capabilities, cap) is wanted
+
+
+@pytest.mark.parametrize(
+    ("found", "wanted"),
+    [(Probe(10.0, None), "fp32"), (Probe(10.0, 30.0), "fp32"), (Probe(10.0, 6.0), "bf16")],
+)
+def test_auto_is_bf16_only_where_the_probe_finds_it_no_slower(found, wanted, monkeypatch):
+    monkeypatch.setattr(precision, "probe", lambda: found)
+    assert choose("auto", CPU) == wanted
+    assert choose("fp32", CPU) == "fp32" and choose("bf16", CPU) == "bf16"
+
+
+def test_the_probe_times_what_the_machine_has():
+    found = precision.probe()
+    assert 0 < found.fp32 < 5000 and (found.bf16 is not None) == native()
+
+
+def test_the_context_says_which_precision_it_is():
+    product = torch.ones(2, 2)
+    for kind, dtype in (("fp32", torch.float32), ("bf16", torch.bfloat16)):
+        with computing(kind, CPU):
+            assert current(CPU) == kind and (product @ product).dtype == dtype
+    assert current(CPU) == "fp32"
+
+
+class Watching(TinyRecipe):
+    """Keeps in which precision each part of it ran."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.seen: dict[str, str] = {}
+
+    def start(self) -> None:
+        self.seen["start"] = current(CPU)
+
+    def batch(self, step: int) -> dict:
+        self.seen["batch"] = current(CPU)
+        return super().batch(step)
+
+    def forward(self, batch: dict) -> dict:
+        self.seen["forward"] = current(CPU)
+        return super().forward(batch)
+
+
+@pytest.mark.parametrize("kind", ["fp32", "bf16"])
+def test_preparation_batches_and_networks_obey_the_trainers_precision(kind, tmp_path):
+    recipe = Watching()
+    Trainer(recipe, steps=1, folder=tmp_path, precision=kind).fit()
+    assert recipe.seen == {"start": kind, "batch": kind, "forward": kind}
+
+
+def test_a_run_goes_on_in_its_own_precision_on_another_machine(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(precision, "probe", lambda: Probe(10.0, 5.0))
+    Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path).fit()
+    kept = checkpoint.checkpoints(tmp_path)
+    assert checkpoint.load(kept[-1])["config"]["trainer"]["precision"] == "bf16"
+    kept[-1].unlink()
+    monkeypatch.setattr(precision, "probe", lambda: Probe(10.0, None))
+    resumed = Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path)
+    resumed.fit()
+    assert resumed.precision == "bf16"
+    assert "goes on in bf16, as it began" in capsys.readouterr().out
+
+
+def test_another_precision_asked_for_by_name_is_another_run(tmp_path):
+    Trainer(TinyRecipe(), steps=2, folder=tmp_path, precision="bf16").fit()
+    with pytest.raises(ValueError, match=r"trainer\.precision: bf16 -> fp32"):
+        Trainer(TinyRecipe(), steps=2, folder=tmp_path, precision="fp32").fit()

@@ -1,0 +1,328 @@
+"""Settings that come with weights are plain data: nothing in them is resolved, built or run."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import time
+from functools import cache
+from inspect import signature
+from pathlib import Path
+
+import pytest
+import torch
+import yaml
+from omegaconf import DictConfig, OmegaConf
+from torch import nn
+
+from mitigate.agents.adapters import insert_adapters
+from mitigate.agents.fusion import reliability
+from mitigate.agents.topological import TopologicalAgent, schema
+from mitigate.agents.topological.planner import Planner
+from mitigate.core import build, checkpoint, conf, settings
+from mitigate.evaluation import columns, evaluate
+from mitigate.shipping import export, hardened
+from mitigate.training import train
+
+ROOT = Path(__file__).parents[2]
+PRIMARY = train.__name__.rpartition(".")[2]  # importing it registers the config's schema
+WORDS = "do not use this folder"
+# As it came in: OmegaConf puts `_target_` together, Hydra then builds it.
+LITERAL = "${oc.create:${oc.decode:'{_tar${oc.decode:get}_: torch.hub.load, ...}'}}"
+HIDDEN = "${{oc.create:${{oc.decode:'{{_tar${{oc.decode:get}}_: {target}, {given}}}'}}}}"
+
+
+class Wide(nn.Module):
+    """An agent that is not the reference agent."""
+
+    def __init__(self, width: int = 2, parts: dict | None = None) -> None:
+        super().__init__()
+        self.body = nn.Linear(width, 1)
+
+
+WIDE = f"{Wide.__module__}.{Wide.__qualname__}"
+
+
+def folder_with(place: Path, text: str) -> Path:
+    """A folder of the base agent's weights with ``text`` as its settings."""
+    place.mkdir(exist_ok=True)
+    if not (place / checkpoint.WEIGHTS).exists():
+        (place / checkpoint.WEIGHTS).symlink_to(ROOT / "checkpoints/base" / checkpoint.WEIGHTS)
+    (place / hardened.CONFIG).write_text(text, encoding="utf-8")
+    return place
+
+
+def agent_yaml(**own) -> str:
+    return yaml.safe_dump({"agent": {"_target_": hardened.TARGET, **own}})
+
+
+@cache
+def node() -> DictConfig:
+    """The settings of the agent in this checkout."""
+    return conf.load_config("evaluate").agent
+
+
+def refusals(folder: Path) -> list[str]:
+    """What each reader of a folder's settings says; all must refuse it."""
+    said = []
+    for read in (
+        lambda: build.carried(node(), str(folder)),
+        lambda: columns.settings(node(), str(folder), []),
+        lambda: hardened.agent_settings(folder / hardened.CONFIG),
+        lambda: evaluate.load(node(), str(folder)),
+    ):
+        with pytest.raises(ValueError) as error:
+            read()
+        said.append(str(error.value))
+        assert "\n" not in said[-1] and len(said[-1]) < 1000
+        assert str(folder / hardened.CONFIG) in said[-1]
+    return said
+
+
+@pytest.fixture
+def traps(tmp_path) -> dict[str, str]:
+    """Strings that make the file ``sentinel`` where they are resolved and built."""
+    sentinel = tmp_path / "sentinel"
+    hub = tmp_path / "hub"
+    hub.mkdir()
+    code = f"import pathlib\ndef m(*a, **k):\n    pathlib.Path({str(sentinel)!r}).touch()\n"
+    (hub / "hubconf.py").write_text(code)
+
+    class Evil:
+        def __reduce__(self):
+            return (Path.touch, (sentinel,))
+
+    torch.save(Evil(), tmp_path / "evil.pt")
+    (tmp_path / "evil.npy").write_bytes((tmp_path / "evil.pt").read_bytes())
+    given = {
+        "torch.hub.load": f"repo_or_dir: {hub}, model: m, source: local",
+        "torch.load": f"f: {tmp_path / 'evil.pt'}, weights_only: false",
+        "numpy.load": f"file: {tmp_path / 'evil.npy'}, allow_pickle: true",
+    }
+    made = {name: HIDDEN.format(target=name, given=text) for name, text in given.items()}
+    return {"literal": LITERAL, "plain": "${oc.env:HOME}", "missing": "???", **made}
+
+
+PLACES = {
+    "value": lambda trap: {"blind": trap},
+    "in a list": lambda trap: {"blind": ["rgb", trap]},
+    "in a dict": lambda trap: {"planner": {"fusion": trap}},
+    "in a list in a dict": lambda trap: {"adapters": {"target_modules": [trap]}},
+    "as a key": lambda trap: {trap: 1},
+    "as a key in a dict": lambda trap: {"planner": {trap: 1}},
+    "as a key in a list": lambda trap: {"blind": [{trap: 1}]},
+    "inside a text": lambda trap: {"adapters": {"ring": [f"rgb_encoder {trap}"]}},
+    "as the target": lambda trap: {"_target_": trap},
+}
+
+
+@pytest.mark.parametrize("place", PLACES)
+def test_an_interpolation_is_refused_wherever_it_stands(tmp_path, traps, place):
+    for trap in traps.values():
+        folder = folder_with(tmp_path / "weights", agent_yaml(**PLACES[place](trap)))
+        assert all(WORDS in said for said in refusals(folder))
+    assert not (tmp_path / "sentinel").exists()
+
+
+@pytest.mark.parametrize("trap", ["literal", "torch.hub.load", "torch.load", "numpy.load"])
+@pytest.mark.parametrize("place", ["in a dict", "in a list"])
+def test_evaluating_a_trapped_folder_runs_nothing(tmp_path, traps, monkeypatch, trap, place):
+    folder = folder_with(tmp_path / "weights", agent_yaml(**PLACES[place](traps[trap])))
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    given = [f"checkpoint={folder}", f"out={tmp_path / 'out'}", "episodes=1", "conditions=[clean]"]
+    monkeypatch.setattr(sys, "argv", ["evaluate", *given])
+    with pytest.raises(SystemExit) as stop:
+        conf.main(evaluate.hydra_main, "evaluate")
+    assert WORDS in str(stop.value.code) and "\n" not in str(stop.value.code)
+    assert not (tmp_path / "sentinel").exists() and not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    "own",
+    [
+        {"planner": {"_target_": "os.system"}},
+        {"planner": {"fusion": {"_target_": "os.system", "command": "id"}}},
+        {"blind": [{"_target_": "os.system"}]},
+        {"_args_": ["id"]},
+        {"_partial_": True},
+        {"planner": {"_recursive_": True}},
+    ],
+    ids=str,
+)
+def test_a_key_of_hydras_own_is_refused(tmp_path, own):
+    said = refusals(folder_with(tmp_path, agent_yaml(**own)))
+    assert all(WORDS in text and "begins with '_'" in text for text in said)
+
+
+@pytest.mark.parametrize(
+    "target", ["os.system", "mitigate.agents.topological.planner.Planner", 3, ["a"], None]
+)
+def test_another_target_is_refused(tmp_path, target):
+    said = refusals(folder_with(tmp_path, agent_yaml(_target_=target)))
+    assert all(f"is of the agent {target}" in text for text in said)
+
+
+def bomb(levels: int = 40) -> str:
+    lines = ["a0: &a0 [x, x]", *(f"a{n}: &a{n} [*a{n - 1}, *a{n - 1}]" for n in range(1, levels))]
+    return "\n".join(lines) + f"\nagent: {{blind: *a{levels - 1}}}\n"
+
+
+def merges(levels: int = 30) -> str:
+    lines = [
+        "a0: &a0 {x: 1}",
+        *(f"a{n}: &a{n} {{<<: [*a{n - 1}, *a{n - 1}]}}" for n in range(1, levels)),
+    ]
+    return "\n".join(lines) + "\nagent: {}\n"
+
+
+DAMAGED = {
+    "aliases": bomb(),
+    "merges": merges(),
+    "itself": "agent: &a\n  planner: *a\n",
+    "lists in lists": "agent: {blind: " + "[" * 20_000,
+    "mappings in mappings": "agent: " + "{a: " * 15_000,
+    "closed lists": "agent: {blind: " + "[" * 500 + "]" * 500 + "}",
+    "dashes": "agent:\n  blind:\n" + "- " * 20_000,
+    "a hidden key": "agent: {? [a, b] : 1}",
+    "a large file": "agent: {blind: []}\n#" + "x" * (1 << 16),
+    "a tag": "agent: {width: !!python/object/apply:os.system [id]}",
+    "a harmless tag": "agent: {width: !!int 12}",
+    "bytes": "agent: {width: !!binary aGk=}",
+    "a date": "agent: {width: 2020-01-01}",
+    "no date": "agent: {width: 2020-99-99}",
+    "digits": "agent: {width: " + "9" * 10_000 + "}",
+    "hexadecimal digits": "agent: {width: 0x" + "f" * 60_000 + "}",
+    "base 60": "agent: {width: 1" + ":59" * 20_000 + "}",
+    "base 60 with a point": "agent: {width: 1" + ":59" * 20_000 + ".5}",
+    "no number": "agent: {width: .nan}",
+    "infinity": "agent: {planner: {dropout: .inf}}",
+    "minus infinity": "agent: {planner: {fusion: {rate: -.inf}}}",
+    "a number as a key": "agent: {1: 2}",
+    "a null as a key": "agent: {planner: {null: 2}}",
+    "two of a key": "agent: {width: 64, width: 128}",
+    "two agents": "agent: {width: 64}\nagent: {width: 128}\n",
+    "two documents": "agent: {}\n---\nagent: {}\n",
+    "half a file": "agent: {width: [",
+    "a zero byte": "agent: {width: \0}",
+    "a tab": "agent:\n\t- x",
+    "an unknown alias": "agent: *nowhere",
+}
+
+
+@pytest.mark.parametrize("text", DAMAGED.values(), ids=DAMAGED)
+def test_what_is_no_plain_data_ends_in_one_paragraph_and_soon(tmp_path, text):
+    began = time.process_time()
+    assert all(WORDS in said for said in refusals(folder_with(tmp_path, text)))
+    assert time.process_time() - began < 5
+
+
+def test_bytes_that_are_no_text_are_refused(tmp_path):
+    folder_with(tmp_path, "")
+    for raw in (b"\xff\xfe\x00", b"agent: \x80", bytes(range(256))):
+        (tmp_path / hardened.CONFIG).write_bytes(raw)
+        assert all(WORDS in said for said in refusals(tmp_path))
+
+
+@pytest.mark.parametrize("text", ["", "null", "[]", "agent", "{}", "agent:", "agent: []", "a: {}"])
+def test_a_file_without_settings_is_refused(tmp_path, text):
+    for said in refusals(folder_with(tmp_path, text)):
+        assert "settings of an agent" in said
+
+
+@pytest.mark.parametrize(
+    ("own", "words"),
+    [
+        ({"widht": 128}, "Did you mean width?"),
+        ({"width": True}, "agent.width is True"),
+        ({"width": 128.0}, "a whole number from 4 to 1024"),
+        ({"width": "128"}, "a whole number"),
+        ({"width": 10**12}, "a whole number"),
+        ({"width": 0}, "a whole number"),
+        ({"width": None}, "a whole number"),
+        ({"size": [64]}, "a whole number"),
+        ({"blind": "rgb"}, "a list of rgb, depth, instruction"),
+        ({"blind": ["smell"]}, "a list of rgb, depth, instruction"),
+        ({"blind": None}, "a list of rgb"),
+        ({"planner": []}, "null or a mapping of width, heads"),
+        ({"planner": {"rgb_width": 3}}, "no setting of agent.planner 'rgb_width'"),
+        ({"planner": {"layers": 10**9}}, "a whole number from 0 to 32"),
+        ({"planner": {"heads": 0}}, "a whole number from 1"),
+        ({"planner": {"heads": 3}}, "a multiple of agent.planner.heads (3)"),
+        ({"planner": {"dropout": 2}}, "a number from 0 to 1"),
+        ({"planner": {"fusion": {"rate": "4"}}}, "a number from 0"),
+        ({"planner": {"fusion": {"views": None}}}, "no setting of agent.planner.fusion 'views'"),
+        ({"adapters": {"model": None}}, "no setting of agent.adapters 'model'"),
+        ({"adapters": {"ring": ["stages.0"]}}, "lacks target_modules"),
+        ({"adapters": {"target_modules": "stages.0"}}, "a list of at most 64"),
+        ({"adapters": {"target_modules": ["(.|.)*(.|.)*!"]}}, "patterns without groups"),
+        ({"adapters": {"target_modules": [".*.*.*!"]}}, "at most 2 of * + ?"),
+        ({"adapters": {"target_modules": ["stem"] * 65}}, "at most 64"),
+        ({"adapters": {"target_modules": ["stem"], "kernel": 999}}, "a whole number"),
+    ],
+    ids=str,
+)
+def test_a_setting_of_another_kind_names_what_is_allowed(tmp_path, own, words):
+    for said in refusals(folder_with(tmp_path, agent_yaml(**own))):
+        assert words in said
+
+
+def test_the_schema_has_the_arguments_of_what_it_describes():
+    def names(function, *given: str) -> set[str]:
+        return set(signature(function).parameters) - set(given)
+
+    assert schema.AGENT.keys() == names(TopologicalAgent)
+    assert schema.PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
+    assert schema.ADAPTERS.keys() == names(insert_adapters, "model")
+    assert schema.FUSION.keys() == names(reliability, "views", "valid")
+
+
+def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config(tmp_path):
+    mine = OmegaConf.create({"_target_": WIDE, "width": 2, "further": 1})
+    own = {"_target_": WIDE, "width": 3, "parts": {"a": [1, None, 0.5, "x", True]}, "further": 2}
+    folder_with(tmp_path, yaml.safe_dump({"agent": own}))
+    assert build.carried(mine, str(tmp_path)) == {k: v for k, v in own.items() if k != "_target_"}
+    for wrong in (
+        {"hidden": 1},
+        {"self": 1},
+        {"parts": {"_target_": "os.system"}},
+        {"width": LITERAL},
+    ):
+        folder_with(tmp_path, yaml.safe_dump({"agent": {"_target_": WIDE, **wrong}}))
+        with pytest.raises(ValueError, match="config.yaml"):
+            build.carried(mine, str(tmp_path))
+
+
+def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):
+    run = tmp_path / "run"
+    folder_with(tmp_path, "")
+    run.mkdir()
+    shutil.copytree(tmp_path, run / "agent", ignore=shutil.ignore_patterns("run"), symlinks=True)
+    for text in (agent_yaml(), bomb(), yaml.safe_dump({"name": LITERAL, "agent": {}})):
+        (run / hardened.CONFIG).write_text(text)
+        if text == agent_yaml():
+            assert export._finished(run)[0]["agent"]
+        else:
+            with pytest.raises(ValueError, match=WORDS):
+                export.export(run, "mine", out=tmp_path / "out")
+
+
+SHIPPED = sorted(p.parent for p in (ROOT / "checkpoints").rglob(hardened.CONFIG))
+
+
+@pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
+def test_every_shipped_agent_is_built_from_its_settings(folder):
+    built = build.build_agent(build.settings_of(node(), str(folder)), weights=str(folder), seed=0)
+    assert isinstance(built, TopologicalAgent)
+    assert settings.read(folder / hardened.CONFIG)["agent"]
+
+
+def test_every_config_of_this_checkout_makes_settings_that_are_read_again(tmp_path):
+    for recipe in sorted((ROOT / "conf/recipe").glob("*.yaml")):
+        cfg = conf.load_config(PRIMARY, [f"recipe={recipe.stem}"])
+        if cfg.agent._target_ != hardened.TARGET:
+            continue
+        file = tmp_path / hardened.CONFIG
+        OmegaConf.save(cfg, file, resolve=True)
+        own = hardened.agent_settings(file)
+        assert own == {k: v for k, v in settings.read(file)["agent"].items() if k != "_target_"}
+        assert isinstance(hardened.build(file), TopologicalAgent)

@@ -1,0 +1,154 @@
+"""Worker processes: results from any number of them, and deaths that are noticed and made good."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from mitigate.core import workers
+from mitigate.core.workers import WorkersDied, results
+
+
+@dataclass
+class Squares:
+    """Squares numbers; a job's action may be to die, to fail, to wait or to tell its process."""
+
+    folder: Path
+    preload = "mitigate.core.workers"
+
+    @contextmanager
+    def ready(self):
+        yield
+
+    def work(self, jobs):
+        for number, action in jobs:
+            if action == "die once" and not (self.folder / str(number)).exists():
+                (self.folder / str(number)).touch()
+                os.kill(os.getpid(), signal.SIGKILL)
+            if action == "die":
+                os.kill(os.getpid(), signal.SIGKILL)
+            if action == "fail":
+                raise FileNotFoundError(f"no file {number}")
+            if action == "wait":
+                time.sleep(1.5)
+            if action == "tell":
+                (self.folder / f"pid{os.getpid()}").touch()
+                time.sleep(60 if (self.folder / "long").exists() else 1)
+            yield number**2
+
+    def name(self, job):
+        return f"number {job[0]}"
+
+
+class Lines:
+    """Stands in for a Progress and keeps what it is told."""
+
+    def __init__(self):
+        self.said = []
+
+    def say(self, text):
+        self.said.append(text)
+
+
+def run(task, groups, count=2):
+    lines = Lines()
+    found = [item for item in results(task, groups, count, lines) if item is not None]
+    return dict(found), lines.said
+
+
+def groups(*actions):
+    return [
+        [(3 * i + k, action if k == 1 else "") for k in range(3)]
+        for i, action in enumerate(actions)
+    ]
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_every_job_has_its_result_under_its_number(count, tmp_path):
+    found, said = run(Squares(tmp_path), [*groups("", "", ""), []], count)
+    assert found == {n: n**2 for n in range(9)} and not said
+
+
+def test_one_dead_worker_is_noticed_at_once_and_its_jobs_run_again(tmp_path):
+    began = time.monotonic()
+    found, said = run(Squares(tmp_path), groups("", "die once", ""))
+    assert found == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
+    assert len(said) == 1 and "SIGKILL" in said[0] and "(2 jobs) starts again in a fresh" in said[0]
+
+
+def test_a_second_death_ends_with_what_is_finished_and_what_to_do(tmp_path):
+    began, found = time.monotonic(), {}
+    with pytest.raises(WorkersDied, match=r"of 6 jobs are finished.*workers=1.*memory"):
+        for item in results(Squares(tmp_path), groups("", "die"), 2, Lines()):
+            found |= dict([item]) if item else {}
+    assert {n for n in found if n >= 3} == {3} and time.monotonic() - began < 10
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_what_a_job_raises_is_raised_here_with_its_own_type(count, tmp_path):
+    with pytest.raises(FileNotFoundError, match="no file 4"):
+        run(Squares(tmp_path), groups("", "fail"), count)
+
+
+def test_a_worker_without_progress_is_reported_and_not_killed(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "STUCK", 0.5)
+    monkeypatch.setattr(workers, "SECOND", 0.1)
+    found, said = run(Squares(tmp_path), groups("wait", ""))
+    assert found == {n: n**2 for n in range(6)}
+    assert said and all("has been at number 1 for 1 s" in line for line in said)
+
+
+ENDLESS = """
+from pathlib import Path
+from tests.core.test_workers import Lines, Squares, groups, results
+list(results(Squares(Path({folder!r})), groups("tell", "tell"), 2, Lines()))
+"""
+
+
+def stopped_by(how, folder):
+    """Start two workers in a process of its own, send it the signal; return the workers' ids."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", ENDLESS.format(folder=str(folder))],
+        cwd=Path(__file__).parents[2],
+        stderr=subprocess.DEVNULL,
+    )
+    pids = []
+    while len(pids) < 2:
+        assert process.poll() is None
+        time.sleep(0.05)
+        pids = [int(path.name[3:]) for path in folder.glob("pid*")]
+    process.send_signal(how)
+    process.wait(5)
+    return pids
+
+
+def alive(pids):
+    return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
+
+
+def test_ctrl_c_ends_workers_in_the_middle_of_a_job(tmp_path):
+    (tmp_path / "long").touch()
+    assert not alive(stopped_by(signal.SIGINT, tmp_path))
+
+
+def test_workers_whose_parent_was_killed_end_after_their_job(tmp_path):
+    pids, end = stopped_by(signal.SIGKILL, tmp_path), time.monotonic() + 5
+    while alive(pids):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
+def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
+    monkeypatch.setattr(workers, "cores", lambda: 4)
+    assert [workers.count(None, jobs, 10) for jobs in (0, 9, 29, 1000)] == [1, 1, 2, 4]
+    assert workers.count(3, 1, 10) == 3
+    with pytest.raises(ValueError, match="workers=0: give 1 or more"):
+        workers.count(0, 100, 10)

@@ -1,0 +1,223 @@
+"""Files of episodes: text, tokens and everything else after corruption, on files of any size."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import subprocess
+import sys
+import tracemalloc
+
+import pytest
+
+from mitigate.corruptions import Key, corrupt_instruction, episodes_command
+from mitigate.corruptions.episodes_command import ORIGINAL, run
+from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.style import MANNERS
+from mitigate.worlds.episodes import read_episodes, read_extras
+from tests.r2r_ce import FOLDER, needs_r2r_ce
+
+TEXT = "Walk past the red sofa, turn left at the door and stop by the lamp."
+WORDS = [
+    "<pad>",
+    "<unk>",
+    *sorted({"walk", "past", "the", "red", "sofa", "turn", "left", "at", "."}),
+]
+VOCABULARY = {
+    "word2idx_dict": {word: index for index, word in enumerate(WORDS)},
+    "UNK_INDEX": 1,
+    "PAD_INDEX": 0,
+}
+
+
+def episode(index: int, **instruction) -> dict:
+    return {
+        "episode_id": index,
+        "trajectory_id": index,
+        "scene_id": "a/b.glb",
+        "start_position": [0.0, 0.0, 0.0],
+        "start_rotation": [0.0, 0.0, 0.0, 1.0],
+        "info": {"geodesic_distance": 1.0},
+        "goals": [{"position": [1.0, 0.0, 0.0], "radius": 3.0}],
+        "instruction": {"instruction_text": TEXT, "instruction_tokens": [2] * 40} | instruction,
+        "reference_path": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+        "odd": {"kept": True},
+    }
+
+
+def made(path, *episodes, **extras):
+    with gzip.open(path, "wt") as file:
+        json.dump({"episodes": list(episodes), "instruction_vocab": VOCABULARY} | extras, file)
+    return path
+
+
+def raw(path) -> list[dict]:
+    with gzip.open(path, "rt") as file:
+        return json.load(file)["episodes"]
+
+
+def test_only_the_instruction_changes_and_the_old_text_is_kept(tmp_path):
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(6)))
+    summary = run(source, tmp_path / "out.json.gz", "black_box", 0.5, seed=4)
+    for old, new in zip(raw(source), raw(tmp_path / "out.json.gz"), strict=True):
+        key = Key(4, str(old["episode_id"]))
+        wanted = corrupt_instruction(TEXT, "black_box", 0.5, key)
+        assert new["instruction"] == {"instruction_text": wanted, ORIGINAL: TEXT}
+        assert {k: v for k, v in new.items() if k != "instruction"} == {
+            k: v for k, v in old.items() if k != "instruction"
+        }
+    assert (summary["episodes"], summary["changed"]) == (6, 6)
+    assert summary["tokens"]["removed"] == 6
+    assert any("removed" in notice for notice in episodes_command.notices(summary))
+    assert read_extras(tmp_path / "out.json.gz") == read_extras(source)
+    assert json.loads((tmp_path / "out.json.gz.summary.json").read_text()) == summary
+
+
+@pytest.mark.parametrize("family", ["formal", "mask", "black_box"])
+def test_severity_zero_gives_the_same_episodes(tmp_path, family):
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(3)))
+    summary = run(source, tmp_path / "out.json.gz", family, 0.0)
+    assert raw(tmp_path / "out.json.gz") == raw(source) and summary["changed"] == 0
+
+
+def test_tokens_are_made_again_by_the_files_own_vocabulary(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    summary = run(source, tmp_path / "out.json.gz", "mask", 1.0, tokenizer="vocabulary")
+    (got,) = raw(tmp_path / "out.json.gz")
+    said = (
+        got["instruction"]["instruction_text"].lower().replace(",", "").replace(".", " .").split()
+    )
+    index = VOCABULARY["word2idx_dict"]
+    wanted = [index.get(word, 1) for word in said]
+    assert got["instruction"]["instruction_tokens"] == wanted + [0] * (40 - len(wanted))
+    assert summary["tokens"]["remade"] == 1 and "[mask]" in said
+    run(source, tmp_path / "long.json.gz", "black_box", 1.0, tokenizer="vocabulary")
+    summary = json.loads((tmp_path / "long.json.gz.summary.json").read_text())
+    (got,) = raw(tmp_path / "long.json.gz")
+    assert len(got["instruction"]["instruction_tokens"]) == 40
+    assert summary["tokens"]["cut_short"] == 1
+    assert "cut short" in episodes_command.notices(summary)[0]
+
+
+def test_a_named_tokenizer_gives_its_tokens_and_its_mask(tmp_path):
+    transformers = pytest.importorskip("transformers")
+    letters = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", "<hole>", "walk", "past", "left", "turn"]
+    (tmp_path / "vocab.txt").write_text("\n".join(letters))
+    tokenizer = transformers.BertTokenizer(str(tmp_path / "vocab.txt"), mask_token="<hole>")
+    tokenizer.save_pretrained(tmp_path / "named")
+    source = made(tmp_path / "in.json.gz", episode(1))
+    run(source, tmp_path / "out.json.gz", "mask", 1.0, tokenizer=str(tmp_path / "named"))
+    (got,) = raw(tmp_path / "out.json.gz")
+    text, tokens = (got["instruction"][f"instruction_{kind}"] for kind in ("text", "tokens"))
+    assert "<hole>" in text and len(tokens) == 40
+    assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
+    spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
+    for severity in (0.0, 0.5):  # what the draw leaves as it is has the agent's tokens, too
+        run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
+        for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
+            text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))
+            assert tokens == (tokenizer(text)["input_ids"] + [0] * 40)[:40]
+
+
+def test_other_languages_pass_through_and_are_counted(tmp_path):
+    rxr = {"timed_instruction": [{"word": "Walk", "start_time": 0.1}]}
+    source = made(
+        tmp_path / "in.json.gz",
+        episode(1, language="hi-IN", instruction_text="आगे बढ़ें"),
+        episode(2, language="te-IN", instruction_text="ముందుకు"),
+        episode(3, language="hi-IN", instruction_text="रुकें", **rxr),
+        episode(4, language="en-IN", **rxr),
+    )
+    summary = run(source, tmp_path / "out.json.gz", "capitalize", 1.0)
+    old, new = raw(source), raw(tmp_path / "out.json.gz")
+    assert new[:3] == old[:3] and new[3]["instruction"]["language"] == "en-IN"
+    assert "timed_instruction" not in new[3]["instruction"]  # the clean words with their times
+    assert summary["skipped_languages"] == {"hi-IN": 2, "te-IN": 1} and summary["changed"] == 1
+    assert "2 in hi-IN, 1 in te-IN" in episodes_command.notices(summary)[0]
+
+
+def test_the_gate_of_a_style_is_reported(tmp_path):
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(40)))
+    gate = run(source, tmp_path / "out.json.gz", "formal", 0.5)["gate"]
+    assert 10 < gate["rewrites"] < 30 and gate["pass_rate"] == 1.0
+    assert gate["clauses"] == 3 * gate["rewrites"] and gate["kept_original"] == 0
+
+
+def test_memory_does_not_grow_with_the_file(tmp_path):
+    peaks = []
+    for count in (300, 2400):
+        source = made(
+            tmp_path / f"{count}.json.gz", *(episode(i, note="x" * 5000) for i in range(count))
+        )
+        tracemalloc.start()
+        run(source, tmp_path / f"{count}-out.json.gz", "mask", 0.5)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < peaks[0] + 1_000_000, peaks  # the larger file holds 11 MB more
+
+
+def test_a_broken_file_leaves_no_output(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1), episode(2, instruction_text="  "))
+    with pytest.raises(ValueError, match=r"Episode 2: The instruction is empty"):
+        run(source, tmp_path / "out.json.gz", "mask", 0.5)
+    assert [path.name for path in tmp_path.iterdir()] == ["in.json.gz"]
+
+
+def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
+    source, out = str(made(tmp_path / "in.json.gz", episode(1))), str(tmp_path / "out.json.gz")
+    for options, part in (
+        (["family=mask"], "option severity is missing"),
+        (["severity=0.5"], "Families: friendly"),
+        (["family=mask", "severity=high"], "must be a number"),
+        (["family=maks", "severity=0.5"], "Did you mean mask"),
+        (["family=white_box", "severity=0.5"], "not applicable to a file"),
+        (["family=mask", "severity=0.5", "tokeniser=x"], "'tokeniser=x'"),
+        (["family=mask", "severity=0.5", "tokenizer=/none/such"], "no tokenizer '/none/such'"),
+        (["family=mask", "severity=0.5", "tagger=best"], "own, spacy"),
+    ):
+        assert episodes_command.main([source, out, *options]) == 2
+        error = capsys.readouterr().err
+        assert part in error and "Traceback" not in error
+    assert episodes_command.main([source, source, "family=mask", "severity=0.5"]) == 2
+    assert "another name" in capsys.readouterr().err
+    assert episodes_command.main([source[:-3], out, "family=mask", "severity=0.5"]) == 2
+
+
+def test_as_a_program(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    told = subprocess.run(
+        [
+            *(
+                sys.executable,
+                "-m",
+                "mitigate.corrupt_episodes",
+                source,
+                tmp_path / "out.json.gz",
+            ),
+            *("family=capitalize", "severity=1"),
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert json.loads(told.stdout)["changed"] == 1 and "notice" in told.stderr
+
+
+@needs_r2r_ce
+@pytest.mark.parametrize("family", [*MANNERS, "capitalize", "mask", "black_box"])
+def test_real_r2r_ce_episodes(tmp_path, family):
+    source, out = FOLDER / "val_seen.json.gz", tmp_path / "out.json.gz"
+    summary = run(source, out, family, 0.5, tokenizer="vocabulary")
+    assert summary["episodes"] == 778 and summary["tokens"]["remade"] == summary["changed"] > 300
+    for old, new in zip(read_episodes(source), read_episodes(out), strict=True):
+        assert (old.goals, old.reference_path) == (new.goals, new.reference_path)
+        if new.instruction.text == old.instruction.text:
+            assert new.instruction == old.instruction
+            continue
+        assert new.instruction.extra[ORIGINAL] == old.instruction.text
+        assert len(new.instruction.tokens) == len(old.instruction.tokens)
+        if family != "capitalize":
+            assert new.instruction.tokens != old.instruction.tokens
+        if family in MANNERS:
+            assert check(old.instruction.text, new.instruction.text) == []

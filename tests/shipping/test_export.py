@@ -1,0 +1,441 @@
+"""A hardened checkpoint reloads to the same outputs, or it was not written, or it is refused."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+import torch
+import yaml
+from safetensors.torch import save_file
+from torch.export.pt2_archive._package import load_pt2
+
+import mitigate
+from mitigate.agents import adapters
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import build, checkpoint
+from mitigate.core.files import sha256
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
+from mitigate.evaluation import rows
+from mitigate.shipping import export, hardened, programs
+from mitigate.shipping.card import metrics
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs/deployment.md"
+SIZE = 64
+TINY = {"width": 16, "planner": {"heads": 2, "text_layers": 1, "layers": 1}}
+ADAPTERS = {"target_modules": [r"depth_encoder\.stages\.0"], "ring": [r"rgb_encoder\.stages\.2"]}
+
+
+def finished_run(folder: Path, agent: TopologicalAgent, settings: dict, **others) -> Path:
+    """A run folder as `make train` leaves it."""
+    checkpoint.save_weights(agent, folder / "agent")
+    node = {"_target_": hardened.TARGET, **settings}
+    cfg = {
+        "name": "tiny",
+        "severity": 0.6,
+        "severity_depth": None,
+        "seed": 3,
+        "init": None,
+        "agent": node,
+        "env": {"size": SIZE},
+        "stages": {"one": {"recipe": {"steps": 2}}},
+        **others,
+    }
+    (folder / "config.yaml").write_text(yaml.safe_dump(cfg), encoding="utf-8")
+    return folder
+
+
+def a_row(agent: str, episode: int, corruption: str, success: float) -> dict:
+    return {
+        "agent": agent,
+        "name": "x",
+        "corruption": corruption,
+        "split": "val_unseen",
+        "severity": 0.0 if corruption == "clean" else 0.6,
+        "episode_id": str(episode),
+        "seed": 0,
+        "suite": "1.1",
+        "rule": "vln",
+        "success": success,
+        "spl": success,
+    }
+
+
+def observation() -> dict:
+    rng = torch.Generator().manual_seed(5)
+    rgb = torch.randint(0, 256, (VIEWS, SIZE, SIZE, 3), generator=rng).to(torch.uint8)
+    depth = 4 * torch.rand(VIEWS, SIZE, SIZE, 1, generator=rng)
+    pose = torch.zeros(3)
+    return {RGB: rgb.numpy(), DEPTH: depth.numpy(), POSE: pose.numpy()}
+
+
+def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
+    """What ``code`` prints in a process of its own."""
+    done = subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        cwd=cwd,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory) -> Path:
+    """Two exported agents, `whole` and `adapted`, and what they were made of."""
+    place = tmp_path_factory.mktemp("export")
+    torch.manual_seed(0)
+    agent = TopologicalAgent(**TINY)
+    base = checkpoint.save_weights(agent, place / "base", half=True)
+    run = finished_run(place / "runs/whole", agent, TINY, init=str(base.parent))
+    sha = checkpoint.weights_sha(agent)
+    found = [a_row(sha, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]
+    rows.write(run / "rows.jsonl", [*found, a_row("0123456789ab", 0, "clean", 0.0)])
+    export.export(run, "whole", out=place / "hardened")
+
+    agent = TopologicalAgent(**TINY)
+    checkpoint.load_weights(agent, base)
+    adapters.insert_adapters(agent, **ADAPTERS)
+    for parameter in adapters.adapter_parameters(agent):
+        torch.nn.init.normal_(parameter, std=0.05)
+    settings = {**TINY, "adapters": ADAPTERS}
+    finished_run(place / "runs/adapted", agent, settings, init=str(base.parent))
+    export.export(place / "runs/adapted", "adapted", out=place / "hardened")
+    return place
+
+
+@pytest.fixture
+def copied(place, tmp_path) -> Path:
+    """A copy of the folder `whole`, to spoil."""
+    return Path(shutil.copytree(place / "hardened/whole", tmp_path / "whole"))
+
+
+def resign(folder: Path, **changes) -> None:
+    """Change the card and give it a fitting sha256 again."""
+    card = json.loads((folder / "card.json").read_text())
+    card |= changes
+    (folder / "card.json").write_text(json.dumps({**card, "sha256": hardened.card_sha(card)}))
+
+
+def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
+    folder = place / "hardened/whole"
+    card = hardened.check(folder)
+    assert card["recipe"] == "tiny" and card["seed"] == 3 and card["license"] == "Apache-2.0"
+    assert card["base"]["sha256"] == sha256(place / "base/model.safetensors")
+    assert card["files"].keys() | {"card.json"} == {p.name for p in folder.iterdir()}
+    (entry,) = card["metrics"]
+    assert entry["episodes"] == 8 and entry["clean"]["SR"][0] == 0.75
+    assert entry["clean"]["SR"][1] < 0.75 < entry["clean"]["SR"][2]
+    assert entry["PRS"]["PRS-SR (RGB)"][0] == 1.0
+    text = (folder / "README.md").read_text()
+    assert "Clean SR | 0.750 [" in text and "spatter" in text.lower()
+    for kind in ("eager", "exported"):
+        for name in ("perceive", "decide"):
+            assert card["latency_ms"][kind][name]["cpu"] > 0
+    assert sha256(folder / "model.safetensors") == card["files"]["model.safetensors"]
+    tensors = (folder / "model.safetensors").stat().st_size
+    assert tensors < 0.6 * (place / "runs/whole/agent/model.safetensors").stat().st_size
+
+
+@pytest.mark.parametrize("name", ["whole", "adapted"])
+def test_the_loaded_agent_does_what_the_trained_one_did(place, name):
+    trained = hardened.build(place / "runs" / name / "config.yaml").eval()
+    checkpoint.load_weights(trained, place / "runs" / name / "agent")
+    state = torch.random.get_rng_state()
+    loaded = mitigate.load_hardened(place / "hardened" / name)
+    assert torch.equal(state, torch.random.get_rng_state()) and not loaded.training
+    probe = programs.probe(trained, SIZE)
+    one, two = (programs.outputs(programs.networks(a), probe) for a in (trained, loaded))
+    gap = programs.difference(one, two)
+    assert gap == 0.0 if name == "adapted" else 0.0 < gap < 0.05  # float16
+    actions = []
+    for agent in (trained, loaded):
+        agent.reset("walk past the red sofa and stop by the table")
+        actions.append(agent.act(observation()))
+    assert actions[0] == actions[1] and actions[0] in range(4)
+
+
+def test_a_folder_of_adapters_holds_no_backbone_and_needs_its_base(place, tmp_path):
+    folder = place / "hardened/adapted"
+    assert hardened.check(folder)["adapters_only"]
+    assert not (folder / "model.safetensors").exists()
+    assert not list((place / "hardened").rglob("*.sha256"))  # the cards have the sums
+    other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
+    with pytest.raises(ValueError, match="another"):
+        hardened.load_hardened(folder, base=other)
+    with pytest.raises(FileNotFoundError, match="base="):
+        hardened.load_hardened(folder, base=tmp_path / "nothing")
+    assert adapters.adapted(hardened.load_hardened(folder, base=place / "base"))
+
+
+def test_evaluation_and_training_take_a_folder_of_adapters(place):
+    from omegaconf import OmegaConf
+
+    folder = str(place / "hardened/adapted")
+    node = build.settings_of(OmegaConf.create({"_target_": hardened.TARGET}), folder)
+    agent = build.build_agent(node, weights=folder, seed=0)
+    assert checkpoint.weights_sha(agent) == hardened.check(Path(folder))["run_agent"]
+    plain = OmegaConf.create({"_target_": hardened.TARGET, **TINY})
+    with pytest.raises(ValueError, match="other modules"):
+        build.build_agent(plain, weights=folder, seed=0)
+
+
+def test_loading_needs_neither_hydra_nor_the_simulator_and_import_stays_light(place, tmp_path):
+    code = """
+import sys
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.split(".")[0] in ("panda3d", "direct", "hydra", "omegaconf", "torchrl", "cv2"):
+            raise ImportError(name + " is not here")
+sys.meta_path.insert(0, Absent())
+import mitigate
+assert "torch" not in sys.modules
+agent = mitigate.load_hardened(sys.argv[1])
+agent.reset("turn left")
+print(type(agent).__name__)
+"""
+    assert "TopologicalAgent" in python(code, place / "hardened/whole", cwd=tmp_path)
+
+
+def test_the_program_runs_a_decision_without_our_code(place, tmp_path):
+    code = """
+import json, sys
+import numpy, torch
+from torch.export.pt2_archive._package import load_pt2
+folder, given = sys.argv[1:]
+inputs = json.load(open(folder + "/program.json"))["programs"]
+programs = load_pt2(folder + "/program.pt2").exported_programs
+given = {k: torch.from_numpy(v) for k, v in numpy.load(given).items()}
+with torch.no_grad():
+    frames = [given[name][:1] for name in inputs["perceive"]["inputs"]]
+    views, waypoints = programs["perceive"].module()(*frames)
+    given["views"] = views
+    (logits,) = programs["decide"].module()(*(given[name] for name in inputs["decide"]["inputs"]))
+assert not any(name.split(".")[0] in ("mitigate", "recipes") for name in sys.modules)
+print(json.dumps([waypoints.sum().item(), logits[0].tolist()]))
+"""
+    import numpy as np
+
+    agent = hardened.load_hardened(place / "hardened/whole")
+    given = programs.probe(agent, SIZE)
+    first = {  # the first decision of an episode: one panorama, one node, two ghosts
+        **{name: given[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
+        "panorama": torch.tensor([0]),
+        "nodes": torch.tensor([[0]]),
+        "sightings": torch.tensor([[[3, -1, -1, -1], [7, 8, -1, -1]]]),
+        "geometry": given["geometry"][:1, :4],
+        "valid": torch.ones(1, 4, dtype=torch.bool),
+        "allowed": torch.tensor([[True, False, True, True]]),
+    }
+    np.savez(tmp_path / "given.npz", **{name: t.numpy() for name, t in first.items()})
+    printed = python(code, place / "hardened/whole", tmp_path / "given.npz", cwd=tmp_path)
+    waypoints, logits = json.loads(printed)
+    wanted = programs.outputs(programs.networks(agent), first)
+    assert waypoints == pytest.approx(wanted["waypoints"].sum().item(), abs=1e-2)
+    assert logits == pytest.approx(wanted["logits"][0].tolist(), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "name", ["model.safetensors", "program.pt2", "config.yaml", "README.md", "program.json"]
+)
+@pytest.mark.parametrize("spoil", ["flipped", "truncated", "removed"])
+def test_a_changed_file_is_refused_by_name(copied, name, spoil):
+    file = copied / name
+    data = bytearray(file.read_bytes())
+    data[len(data) // 2] ^= 1
+    if spoil == "removed":
+        file.unlink()
+    else:
+        file.write_bytes(data if spoil == "flipped" else data[: len(data) // 2])
+    error = FileNotFoundError if spoil == "removed" else ValueError
+    with pytest.raises(error, match=name.replace(".", r"\.")):
+        hardened.load_hardened(copied)
+
+
+@pytest.mark.parametrize(
+    ("text", "problem"),
+    [
+        (lambda t: t[: len(t) // 2], "cut short or damaged"),
+        (lambda t: t.replace('"seed": 3', '"seed": 4'), "sha256"),
+        (lambda t: "[]", "no card"),
+        (lambda t: "[" * 100_000, "card.json"),
+        (lambda t: t.replace('"format": 1', '"format": 2'), "format 1"),
+    ],
+)
+def test_a_changed_card_is_refused(copied, text, problem):
+    card = copied / "card.json"
+    card.write_text(text(card.read_text()))
+    with pytest.raises(ValueError, match=problem):
+        hardened.load_hardened(copied)
+
+
+def test_a_folder_without_a_card_is_none(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"card\.json is missing"):
+        hardened.load_hardened(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["model.safetensors", "program.pt2", "config.yaml"])
+def test_a_card_that_lacks_a_file_is_refused(copied, name):
+    files = json.loads((copied / "card.json").read_text())["files"]
+    del files[name]
+    resign(copied, files=files)
+    with pytest.raises(ValueError, match=f"does not list {name}"):
+        hardened.load_hardened(copied)
+
+
+@pytest.mark.parametrize("name", ["../outside", "/etc/hostname", "..", "a/b"])
+def test_a_card_may_name_no_file_outside_its_folder(copied, name):
+    files = json.loads((copied / "card.json").read_text())["files"]
+    resign(copied, files={**files, name: "0" * 64})
+    with pytest.raises(ValueError, match="no plain file name"):
+        hardened.load_hardened(copied)
+
+
+def test_a_config_is_data_and_names_no_other_class(copied):
+    config = yaml.safe_load((copied / "config.yaml").read_text())
+    config["agent"]["_target_"] = "os.system"
+    (copied / "config.yaml").write_text(yaml.safe_dump(config))
+    files = json.loads((copied / "card.json").read_text())["files"]
+    resign(copied, files={**files, "config.yaml": sha256(copied / "config.yaml")})
+    with pytest.raises(ValueError, match=r"os\.system"):
+        hardened.load_hardened(copied)
+
+
+def test_another_vocabulary_is_refused(copied):
+    resign(copied, vocabulary="000000000000")
+    with pytest.raises(ValueError, match="vocabulary"):
+        hardened.load_hardened(copied)
+
+
+def test_an_unfinished_run_says_what_is_missing(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no finished run"):
+        export.export(tmp_path, "mine", out=tmp_path / "hardened")
+
+
+def test_an_existing_name_stays_unless_overwrite_is_asked_for(place, tmp_path, monkeypatch):
+    run, out = place / "runs/whole", tmp_path / "hardened"
+    (out / "mine").mkdir(parents=True)
+    (out / "mine/old").touch()
+    with pytest.raises(ValueError, match="--overwrite"):
+        export.export(run, "mine", out=out)
+    monkeypatch.setattr(export, "_write", lambda draft, *_: (draft / "new").touch())
+    export.export(run, "mine", out=out, overwrite=True)
+    assert [p.name for p in (out / "mine").iterdir()] == ["new"]
+    assert [p.name for p in out.iterdir()] == ["mine"]
+
+
+@pytest.mark.parametrize("name", ["../mine", "", ".hidden", "a/b"])
+def test_a_name_is_one_folder(place, tmp_path, name):
+    with pytest.raises(ValueError, match="no name for a folder"):
+        export.export(place / "runs/whole", name, out=tmp_path)
+
+
+def test_what_does_not_reload_to_the_same_is_not_written(place, tmp_path, monkeypatch):
+    made = load_pt2(str(place / "hardened/whole/program.pt2")).exported_programs
+    monkeypatch.setattr(programs, "export_programs", lambda *_: made)  # which takes seconds
+    monkeypatch.setattr(programs, "TIMED", 1)
+    monkeypatch.setattr(export, "_CHECK", "raise ValueError('differs')")
+    with pytest.raises(ValueError, match="differs"):
+        export.export(place / "runs/whole", "mine", out=tmp_path)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_check_finds_other_outputs(place, tmp_path):
+    agent = hardened.load_hardened(place / "hardened/whole")
+    wanted = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
+    save_file({k: v.contiguous() for k, v in wanted.items()}, tmp_path / "same.safetensors")
+    export.check_outputs(str(place / "hardened/whole"), str(tmp_path / "same.safetensors"))
+    wanted["logits"] = wanted["logits"] + 0.01
+    save_file({k: v.contiguous() for k, v in wanted.items()}, tmp_path / "other.safetensors")
+    with pytest.raises(ValueError, match="agent differs by 0.01"):
+        export.check_outputs(str(place / "hardened/whole"), str(tmp_path / "other.safetensors"))
+
+
+def test_rows_of_another_agent_are_no_metrics_of_this_one(place, tmp_path):
+    rows.write(tmp_path / "rows.jsonl", [a_row("0123456789ab", 0, "clean", 1.0)])
+    with pytest.raises(ValueError, match="not of this agent"):
+        export.export(
+            place / "runs/whole", "mine", out=tmp_path / "out", rows=[tmp_path / "rows.jsonl"]
+        )
+    assert metrics(rows.read(tmp_path / "rows.jsonl"), {"abc"}) == []
+
+
+def test_a_missing_teacher_is_told(place, tmp_path):
+    agent = hardened.load_hardened(place / "hardened/whole")
+    stages = {"one": {"recipe": {"teacher": "checkpoints/nobody"}}}
+    run = finished_run(tmp_path / "run", agent, TINY, stages=stages)
+    with pytest.raises(FileNotFoundError, match="checkpoints/nobody"):
+        export.export(run, "mine", out=tmp_path / "out")
+
+
+def test_onnx_files_do_what_the_agent_does(place, tmp_path):
+    for package in ("onnx", "onnxscript", "onnxruntime"):
+        pytest.importorskip(package, reason="the extra onnx is not installed")
+    from mitigate.shipping.onnx_programs import check_onnx, save_onnx
+
+    agent = hardened.load_hardened(place / "hardened/adapted")
+    files = save_onnx(agent, SIZE, tmp_path, export.EXPORTED)
+    assert [file.name for file in files] == ["perceive.onnx", "decide.onnx"]
+    with pytest.raises(ValueError, match="differ from the agent"):
+        check_onnx(tmp_path, agent, SIZE, -1.0)
+
+
+def test_the_examples_of_the_deployment_page_run(place, tmp_path, monkeypatch):
+    examples = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
+    assert len(examples) == 3
+    (tmp_path / "checkpoints/hardened").mkdir(parents=True)
+    shutil.copytree(place / "hardened/whole", tmp_path / "checkpoints/hardened/ts_distill")
+    monkeypatch.chdir(tmp_path)
+    encoder = torch.nn.Sequential(torch.nn.Conv2d(3, 8, 3), torch.nn.BatchNorm2d(8)).eval()
+    images = torch.rand(2, 3, 8, 8)
+    plain = encoder(images)
+    adapters.insert_adapters(encoder, ["1"])
+    for parameter in adapters.adapter_parameters(encoder):
+        torch.nn.init.ones_(parameter)
+    adapters.save_adapters(encoder, "my_adapters")
+    adapters.remove_adapters(encoder)
+    names = {"observation": observation(), "encoder": encoder, "images": images}
+    for example in examples:
+        exec(compile(example, str(PAGE), "exec"), names)
+    assert names["action"] in range(4) and names["logits"].shape == (1, 3)
+    assert names["logits"].isfinite().tolist() == [[True, False, True]]
+    assert not torch.equal(names["features"], plain) and torch.equal(encoder(images), plain)
+
+
+def test_no_file_says_where_it_was_made(place):
+    """Neither the checkout nor the folder of the export, as the programs' traces once did."""
+    for name in ("whole", "adapted"):
+        for file in (place / "hardened" / name).iterdir():
+            parts = [file.read_bytes()]
+            if file.suffix == ".pt2":
+                with zipfile.ZipFile(file) as archive:
+                    parts = [archive.read(part) for part in archive.namelist()]
+            for where in (str(ROOT), sys.prefix):
+                assert not any(where.encode() in part for part in parts), (file.name, where)
+
+
+SHIPPED = sorted(p.name for p in (ROOT / "checkpoints/hardened").glob("[!.]*"))
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_shipped_folder_is_whole_and_its_program_decides_as_the_agent_does(name):
+    folder = ROOT / "checkpoints/hardened" / name
+    agent = hardened.load_hardened(folder)
+    given = programs.probe(agent, SIZE)
+    program = programs.load_programs(folder / hardened.PROGRAM)
+    wanted = programs.outputs(programs.networks(agent), given)
+    assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
+
+
+def test_the_hardened_agents_of_the_readme_are_shipped():
+    assert {"conv_adapter", "stacked", "ts_distill"} <= set(SHIPPED)

@@ -1,0 +1,97 @@
+"""Worker processes make the same batches as none, survive a death, and pass errors on."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+import torch
+
+from mitigate.core import checkpoint, seeding
+from mitigate.core.seeding import torch_generator
+from mitigate.core.workers import WorkersDied
+from mitigate.training.batches import Workers
+from mitigate.training.trainer import Trainer
+from tests.tiny import TinyRecipe
+
+
+class Shared(TinyRecipe):
+    """Its batches are made of three pieces that depend on the seed and on the weights."""
+
+    def __init__(self, ahead: bool = False, fatal: str = "") -> None:
+        super().__init__()
+        self.ahead, self.fatal = ahead, fatal
+
+    def jobs(self, step: int) -> list:
+        return [(step, piece) for piece in range(3)]
+
+    def work(self, job: tuple) -> torch.Tensor:
+        if job == (2, 1) and self.fatal == "raise":
+            raise ValueError("no such pose")
+        if job == (2, 1) and os.path.exists(self.fatal):
+            os.unlink(self.fatal)  # the next one that comes here lives
+            os.kill(os.getpid(), signal.SIGKILL)
+        if job == (2, 1) and self.fatal == "always":
+            os.kill(os.getpid(), signal.SIGKILL)
+        noise = torch.randn(3, 4, generator=torch_generator("piece", *job))
+        weight = 0.0 if self.ahead else self.agent.body[0].weight.sum()
+        assert torch.get_num_threads() == 1 and not self.training
+        return (noise + weight).numpy()
+
+    def collate(self, step: int, pieces: list) -> dict:
+        return {"inputs": torch.cat([torch.from_numpy(piece) for piece in pieces])}
+
+    def batch(self, step: int) -> dict:
+        return super(TinyRecipe, self).batch(step)
+
+
+def trained(folder, workers: Workers | None, **settings) -> str:
+    seeding.seed_everything(0, "init")
+    recipe = Shared(**settings)
+    Trainer(recipe, steps=6, folder=folder, workers=workers, save_every=2).fit()
+    return checkpoint.weights_sha(recipe.agent)
+
+
+@pytest.fixture(scope="module")
+def two():
+    with Workers(2) as workers:
+        yield workers
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
+    alone = trained(tmp_path / "alone", None, ahead=ahead)
+    assert trained(tmp_path / "two", two, ahead=ahead) == alone
+    checkpoint.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 4
+    assert trained(tmp_path / "two", two, ahead=ahead) == alone
+
+
+@pytest.mark.parametrize("ahead", [True, False])
+def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(ahead, tmp_path, capsys):
+    mark = tmp_path / "fatal"
+    mark.touch()
+    with Workers(2) as workers:
+        found = trained(tmp_path / "killed", workers, ahead=ahead, fatal=str(mark))
+    assert found == trained(tmp_path / "whole", None, ahead=ahead)
+    assert "ended with code -9; a new one does its work again" in capsys.readouterr().out
+
+
+def test_a_worker_that_is_killed_again_ends_the_training_with_advice(tmp_path):
+    with Workers(1) as workers, pytest.raises(WorkersDied, match=r"memory ran out.* workers=1"):
+        trained(tmp_path, workers, fatal="always")
+    assert checkpoint.checkpoints(tmp_path)
+
+
+def test_an_error_in_a_worker_is_raised_as_it_was(two, tmp_path):
+    with pytest.raises(ValueError, match="no such pose"):
+        trained(tmp_path / "raised", two, fatal="raise")
+    assert trained(tmp_path / "next", two) == trained(tmp_path / "alone", None)  # nothing is left
+
+
+def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
+    class Local(Shared):
+        """Classes inside functions cannot be pickled."""
+
+    with pytest.raises(ValueError, match="workers=0"):
+        Trainer(Local(), steps=1, folder=tmp_path, workers=two).fit()

@@ -1,0 +1,28 @@
+"""Every recipe in conf/recipe trains two steps a stage and leaves an agent that loads."""
+
+from __future__ import annotations
+
+import pytest
+from omegaconf import OmegaConf
+
+from mitigate.core import checkpoint, conf
+from mitigate.core.build import build
+from mitigate.training import train
+from tests.safeguard.conftest import write_tiny_model
+
+RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_every_recipe_trains_two_steps(tmp_path, name):
+    options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
+    cfg = conf.load_config("train", options)
+    if "base" in cfg.agent:  # a language model: the real one takes half a minute to load
+        cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
+    if cfg.get("schedule") and cfg.schedule.mode == "success_distributed":
+        for stage in cfg.stages.values():  # success rates of one episode a corruption, not eight
+            OmegaConf.update(stage, "recipe.refresh_episodes", 1, force_add=True)
+    folder = train.run(cfg)
+    for stage in cfg.stages:
+        assert checkpoint.checkpoints(folder / stage)[-1].name == "step-00000002.pt"
+    checkpoint.load_agent(build(cfg.agent), folder / "agent")

@@ -1,0 +1,17 @@
+"""Success rates that a schedule draws by: the same for any number of processes."""
+
+from __future__ import annotations
+
+from mitigate.corruptions import Schedule
+from mitigate.training.success import measure
+from mitigate.worlds.apartments.renderer import Renderer
+from tests.agents.rooms import wanderer
+
+
+def test_rates_do_not_depend_on_the_number_of_processes(capsys):
+    agent, renderer = wanderer(stop=0.0).train(), Renderer(16)
+    schedule = Schedule("success_distributed", 0.6, names=("flare", "missing_data"))
+    options = {"episodes": 3, "apartments": 2, "seed": 0, "step": 60}
+    alone, two = (measure(agent, schedule, renderer, **options, workers=n) for n in (1, 2))
+    assert alone == two and set(alone) == {"flare", "missing_data"} and not agent.training
+    assert "success at step 60: 6 episodes" in capsys.readouterr().out

@@ -1,0 +1,149 @@
+"""The table of all methods is made cell by cell, goes on where it stopped, and counts its cost."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from omegaconf import OmegaConf
+
+from mitigate.core import conf
+from mitigate.corruptions import DEPTH, RGB
+from mitigate.evaluation import rows
+from mitigate.training import table2
+from tests.evaluation.made_rows import column, row
+
+ALL = dict.fromkeys((*RGB, *DEPTH), 4)
+
+
+def config(out: Path, **changes):
+    kept = {"base", "da_per_frame"}
+    dropped = [
+        f"~columns.{name}" for name in conf.load_config("table2").columns if name not in kept
+    ]
+    cfg = conf.load_config("table2", [f"out={out}", "seeds=[0,1]", *dropped])
+    return OmegaConf.merge(cfg, changes)
+
+
+def finished(cfg) -> None:
+    """Rows of every cell, as an evaluation leaves them; seed 1 fares worse than seed 0."""
+    for cell in table2.cells(cfg):
+        agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
+        made = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Cells whose processes do nothing, but are processes."""
+    monkeypatch.setattr(
+        table2.Cell, "commands", lambda self, cfg: [("train", ["timeit", "-n", "1", "pass"])]
+    )
+
+
+def test_a_partial_run_holds_every_column_of_the_first_seed(tmp_path):
+    order = [(cell.column, cell.seed) for cell in table2.cells(config(tmp_path))]
+    assert order == [("base", 0), ("da_per_frame", 0), ("base", 1), ("da_per_frame", 1)]
+
+
+def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
+    cfg = config(tmp_path, episodes=5)
+    base, trained = table2.cells(cfg)[0], table2.cells(cfg)[-1]
+    assert [kind for kind, _ in base.commands(cfg)] == ["evaluate"]
+    (_, train), (_, evaluate) = trained.commands(cfg)
+    assert train[0] == "mitigate.train" and f"folder={trained.folder / 'run'}" in train
+    assert f"checkpoint={trained.folder / 'run' / 'agent'}" in evaluate
+    assert "seed=1" in train and "seed=1" in evaluate and "episodes=5" in evaluate
+
+
+def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quick):
+    cfg = config(tmp_path)
+    finished(cfg)
+    report = table2.run(cfg).read_text(encoding="utf-8")
+    lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
+    assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
+    assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
+    assert "Training, CPU minutes" in lines
+    assert lines["Seeds"] == "| Seeds | 0 1 | 0 1 |"
+    assert lines["Clean SR"] == "| Clean SR | 70.0 | 70.0 |"  # 80 and 60
+    costs = sorted(tmp_path.glob("cells/*/cost.json"))
+    assert len(costs) == len(table2.cells(cfg))
+    first = json.loads(costs[0].read_text())["train"]
+    table2.run(cfg)
+    assert json.loads(costs[0].read_text())["train"] >= first > 0
+
+
+def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
+    cfg = config(tmp_path / "all")
+    finished(cfg)
+    whole = table2.run(cfg).read_text(encoding="utf-8").splitlines()
+    again = config(tmp_path / "again", rows=[str(c.folder) for c in table2.cells(cfg)])
+    report = table2.run(again).read_text(encoding="utf-8").splitlines()
+    assert report[:-1] == whole[:-1] and report[-1] == "| Training, CPU minutes | – | – |"
+    assert not (tmp_path / "again" / "cells").exists()
+
+
+def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
+    cfg = config(tmp_path)
+    finished(cfg)
+    broken = table2.cells(cfg)[-1]
+    (broken.evaluation / "rows.jsonl").unlink()  # its training fails before there are any
+    monkeypatch.setattr(
+        table2.Cell,
+        "commands",
+        lambda self, cfg: [
+            ("train", ["no_such_module"] if self == broken else ["timeit", "-n", "1", "pass"])
+        ],
+    )
+    with pytest.raises(ValueError, match=f"{broken.column}, seed {broken.seed}: train ended with"):
+        table2.run(cfg)
+    report = (tmp_path / table2.REPORT).read_text(encoding="utf-8")
+    assert "| Seeds | 0 1 | 0 |" in report
+
+
+def test_an_empty_table_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="must not be empty"):
+        table2.cells(config(tmp_path, seeds=[]))
+
+
+def test_rows_of_another_severity_are_told(tmp_path):
+    cfg = config(tmp_path, severity=0.9)
+    rows.write(tmp_path / "cells" / "rows.jsonl", column(8, ALL))
+    cfg = OmegaConf.merge(cfg, {"rows": [str(tmp_path / "cells")]})
+    with pytest.raises(ValueError, match="only of val_unseen at 0, val_unseen at 0.6"):
+        table2.run(cfg)
+
+
+def test_the_papers_figures_stand_only_beside_its_severity(tmp_path):
+    rows.write(tmp_path / "rows.jsonl", column(8, ALL, name="da_per_frame", severity=0.9))
+    cfg = config(tmp_path / "out", severity=0.9, rows=[str(tmp_path / "rows.jsonl")])
+    lines = table2.run(cfg).read_text(encoding="utf-8").splitlines()
+    assert "| Motion blur | 40.0 |" in lines
+
+
+def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick, monkeypatch):
+    """Every cell's weights are the base agent's, so a test takes seconds; the rows say who won."""
+    monkeypatch.setattr(table2.Cell, "weights", "checkpoints/base")
+    cfg = config(tmp_path, walks=["base", "da_per_frame"], episodes=2, seeds=[0])
+    ids = [
+        episode.episode_id
+        for episode in table2.episodes(conf.load_config("evaluate").env, cfg.split, 2)
+    ]
+    for cell, wins in zip(table2.cells(cfg), ("10", "11"), strict=True):
+        made = [
+            row(i, won == "1", name=cell.column, corruption=c, severity=0.6 * (c != "clean"))
+            for c in ("clean", "flare")
+            for i, won in zip(ids, wins, strict=True)
+        ]
+        others = row("of-a-longer-run", True, name=cell.column)
+        rows.write(cell.folder / "evaluation" / "rows.jsonl", [*made, others])
+    table2.run(cfg)
+    assert {p.name for p in (tmp_path / "pictures").iterdir()} == {
+        f"{ids[1]}-flare.png",
+        "sheet.png",
+    }
+
+
+def test_no_walks_without_the_agents_cells(tmp_path):
+    assert table2.draw_walks(config(tmp_path), tmp_path) == []

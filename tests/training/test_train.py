@@ -1,0 +1,180 @@
+"""``train.run`` takes one agent through its stages, resumes, and names its folder."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+import torch
+from omegaconf import DictConfig, OmegaConf, open_dict
+from safetensors.torch import load_file
+
+from mitigate.core import checkpoint, conf
+from mitigate.core.build import build
+from mitigate.evaluation import columns
+from mitigate.training import train
+from tests.tiny import TinyAgent
+
+TINY = {"_target_": "tests.tiny.TinyRecipe"}
+
+
+def stage(**trainer) -> train.StageConfig:
+    return train.StageConfig(recipe=TINY, trainer=train.TrainerConfig(**trainer))
+
+
+def config(folder, *options: str, stages: dict | None = None) -> DictConfig:
+    cfg = conf.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *options])
+    with open_dict(cfg):
+        cfg.name, cfg.init = "tiny", None
+        cfg.agent = {"_target_": "tests.tiny.TinyAgent"}
+        cfg.stages = stages or {
+            "first": stage(steps=4, save_every=2),
+            "second": stage(steps=6, save_every=2),
+        }
+    return cfg
+
+
+def weights(folder) -> dict[str, torch.Tensor]:
+    return load_file(folder / "agent" / "model.safetensors")
+
+
+def same(one, two) -> bool:
+    return one.keys() == two.keys() and all(torch.equal(one[name], two[name]) for name in one)
+
+
+def test_stages_run_in_order_and_leave_agent_and_config(tmp_path):
+    assert train.run(config(tmp_path)) == tmp_path
+    steps = [checkpoint.checkpoints(tmp_path / name)[-1].name for name in ("first", "second")]
+    assert steps == ["step-00000004.pt", "step-00000006.pt"]
+    last = checkpoint.load(checkpoint.checkpoints(tmp_path / "second")[-1])["model"]
+    assert torch.equal(last["agent.body.0.weight"], weights(tmp_path)["body.0.weight"])
+    assert OmegaConf.load(tmp_path / "config.yaml").name == "tiny"
+    assert OmegaConf.load(tmp_path / "agent" / "config.yaml").agent["_target_"]
+
+
+def test_the_second_stage_goes_on_from_the_first(tmp_path):
+    train.run(config(tmp_path / "two"))
+    train.run(config(tmp_path / "one", stages={"second": stage(steps=6)}))
+    assert not same(weights(tmp_path / "one"), weights(tmp_path / "two"))
+
+
+def test_the_same_command_again_changes_nothing_and_a_broken_run_is_completed(tmp_path, capsys):
+    train.run(config(tmp_path / "whole"))
+    train.run(config(tmp_path / "broken"))
+    checkpoint.checkpoints(tmp_path / "broken" / "second")[-1].unlink()
+    (tmp_path / "broken" / "agent" / "model.safetensors").unlink()
+    capsys.readouterr()
+    train.run(config(tmp_path / "broken"))
+    out = capsys.readouterr().out
+    assert "already trained for 4 steps" in out and "resumed at step 4" in out
+    assert same(weights(tmp_path / "whole"), weights(tmp_path / "broken"))
+
+
+def test_a_stage_made_with_other_settings_is_not_resumed(tmp_path):
+    train.run(config(tmp_path))
+    with pytest.raises(ValueError, match=r"trainer\.lr"):
+        train.run(config(tmp_path, "trainer.lr=0.5"))
+
+
+def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
+    train.run(config(tmp_path))
+    before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+    with pytest.raises(ValueError, match="other settings"):
+        train.run(config(tmp_path, "seed=1"))
+    after = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+    assert {p for p in before if after[p] != before[p]} == set()
+
+
+def test_a_damaged_checkpoint_is_passed_over_and_the_run_ends_the_same(tmp_path, capsys):
+    train.run(config(tmp_path))
+    wanted = weights(tmp_path)
+    newest = checkpoint.checkpoints(tmp_path / "second")[-1]
+    os.truncate(newest, newest.stat().st_size // 2)
+    train.run(config(tmp_path))
+    assert f"{newest} is damaged; going on from step-00000004.pt" in capsys.readouterr().out
+    assert same(wanted, weights(tmp_path)) and checkpoint.load(newest)["step"] == 6
+
+
+def test_the_same_command_writes_a_finished_runs_damaged_weights_again(tmp_path):
+    train.run(config(tmp_path))
+    file = tmp_path / "agent" / "model.safetensors"
+    whole = file.read_bytes()
+    file.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    with pytest.raises(ValueError, match="the same `make train` command writes them again"):
+        checkpoint.load_weights(TinyAgent(), tmp_path / "agent")
+    train.run(config(tmp_path))
+    assert file.read_bytes() == whole
+    checkpoint.load_weights(TinyAgent(), tmp_path / "agent")
+
+
+def test_a_negative_number_of_workers_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="or null for one a core"):
+        train.run(config(tmp_path, "workers=-1"))
+
+
+def test_a_run_says_first_what_it_will_do_and_how_long_that_takes(tmp_path, capsys):
+    cfg = config(tmp_path)
+    cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
+    train.run(cfg)
+    said = capsys.readouterr().out.splitlines()[0]
+    assert said.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in said
+    train.run(cfg)  # what is done takes no time
+    assert "about 0 s" in capsys.readouterr().out.splitlines()[0]
+
+
+def test_trainer_options_go_before_a_stages_own(tmp_path):
+    train.run(config(tmp_path, "trainer.steps=3"))
+    names = {checkpoint.checkpoints(tmp_path / stage)[-1].name for stage in ("first", "second")}
+    assert names == {"step-00000003.pt"}
+
+
+def test_training_starts_from_the_weights_of_init(tmp_path):
+    train.run(config(tmp_path / "a"))
+    cfg = config(tmp_path / "b", "trainer.lr=1e-12")
+    cfg.init = str(tmp_path / "a" / "agent")
+    train.run(cfg)
+    one, two = weights(tmp_path / "a"), weights(tmp_path / "b")
+    assert all(torch.allclose(one[name], two[name], atol=1e-6) for name in one)
+
+
+def test_the_folder_says_recipe_severity_seed_and_further_options():
+    cfg = conf.load_config("train", ["recipe=da_success", "severity=0.9", "seed=3"])
+    assert train.default_folder(cfg) == "runs/da_success-s0.9-seed3"
+    cfg.severity_depth = 0.8
+    name = train.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
+    assert name == "runs/da_success-s0.9-d0.8-seed3-init-checkpoints_mine_debug-smoke"
+    swept, single = (train.default_folder(cfg, f"a.b={value}") for value in ("False", "false"))
+    assert swept == single  # Hydra writes a sweep's values in Python's words
+
+
+def test_a_trainings_column_says_with_which_options_it_was_trained():
+    """Seeds are pooled by name, so another learning rate must not look like another seed."""
+    cfg = conf.load_config("train", ["recipe=da_success", "seed=3"])
+    plain, other = (Path(train.default_folder(cfg, options)) for options in ("", "trainer.lr=1e-5"))
+    assert columns.of_run(cfg, plain) == "da_success"
+    assert columns.of_run(cfg, other) == "da_success+trainer.lr-1e-5"
+
+
+@pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
+def test_what_does_not_change_the_training_does_not_change_the_folder(option, monkeypatch):
+    """More episodes to report on must not train again."""
+    met = []
+    monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))
+    for options in ([], [option]):
+        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *options])
+        conf.main(train.hydra_main, "train")
+    assert met == ["runs/da_success-s0.6-seed0"] * 2
+
+
+def test_build_hands_the_very_object_on_and_shows_a_users_error():
+    agent = TinyAgent()
+    assert build(OmegaConf.create(TINY), agent=agent).agent is agent
+    node = OmegaConf.create(
+        {"_target_": "mitigate.corruptions.Schedule", "mode": "x", "severity": 0}
+    )
+    outer = OmegaConf.create({"_target_": "builtins.dict", "schedule": node})
+    for wrong in (node, outer):
+        with pytest.raises(ValueError, match="per_episode"):
+            build(wrong)

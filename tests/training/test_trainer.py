@@ -1,0 +1,241 @@
+"""The trainer resumes bit for bit, keeps frozen weights, and stops on a loss that is not finite."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import torch
+
+from mitigate.core import checkpoint, seeding
+from mitigate.training.trainer import LossNotFinite, Trainer, differences, to_device
+from tests.core.test_checksums import FLIPS, flipped
+from tests.tiny import TinyRecipe
+
+ROOT = Path(__file__).parents[2]
+RUN = """
+import sys
+import torch
+from mitigate.core import seeding
+from mitigate.training.trainer import Trainer
+from tests.tiny import TinyRecipe
+torch.set_num_threads(1)
+seeding.seed_everything(0, "init")
+recipe = TinyRecipe(pause=float(sys.argv[2]))
+Trainer(recipe, steps=60, folder=sys.argv[1], save_every=7, log_every=0).fit()
+"""
+
+
+def recipe(**settings) -> TinyRecipe:
+    seeding.seed_everything(0, "init")
+    return TinyRecipe(**settings)
+
+
+def trained(folder: Path, **settings) -> dict[str, torch.Tensor]:
+    made = recipe()
+    Trainer(made, folder=folder, **{"steps": 20, "save_every": 5, **settings}).fit()
+    return {name: value.clone() for name, value in made.agent.state_dict().items()}
+
+
+def same(one: dict[str, torch.Tensor], two: dict[str, torch.Tensor]) -> bool:
+    return one.keys() == two.keys() and all(torch.equal(one[name], two[name]) for name in one)
+
+
+def weights(folder: Path) -> dict[str, torch.Tensor]:
+    model = checkpoint.load(checkpoint.checkpoints(folder)[-1])["model"]
+    return {k: v for k, v in model.items() if isinstance(v, torch.Tensor)}
+
+
+def test_the_same_seed_trains_the_same_weights(tmp_path):
+    assert same(trained(tmp_path / "a"), trained(tmp_path / "b"))
+
+
+def test_another_seed_trains_other_weights(tmp_path):
+    assert not same(trained(tmp_path / "a"), trained(tmp_path / "b", seed=1))
+
+
+@pytest.mark.parametrize("precision", ["fp32", "bf16"])
+def test_a_resumed_run_equals_an_unbroken_one(tmp_path, precision):
+    whole = trained(tmp_path / "whole", precision=precision)
+    trained(tmp_path / "broken", precision=precision)
+    checkpoint.checkpoints(tmp_path / "broken")[-1].unlink()  # back to step 15
+    seeding.seed_everything(9, "what an interrupted process leaves behind")
+    assert same(whole, trained(tmp_path / "broken", precision=precision))
+
+
+def test_logging_evaluation_and_saving_do_not_change_the_weights(tmp_path):
+    quiet = trained(tmp_path / "quiet", log_every=0, save_every=0)
+    busy = trained(tmp_path / "busy", log_every=1, save_every=1, eval_every=2, figure_every=3)
+    assert same(quiet, busy)
+
+
+def test_a_run_killed_in_the_middle_resumes_to_the_same_weights(tmp_path):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
+
+    def start(folder: Path, pause: float) -> subprocess.Popen:
+        command = [sys.executable, "-c", RUN, str(folder), str(pause)]
+        return subprocess.Popen(command, env=environment, cwd=ROOT)
+
+    killed = start(tmp_path / "killed", 0.05)
+    while not checkpoint.checkpoints(tmp_path / "killed"):
+        assert killed.poll() is None, "the run ended before it saved"
+        time.sleep(0.01)
+    killed.send_signal(signal.SIGKILL)
+    killed.wait()
+    step = checkpoint.load(checkpoint.checkpoints(tmp_path / "killed")[-1])["step"]
+    assert step < 60
+    assert start(tmp_path / "killed", 0).wait() == 0
+    assert start(tmp_path / "whole", 0).wait() == 0
+    assert same(weights(tmp_path / "killed"), weights(tmp_path / "whole"))
+
+
+def test_a_finished_run_returns_at_once_and_says_so(tmp_path, capsys):
+    first = trained(tmp_path)
+    capsys.readouterr()
+    assert same(first, trained(tmp_path))
+    assert "already trained for 20 steps" in capsys.readouterr().out
+
+
+def test_after_any_flipped_bit_the_older_checkpoint_is_used(tmp_path, capsys):
+    whole = trained(tmp_path)
+    newest = checkpoint.checkpoints(tmp_path)[-1]
+    sound = newest.read_bytes()
+    draw = seeding.generator(0, "flipped bits of a trainer's checkpoint")
+    for bit in draw.integers(0, 8 * len(sound), FLIPS):
+        newest.write_bytes(flipped(sound, int(bit)))
+        made = recipe()
+        assert Trainer(made, steps=20, save_every=5, folder=tmp_path)._resume() == 15
+        assert f"{newest} is damaged; going on from step-00000015.pt" in capsys.readouterr().out
+    assert same(whole, trained(tmp_path)) and checkpoint.load(newest)["step"] == 20
+
+
+def test_a_run_with_other_saves_keeps_what_it_writes_beside_a_damaged_later_step(tmp_path):
+    trained(tmp_path, keep=2)
+    newest = checkpoint.checkpoints(tmp_path)[-1]
+    newest.write_bytes(b"")
+    Trainer(recipe(), steps=20, save_every=2, keep=1, folder=tmp_path).fit()
+    assert [p.name for p in checkpoint.checkpoints(tmp_path)] == [newest.name]
+    assert checkpoint.load(newest)["step"] == 20
+
+
+def test_extra_state_is_resumed(tmp_path):
+    trained(tmp_path)
+    checkpoint.checkpoints(tmp_path)[-1].unlink()
+    again = recipe()
+    Trainer(again, steps=20, save_every=5, folder=tmp_path).fit()
+    assert again.count == 20
+
+
+def test_frozen_weights_stay_and_are_not_in_the_optimiser(tmp_path):
+    made = recipe()
+    before = made.agent.frozen.weight.clone()
+    trainer = Trainer(made, steps=3, folder=tmp_path, weight_decay=0.5)
+    trainer.fit()
+    assert torch.equal(made.agent.frozen.weight, before)
+    assert all(p.requires_grad for p in trainer.trained) and len(trainer.trained) == 4
+
+
+def test_a_recipe_with_nothing_to_train_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="every parameter is frozen"):
+        Trainer(recipe().requires_grad_(False), steps=1, folder=tmp_path)
+
+
+def test_training_lowers_the_loss(tmp_path, capsys):
+    trained(tmp_path, steps=300, log_every=100, save_every=0, lr=1e-2)
+    lines = [line for line in capsys.readouterr().out.splitlines() if "steps_per_s" in line]
+    first, *_, last = [float(line.split("loss ")[1].split()[0]) for line in lines]
+    assert len(lines) == 3 and last < first
+
+
+def test_plain_lines_name_step_rate_and_time_left(tmp_path, capsys):
+    trained(tmp_path, log_every=10)
+    out = capsys.readouterr().out
+    assert "step 10/20" in out and "steps_per_s" in out and " s left" in out and "lr 0.0005" in out
+
+
+def test_a_terminal_gets_a_bar_with_the_time_left(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True, raising=False)
+    trained(tmp_path, log_every=10)
+    out = capsys.readouterr().out
+    assert "20/20 [00:0" in out and "step/s, loss " in out and "left" not in out
+
+
+def test_scalars_and_pictures_are_in_tensorboard(tmp_path):
+    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+    trained(tmp_path, log_every=10, eval_every=20, figure_every=20)
+    events = EventAccumulator(str(tmp_path))
+    events.Reload()
+    assert {"loss", "error", "lr", "grad_norm", "eval/weight"} <= set(events.Tags()["scalars"])
+    assert [event.step for event in events.Scalars("loss")] == [10, 20]
+    assert events.Tags()["images"] == ["noise"]
+
+
+def test_a_nan_loss_stops_with_step_recipe_and_episodes(tmp_path):
+    made = recipe(bad_step=7)
+    with pytest.raises(LossNotFinite) as error:
+        Trainer(made, steps=20, folder=tmp_path, save_every=5).fit()
+    for part in ("step 7", "TinyRecipe", "episode-7", "step-00000005.pt"):
+        assert part in str(error.value)
+    assert all(torch.isfinite(p).all() for p in made.parameters())
+    assert checkpoint.checkpoints(tmp_path)[-1].name == "step-00000005.pt"
+
+
+def test_an_infinite_gradient_stops_before_it_is_applied(tmp_path):
+    class Overflow(TinyRecipe):
+        def forward(self, batch):
+            return {"loss": (self.agent.body(batch["inputs"]) * 0).sqrt().sum()}  # d sqrt(0) = inf
+
+    made = Overflow()
+    before = {name: value.clone() for name, value in made.agent.state_dict().items()}
+    with pytest.raises(LossNotFinite, match="gradient norm nan"):
+        Trainer(made, steps=3, folder=tmp_path).fit()
+    assert same(before, made.agent.state_dict())
+
+
+def test_a_folder_with_another_run_is_refused_by_naming_the_difference(tmp_path):
+    trained(tmp_path)
+    with pytest.raises(ValueError, match=r"trainer\.lr: 0\.001 -> 0\.01"):
+        trained(tmp_path, lr=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("setting", "words"),
+    [
+        ({"schedule": "cosin"}, "cosine, constant, linear"),
+        ({"precision": "fp8"}, "auto, fp32, bf16"),
+        ({"steps": 0}, "at least 1"),
+        ({"grad_clip": -1.0}, "0 to clip nothing"),
+    ],
+)
+def test_a_setting_out_of_range_names_the_allowed_values(tmp_path, setting, words):
+    with pytest.raises(ValueError, match=words):
+        trained(tmp_path, **setting)
+
+
+def test_learning_rate_warms_up_and_falls_to_zero(tmp_path):
+    trainer = Trainer(recipe(), steps=10, folder=tmp_path, warmup=4, lr=1.0)
+    rates = []
+    for _ in range(10):
+        rates.append(trainer.optimizer.param_groups[0]["lr"])
+        trainer.optimizer.step()
+        trainer.scheduler.step()
+    assert rates[:5] == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0])
+    assert all(a > b for a, b in zip(rates[4:], rates[5:], strict=False))
+    assert trainer.optimizer.param_groups[0]["lr"] == pytest.approx(0.0)
+
+
+def test_differences_names_leaves_only():
+    assert differences({"a": {"b": 1, "c": 2}}, {"a": {"b": 1, "c": 3}}) == ["a.c: 2 -> 3"]
+    assert differences({"a": 1}, {"a": 1, "d": 2}) == ["d: None -> 2"]
+
+
+def test_to_device_keeps_what_is_no_tensor():
+    batch = {"x": torch.zeros(2), "nested": [torch.ones(1)], "episode_ids": ["a"]}
+    moved = to_device(batch, torch.device("cpu"))
+    assert moved["episode_ids"] == ["a"] and torch.equal(moved["nested"][0], torch.ones(1))

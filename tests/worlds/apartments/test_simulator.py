@@ -1,0 +1,157 @@
+"""Motion, geodesics and errors of the simulator; the oracle solves what it is given."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mitigate.core.observation import FORWARD, LEFT, MAX_STEPS, RIGHT, STOP
+from mitigate.corruptions import CLEAN
+from mitigate.evaluation.controls import OracleAgent
+from mitigate.evaluation.evaluator import run_episode
+from mitigate.worlds.apartments.apartment import Apartment, apartment_of
+from mitigate.worlds.apartments.navigation import CELL, FreeSpace
+from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, from_vlnce, load_episodes
+
+
+@pytest.fixture(scope="module")
+def episodes():
+    return load_episodes("val_seen")[:40:4]
+
+
+@pytest.fixture
+def simulator(episodes) -> Simulator:
+    made = Simulator(16)
+    made.reset(episodes[0])
+    return made
+
+
+def free_at(space: FreeSpace, xy: np.ndarray) -> bool:
+    return bool(space.free[int(xy[1] / CELL), int(xy[0] / CELL)])
+
+
+def box(width: int, depth: int) -> FreeSpace:
+    """An empty room of cells with blocked borders."""
+    blocked = np.ones((depth, width), bool)
+    blocked[1:-1, 1:-1] = False
+    return FreeSpace(blocked)
+
+
+def test_the_oracle_solves_ten_episodes(episodes):
+    simulator = Simulator(16)
+    rows = [run_episode(OracleAgent(simulator), simulator, e, CLEAN, 0) for e in episodes]
+    assert [row["success"] for row in rows] == [1] * 10
+    assert min(row["spl"] for row in rows) > 0.8
+    assert [row["decisions"] for row in rows] == [0] * 10  # it reads no frame
+
+
+def test_geodesics_are_never_below_euclid_and_straight_in_an_empty_room():
+    space = apartment_of("apartments/val_seen/100000").space
+    goal = len(space.cells) // 3
+    field = space.distances([goal])
+    straight = np.hypot(*(space.cells - space.cells[goal]).T) * CELL
+    assert np.isfinite(field).all() and (field >= straight - 1e-5).all()
+    room = box(60, 40)
+    field = room.distances([0])
+    assert field.max() < 1.09 * np.hypot(*(room.cells.max(0) - room.cells[0])) * CELL
+
+
+def test_a_shortest_path_walks_through_free_cells_down_to_the_goal():
+    space = apartment_of("apartments/val_seen/100001").space
+    field = space.distances([5])
+    path = space.shortest_path(len(space.cells) - 1, field)
+    length = np.hypot(*np.diff(path, axis=0).T).sum()
+    assert length == pytest.approx(field[-1], abs=1e-3)
+    assert all(free_at(space, p) for p in path) and np.allclose(path[-1], space.centre(5))
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_motion_never_enters_blocked_cells(simulator, seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(400):
+        simulator.step(int(rng.choice([FORWARD, FORWARD, FORWARD, LEFT, RIGHT])))
+        assert free_at(simulator.space, simulator.xy)
+    assert simulator.collisions > 0
+
+
+def test_a_step_goes_a_quarter_metre_ahead_or_collides_and_slides():
+    room = box(40, 40)
+    xy, hit = room.move(np.array([2.0, 2.0]), 0.0, 0.25)
+    assert np.allclose(xy, [2.0, 2.25]) and not hit
+    xy, hit = room.move(np.array([2.0, 2.0]), np.pi / 2, 0.25)  # counter-clockwise: to the left
+    assert np.allclose(xy, [1.75, 2.0]) and not hit
+    for _ in range(12):
+        xy, hit = room.move(xy, 0.0, 0.25)
+    assert hit and free_at(room, xy) and xy[0] == pytest.approx(1.75)
+    slid, hit = room.move(xy, -np.pi / 4, 0.25)  # against the wall at 45 degrees: along it
+    assert hit and slid[0] > xy[0] + 0.1 and abs(slid[1] - xy[1]) < CELL
+
+
+def test_turns_are_15_degrees_and_left_is_counter_clockwise(simulator):
+    before = simulator.heading
+    simulator.step(LEFT)
+    assert np.degrees(simulator.heading - before) == pytest.approx(15)
+    simulator.step(RIGHT)
+    simulator.step(RIGHT)
+    assert np.degrees(simulator.heading - before) == pytest.approx(-15)
+    assert np.allclose(simulator.odometry()["pose"], [*simulator.xy, simulator.heading])
+
+
+def test_an_episode_ends_at_stop_and_at_the_step_limit(simulator, episodes):
+    simulator.step(STOP)
+    assert simulator.done and simulator.stopped
+    simulator.reset(episodes[1])
+    for _ in range(MAX_STEPS):
+        assert not simulator.done
+        simulator.step(LEFT)
+    assert simulator.done and not simulator.stopped
+
+
+def test_the_distance_to_the_goal_is_the_episodes_and_zero_at_the_goal(simulator, episodes):
+    assert simulator.distance_to_goal() == pytest.approx(episodes[0].geodesic_distance, abs=0.01)
+    goal = from_vlnce(episodes[0].goals[0].position)
+    assert simulator.distance_to_goal(goal) == 0.0 and SUCCESS_METRES == 2.0
+
+
+def test_an_unknown_action_names_the_allowed_ones(simulator):
+    with pytest.raises(ValueError, match="Unknown action 4; allowed: 0 STOP, 1 FORWARD"):
+        simulator.step(4)
+
+
+@pytest.mark.parametrize(
+    ("scene", "words"),
+    [
+        ("mp3d/17DRP5sb8fy/17DRP5sb8fy.glb", "Matterport3D scans need the Habitat simulator"),
+        ("apartments/train/200000", "belongs to split 'val_unseen'"),
+        ("apartments/train/150000", "allowed seeds: train 0-99999"),
+    ],
+)
+def test_a_scene_that_is_not_there_is_explained(episodes, scene, words):
+    with pytest.raises(ValueError, match=words):
+        Simulator(16).reset(replace(episodes[0], scene_id=scene))
+
+
+def test_an_episode_in_another_frame_is_refused_and_not_scored(episodes):
+    """A sign error in z, or positions of another scene, would look like a bad agent."""
+    first = episodes[0]
+    x, y, z = first.start_position
+    for wrong in (
+        replace(first, start_position=(x, y, -z)),
+        replace(first, goals=(replace(first.goals[0], position=(x + 500.0, y, z)),)),
+    ):
+        with pytest.raises(ValueError, match=rf"{first.episode_id}.*where one can stand.*z = -y"):
+            Simulator(16).reset(wrong)
+
+
+@pytest.mark.parametrize("seed", [0, 1, 100_000, 200_000])
+def test_every_room_and_door_can_be_reached(seed):
+    apartment = Apartment(seed)
+    rooms = {
+        apartment.room_at(apartment.space.centre(c)) for c in range(len(apartment.space.cells))
+    }
+    assert rooms == set(range(len(apartment.rooms)))
+    assert 4 <= len(apartment.rooms) <= 8
+    assert all(free_at(apartment.space, np.array([door.x, door.y])) for door in apartment.doors)

@@ -1,0 +1,280 @@
+"""VLN-CE files are read in bounded memory, come back as they were, and fail with a place."""
+
+from __future__ import annotations
+
+import dataclasses
+import gzip
+import json
+import subprocess
+import sys
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mitigate.core import files
+from mitigate.worlds.episodes import (
+    Goal,
+    read_episodes,
+    read_extras,
+    read_ground_truth,
+    write_episodes,
+)
+from tests.r2r_ce import FOLDER, ROOT, needs_r2r_ce
+
+R2R = {
+    "episode_id": 7,
+    "trajectory_id": 4,
+    "scene_id": "mp3d/a/a.glb",
+    "start_position": [1.5, 0.25, -3],
+    "start_rotation": [-0.0, 0.6, 0.0, -0.8],
+    "info": {"geodesic_distance": 6.5, "difficulty": "easy"},
+    "goals": [{"position": [2.0, 0.25, -6.0], "radius": 3.0, "object_id": 12}],
+    "instruction": {"instruction_text": "Go \u00e0 droite.", "instruction_tokens": [982, 141, 0]},
+    "reference_path": [[1.5, 0.25, -3.0], [2.0, 0.25, -6.0]],
+    "start_room": None,
+}
+RXR = {
+    **R2R,
+    "episode_id": "0041",
+    "trajectory_id": "13",
+    "info": {"geodesic_distance": 9.0, "role": "guide"},
+    "instruction": {
+        "instruction_id": "41",
+        "instruction_text": "\u0926\u093e\u090f\u0902 \u092e\u0941\u0921\u093c\u0947\u0902",
+        "language": "hi-IN",
+        "annotator_id": "0",
+        "timed_instruction": [{"word": "\u0906\u092a", "start_time": 0.5}],
+    },
+}
+
+
+def write_json(path: Path, value: object) -> Path:
+    text = json.dumps(value, ensure_ascii=False)
+    path.write_bytes(gzip.compress(text.encode()) if path.suffix == ".gz" else text.encode())
+    return path
+
+
+def load(path: Path) -> object:
+    return json.loads(gzip.decompress(path.read_bytes()))
+
+
+def episode_file(path: Path, **changes: object) -> Path:
+    """A file of two good episodes and a third one with ``changes`` (``...`` drops the key)."""
+    third = {key: value for key, value in (R2R | changes).items() if value is not ...}
+    return write_json(path / "bad.json.gz", {"episodes": [R2R, RXR, third]})
+
+
+def test_r2r_and_rxr_episodes_are_read(tmp_path):
+    path = write_json(tmp_path / "two.json", {"episodes": [R2R, RXR], "instruction_vocab": {}})
+    r2r, rxr = read_episodes(path)
+    assert (r2r.episode_id, r2r.trajectory_id, rxr.episode_id) == ("7", "4", "0041")
+    assert r2r.start_rotation == (0.0, 0.6, 0.0, -0.8)
+    assert r2r.goals == (Goal((2.0, 0.25, -6.0), 3.0, {"object_id": 12}),)
+    assert r2r.geodesic_distance == 6.5
+    assert r2r.instruction.tokens == (982, 141, 0)
+    assert r2r.instruction.language is None
+    assert rxr.instruction.tokens is None
+    assert rxr.instruction.language == "hi-IN"
+    assert rxr.instruction.extra["timed_instruction"][0]["start_time"] == 0.5
+    assert len({r2r, rxr}) == 2  # hashable
+
+
+@pytest.mark.parametrize("suffix", [".json", ".json.gz"])
+def test_every_key_and_the_type_of_ids_survive_a_round_trip(tmp_path, suffix):
+    original = {"instruction_vocab": {"num_vocab": 2504}, "episodes": [R2R, RXR], "tag": [1, None]}
+    source = write_json(tmp_path / f"a{suffix}", original)
+    copy = tmp_path / f"b{suffix}"
+    write_episodes(copy, read_episodes(source), read_extras(source))
+    text = load(copy) if suffix.endswith("gz") else json.loads(copy.read_text("utf-8"))
+    assert text == original
+    assert list(read_episodes(copy)) == list(read_episodes(source))
+
+
+def test_a_replaced_id_is_the_one_written(tmp_path):
+    source = write_json(tmp_path / "a.json", {"episodes": [R2R]})
+    renamed = (dataclasses.replace(e, episode_id="7/mask") for e in read_episodes(source))
+    write_episodes(tmp_path / "b.json.gz", renamed)
+    (written,) = load(tmp_path / "b.json.gz")["episodes"]
+    assert (written["episode_id"], written["trajectory_id"]) == ("7/mask", 4)
+
+
+def test_equal_episodes_give_equal_bytes(tmp_path):
+    source = write_json(tmp_path / "a.json", {"episodes": [R2R, RXR]})
+    first = write_episodes(tmp_path / "b.json.gz", read_episodes(source)).read_bytes()
+    second = write_episodes(tmp_path / "c.json.gz", read_episodes(source)).read_bytes()
+    assert first == second
+
+
+def test_a_failed_write_leaves_the_old_file_alone(tmp_path):
+    path = write_json(tmp_path / "a.json", {"episodes": [R2R]})
+    before = path.read_bytes()
+    bad = [dataclasses.replace(e, geodesic_distance=float("nan")) for e in read_episodes(path)]
+    with pytest.raises(ValueError, match="episode 7 holds what JSON cannot"):
+        write_episodes(path, bad)
+    assert path.read_bytes() == before
+    assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_values_split_by_the_reading_buffer_are_whole(tmp_path):
+    numbers = list(range(10**5, 10**5 + 40_000))  # 320 kB: many buffers
+    many = [R2R | {"episode_id": i, "blob": '\u00e9\\"]}' * (i % 50)} for i in range(700)]
+    path = write_json(tmp_path / "a.json", {"x": 12345, "episodes": many, "vocab": numbers})
+    assert [e.episode_id for e in read_episodes(path)] == [str(i) for i in range(700)]
+    assert read_extras(path) == {"x": 12345, "vocab": numbers}
+
+
+@pytest.mark.parametrize("size", [1, 2, 5])
+def test_values_are_whole_wherever_the_buffer_ends(tmp_path, monkeypatch, size):
+    monkeypatch.setattr(files, "CHUNK", size)
+    path = write_json(tmp_path / "a.json", {"x": 12345, "episodes": [R2R, RXR], "y": -1.5e3})
+    assert [e.episode_id for e in read_episodes(path)] == ["7", "0041"]
+    assert read_extras(path) == {"x": 12345, "y": -1500.0}
+
+
+def test_no_episodes_are_no_error(tmp_path):
+    path = write_json(tmp_path / "a.json", {"episodes": []})
+    assert list(read_episodes(path)) == []
+
+
+def test_test_splits_hide_their_goals(tmp_path):
+    hidden = {k: v for k, v in R2R.items() if k not in ("goals", "reference_path")}
+    path = write_json(tmp_path / "a.json", {"episodes": [hidden]})
+    with pytest.raises(ValueError, match=r"lacks the key 'goals'.*hidden_goals=True"):
+        list(read_episodes(path))
+    (episode,) = read_episodes(path, hidden_goals=True)
+    assert (episode.goals, episode.reference_path) == ((), ())
+    write_episodes(tmp_path / "b.json.gz", [episode])
+    assert load(tmp_path / "b.json.gz") == {"episodes": [hidden]}
+
+
+@pytest.mark.parametrize(
+    "key",
+    [
+        *("episode_id", "trajectory_id", "scene_id", "start_position", "start_rotation"),
+        *("goals", "instruction", "reference_path"),
+    ],
+)
+def test_a_missing_key_is_named_with_file_and_episode(tmp_path, key):
+    path = episode_file(tmp_path, **{key: ...})
+    with pytest.raises(ValueError) as error:
+        list(read_episodes(path))
+    text = str(error.value)
+    identity = "None" if key == "episode_id" else "7"
+    assert f"{path}: episode 2 of the list (episode_id {identity}) lacks the key '{key}'" in text
+    assert "An episode needs episode_id" in text
+    assert "\n" not in text
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"start_position": [1, 2]}, "wrong 'start_position': 3 finite numbers"),
+        ({"start_rotation": [0, 0, 0, "w"]}, "wrong 'start_rotation': 4 finite numbers"),
+        ({"reference_path": []}, "has an empty 'reference_path'"),
+        ({"reference_path": [[0, 0, None]]}, "wrong 'reference_path'"),
+        ({"goals": []}, "has an empty 'goals'"),
+        ({"goals": [{"radius": 3.0}]}, r"goals\[0\], lacks the key 'position'"),
+        ({"instruction": {}}, "instruction, lacks the key 'instruction_text'"),
+        ({"instruction": "go"}, "wrong 'instruction': 'go'"),
+        ({"scene_id": 5}, "wrong 'scene_id': 5"),
+        ({"info": {"geodesic_distance": "far"}}, "info, has a wrong 'geodesic_distance'"),
+    ],
+)
+def test_a_wrong_value_is_named(tmp_path, changes, message):
+    with pytest.raises(ValueError, match=message):
+        list(read_episodes(episode_file(tmp_path, **changes)))
+
+
+def test_good_episodes_come_before_the_error(tmp_path):
+    episodes = read_episodes(episode_file(tmp_path, scene_id=...))
+    assert [next(episodes).episode_id, next(episodes).episode_id] == ["7", "0041"]
+
+
+def test_broken_files_are_refused(tmp_path):
+    whole = gzip.compress(json.dumps({"episodes": [R2R] * 500}).encode())
+    cases = {
+        "cut.json.gz": whole[: len(whole) // 2],
+        "cut.json": json.dumps({"episodes": [R2R, R2R]}).encode()[:-40],
+        "list.json": b'[{"path_id": 1}]',
+        "picture.json": bytes(range(128, 256)),
+        "empty.json": b"",
+        "comma.json": b'{"episodes": [{} {}]}',
+        "deep.json": b'{"episodes": [' + b"[" * 200_000,
+    }
+    for name, content in cases.items():
+        (tmp_path / name).write_bytes(content)
+        with pytest.raises(ValueError, match=f"{name}(: episode 0| is not whole JSON)"):
+            list(read_episodes(tmp_path / name))
+
+
+def test_other_kinds_of_file_are_told_apart(tmp_path):
+    truth = write_json(tmp_path / "val_gt.json", {"7": {"locations": [[0, 0, 0]], "actions": [0]}})
+    episodes = write_json(tmp_path / "val.json", {"episodes": [R2R]})
+    with pytest.raises(ValueError, match="read_ground_truth"):
+        list(read_episodes(truth))
+    with pytest.raises(ValueError, match="read_episodes"):
+        read_ground_truth(episodes)
+    with pytest.raises(ValueError, match=r"entry '7' lacks the key 'locations'"):
+        read_ground_truth(write_json(tmp_path / "bad_gt.json", {"7": {"actions": [0]}}))
+
+
+def test_a_missing_file_names_the_nearest(tmp_path):
+    write_json(tmp_path / "val_seen.json.gz", {"episodes": []})
+    with pytest.raises(FileNotFoundError, match=r"nearest names there are val_seen\.json\.gz"):
+        list(read_episodes(tmp_path / "val_sen.json.gz"))
+
+
+def test_memory_does_not_grow_with_the_file(tmp_path):
+    def peak(count: int) -> int:
+        path = tmp_path / f"{count}.json.gz"
+        sample = R2R | {"blob": "x" * 2000}
+        write_json(path, {"episodes": [sample] * count})
+        tracemalloc.start()
+        try:
+            assert sum(1 for _ in read_episodes(path)) == count
+            return tracemalloc.get_traced_memory()[1]
+        finally:
+            tracemalloc.stop()
+
+    assert peak(8000) < peak(500) + 2_000_000  # bytes; the larger file holds 16 MB more text
+
+
+PEAK = """
+import resource, sys
+from mitigate.worlds.episodes import read_episodes
+before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+count = sum(1 for _ in read_episodes(sys.argv[1]))
+print(count, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+"""
+
+
+@needs_r2r_ce
+@pytest.mark.parametrize(("name", "count"), [("train", 10_819), ("val_seen", 778)])
+def test_real_episodes_are_read_in_bounded_memory(name, count):
+    file = str(FOLDER / f"{name}.json.gz")
+    command = [sys.executable, "-c", PEAK, file]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    episodes, grown = map(int, done.stdout.split())
+    assert episodes == count
+    assert grown < 8 * 1024  # kB over the imports; train.json is 18 MB of text
+
+
+@needs_r2r_ce
+def test_a_real_file_survives_a_round_trip(tmp_path):
+    source = FOLDER / "val_seen.json.gz"
+    write_episodes(tmp_path / "copy.json.gz", read_episodes(source), read_extras(source))
+    assert load(tmp_path / "copy.json.gz") == load(source)
+
+
+@needs_r2r_ce
+def test_real_ground_truth_belongs_to_its_episodes():
+    truths = read_ground_truth(FOLDER / "val_seen_gt.json.gz")
+    episodes = {e.episode_id: e for e in read_episodes(FOLDER / "val_seen.json.gz")}
+    assert truths.keys() == episodes.keys()
+    for key, truth in truths.items():
+        assert truth.locations.dtype == np.float64
+        assert truth.locations.shape[1:] == (3,)
+        assert truth.actions[-1] == 0  # STOP
+        assert np.allclose(truth.locations[0], episodes[key].start_position, atol=1e-3)

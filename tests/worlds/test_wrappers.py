@@ -1,0 +1,176 @@
+"""The gymnasium wrapper: keys, spaces, order, and what it refuses."""
+
+import importlib
+import sys
+
+import numpy as np
+import pytest
+
+from mitigate.corruptions import DEPTH, RGB, DepthSensor, Key, Schedule, corrupt, corrupt_normalised
+
+gymnasium = pytest.importorskip("gymnasium")
+from gymnasium import spaces  # noqa: E402
+from gymnasium.utils.env_checker import check_env  # noqa: E402
+
+from mitigate.worlds.wrappers import CorruptObservation  # noqa: E402
+
+FRAME = spaces.Box(0, 255, (24, 32, 3), np.uint8)
+METRES = spaces.Box(0.0, 10.0, (24, 32, 1), np.float32)
+HURT_RGB = Schedule("per_episode", 0.8, clean_share=0.0, names=RGB)
+
+
+class Room(gymnasium.Env):
+    """Shows a space's frames, which tell the step; an episode has 3 steps."""
+
+    def __init__(self, space: spaces.Space) -> None:
+        self.observation_space, self.action_space = space, spaces.Discrete(2)
+
+    def _show(self, space):
+        if isinstance(space, spaces.Dict):
+            return {name: self._show(part) for name, part in space.items()}
+        ramp = np.linspace(0.2, 0.7, int(np.prod(space.shape))).reshape(space.shape)
+        return ((ramp + 0.05 * self.time) * space.high.max()).astype(space.dtype)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.time = 0
+        return self._show(self.observation_space), {}
+
+    def step(self, action):
+        self.time += 1
+        return self._show(self.observation_space), 0.0, self.time == 3, False, {}
+
+
+def episode(env, seed=None):
+    frames = [env.reset(seed=seed)[0]]
+    frames += [env.step(0)[0] for _ in range(3)]
+    return frames
+
+
+@pytest.mark.parametrize(
+    "space",
+    [FRAME, METRES, spaces.Dict({"depth": METRES, "rgb": FRAME})],
+    ids=lambda s: s.__class__,
+)
+def test_it_keeps_the_contract_of_gymnasium(space):
+    names = RGB if space is FRAME else DEPTH if space is METRES else RGB + DEPTH
+    env = CorruptObservation(Room(space), Schedule("per_frame", 1.0, names=names))
+    assert env.observation_space == space
+    check_env(env, skip_render_check=True)
+    for frame in episode(env, 3):
+        assert space.contains(frame)
+
+
+def test_the_key_is_the_seed_the_reset_and_the_step():
+    env, clean = CorruptObservation(Room(FRAME), Schedule.always("spatter", 0.7), 5), Room(FRAME)
+    assert env.reset()[0] is not None and env.key == Key(5, "unseeded-0", 0)
+    for name, seed in (("9-0", 9), ("9-1", None), ("7-0", 7)):
+        for number, (seen, given) in enumerate(
+            zip(episode(env, seed), episode(clean), strict=True)
+        ):
+            key = Key(5, name, number)
+            assert np.array_equal(seen, corrupt(given, "spatter", 0.7, key=key))
+        assert env.key == Key(5, name, 3) and env.corruption.name == "spatter"
+
+
+def test_an_environment_that_resets_itself_begins_an_episode_as_a_reset_does():
+    inside = CorruptObservation(gymnasium.wrappers.Autoreset(Room(FRAME)), HURT_RGB)
+    outside = gymnasium.wrappers.Autoreset(CorruptObservation(Room(FRAME), HURT_RGB))
+    inside.reset(seed=4), outside.reset(seed=4)
+    for number in range(1, 10):  # the room ends after 3 steps, and the next step resets it
+        seen, wanted = inside.step(0)[0], outside.step(0)[0]
+        assert inside.key == outside.env.key == Key(0, f"4-{number // 4}", number % 4)
+        assert np.array_equal(seen, wanted)
+    inside.reset()
+    assert inside.key == Key(0, "4-3", 0) and inside.step(0) and inside.key == Key(0, "4-3", 1)
+
+
+def test_a_step_before_the_first_reset_is_explained():
+    room = Room(FRAME)
+    room.time = 0
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"reset\(\) before step\(\)"):
+        CorruptObservation(room, HURT_RGB).step(0)
+    ordered = gymnasium.wrappers.OrderEnforcing(Room(FRAME))
+    with pytest.raises(gymnasium.error.ResetNeeded, match="env.step"):  # the environment's own
+        CorruptObservation(ordered, HURT_RGB).step(0)
+
+
+def test_equal_seeds_give_equal_pixels_and_others_do_not():
+    def pixels(reset, seed=0):
+        schedule = Schedule("per_frame", 0.9, clean_share=0.0, names=("spatter", "low_light_noise"))
+        env = CorruptObservation(Room(FRAME), schedule, seed)
+        return np.stack(episode(env, reset) + episode(env))
+
+    assert np.array_equal(pixels(1), pixels(1))
+    assert not np.array_equal(pixels(1), pixels(2))
+    assert not np.array_equal(pixels(1), pixels(1, seed=1))
+
+
+def test_dictionaries_keep_order_and_other_entries():
+    space = spaces.Dict([("goal", spaces.Box(0, 1, (2,))), ("camera", FRAME), ("range", METRES)])
+    env = CorruptObservation(
+        Room(space), Schedule.always("multipath", 1.0), rgb="camera", depth="range"
+    )
+    clean, seen = Room(space).reset()[0], env.reset(seed=0)[0]
+    assert list(seen) == list(clean) == ["goal", "camera", "range"]
+    assert np.array_equal(seen["camera"], clean["camera"])
+    assert np.array_equal(seen["goal"], clean["goal"])
+    wanted = corrupt(clean["range"], "multipath", 1.0, key=env.key)
+    assert np.array_equal(seen["range"], wanted) and not np.array_equal(wanted, clean["range"])
+
+
+def test_normalised_depth_goes_through_the_sensor():
+    space = spaces.Dict({"depth": spaces.Box(0.0, 1.0, (24, 32, 1), np.float32)})
+    sensor = DepthSensor(0.5, 5.0)
+    schedule = Schedule.always("quantization", 0.8)
+    env = CorruptObservation(Room(space), schedule, sensor=sensor, normalised=True)
+    seen, clean = env.reset(seed=1)[0], Room(space).reset()[0]
+    wanted = corrupt_normalised(clean, env.corruption, env.key, sensor)
+    assert np.array_equal(seen["depth"], wanted["depth"]) and space.contains(seen)
+    assert not np.array_equal(seen["depth"], clean["depth"])
+
+
+def test_the_pose_keeps_a_flare_at_its_place_in_the_world():
+    space = spaces.Dict({"rgb": FRAME, "where": spaces.Box(-9, 9, (3,), np.float32)})
+    env = CorruptObservation(Room(space), Schedule.always("flare", 1.0), pose="where")
+    seen, clean = env.reset(seed=1)[0], Room(space).reset()[0]
+    heading = float(clean["where"][2])
+    wanted = corrupt(clean["rgb"], "flare", 1.0, key=env.key, heading=heading)
+    assert np.array_equal(seen["rgb"], wanted)
+    assert not np.array_equal(wanted, corrupt(clean["rgb"], "flare", 1.0, key=env.key))
+    with pytest.raises(ValueError, match="pose='were' is no entry.*rgb, where"):
+        CorruptObservation(Room(space), Schedule.always("flare", 1.0), pose="were")
+
+
+@pytest.mark.parametrize(
+    ("space", "options", "part"),
+    [
+        (spaces.Box(0, 1, (24, 32, 3), np.float32), {}, "holds no frames"),
+        (spaces.Box(0, 255, (3, 24, 32), np.uint8), {}, "before frames are transposed"),
+        (spaces.Dict({"rgb": METRES}), {}, "'rgb' must be a Box of uint8"),
+        (spaces.Dict({"image": FRAME}), {}, "Name them with rgb= and depth="),
+        (spaces.Discrete(3), {}, "holds no frames"),
+        (FRAME, {"names": DEPTH}, "hurts depth, but the environment gives only rgb"),
+        (METRES, {"names": RGB}, "gives only depth.*mitigate.corruptions.DEPTH"),
+        (spaces.Box(0, 5.0, (4, 4), np.float32), {"names": DEPTH}, r"DepthSensor\(z_max=5\)"),
+    ],
+    ids=str,
+)
+def test_wrong_spaces_are_explained(space, options, part):
+    names = options.get("names", RGB)
+    with pytest.raises(ValueError, match=part) as error:
+        CorruptObservation(Room(space), Schedule("per_episode", 0.5, names=names))
+    assert "\n" not in str(error.value)
+
+
+def test_metres_in_a_normalised_wrapper_are_refused():
+    schedule = Schedule.always("multipath", 0.5)
+    with pytest.raises(ValueError, match="normalised depth ends at 1"):
+        CorruptObservation(Room(METRES), schedule, normalised=True)
+
+
+def test_without_gymnasium_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "gymnasium", None)
+    monkeypatch.delitem(sys.modules, "mitigate.worlds.wrappers")
+    with pytest.raises(ImportError, match=r"pip install -e '\.\[gymnasium\]'"):
+        importlib.import_module("mitigate.worlds.wrappers")
