@@ -15,7 +15,7 @@ from mitigate.evaluation.evaluator import WORTH, EpisodeTask
 from mitigate.evaluation.rows import read
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import draw_training_episode
+from mitigate.worlds.apartments.tasks import OGN_SHARE, draw_training_episode
 
 
 def measure(
@@ -31,13 +31,13 @@ def measure(
 ) -> dict[str, float]:
     """Success of ``agent`` under every corruption of ``schedule``, in [0, 1] by name.
 
-    ``episodes`` instruction-following episodes of the first ``apartments`` training layouts are
+    ``episodes`` training episodes of the first ``apartments`` training layouts are
     drawn from (seed, step), the same ones under every corruption. ``agent`` is a module with reset
     and act; it is left in eval mode. ``workers``: processes, on which the rates do not depend;
     None: one a core if there is work for them, and this one alone for an agent on a GPU.
     """
     rng = generator(seed, "refresh", step)
-    drawn = [draw_training_episode(rng, apartments, 0.0) for _ in range(episodes)]
+    drawn = [draw_training_episode(rng, apartments, OGN_SHARE) for _ in range(episodes)]
     met = [schedule.corruption(name) for name in schedule.names]
     groups = [[(e, c, {"corruption": c.name, "seed": seed}) for c in met] for e in drawn]
     simulator = Simulator(renderer.size, renderer=renderer)

@@ -39,7 +39,7 @@ class RenderedWorld:
         simulator = self.simulator
         rgb, depth, ids = simulator.observe_faces()
         concepts, seen = view_labels(simulator.apartment, ids, depth)
-        frames = {RGB: rgb, DEPTH: depth, POSE: self.pose().astype(np.float32)}
+        frames = {RGB: rgb, DEPTH: depth, **simulator.odometry()}
         drawn = self.schedule.draw(self.seed, self.name, len(self.looks))
         hurt = corrupt_observation(frames, *drawn)
         self.looks.append(
@@ -55,7 +55,7 @@ class RenderedWorld:
         )
 
     def pose(self) -> np.ndarray:
-        return np.array([*self.simulator.xy, self.simulator.heading])
+        return self.simulator.odometry()[POSE].astype(np.float64)
 
     def go(self, route: list[np.ndarray]) -> None:
         controller = Controller()

@@ -30,6 +30,7 @@ from mitigate.worlds.episodes import (
 SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (docs/base-agent.md)
 SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
 TASKS = ("vln", "ogn")
+OGN_SHARE = 0.15  # of training episodes (ours)
 _TRIES = 60
 _POOL = 60  # training paths of one apartment
 _PER_APARTMENT = 10  # episodes of one apartment in the fixed lists
