@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mitigate.core import conf, workers
+from mitigate.core import build, conf, workers
 from mitigate.evaluation.evaluate import conditions, episodes, load
 from mitigate.evaluation.evaluator import EpisodeTask, Job, evaluate, run_episode
 
@@ -33,7 +33,7 @@ def paces(count: int) -> dict[str, Pace]:
     cfg = conf.load_config("evaluate")
     found = {}
     for weights in CHECKPOINTS:
-        task = EpisodeTask(load(cfg.agent, weights), cfg.env.size)
+        task = EpisodeTask(load(cfg.agent, weights), build.maker(cfg.env.world))
         met = conditions(list(cfg.suite.conditions), SEVERITY, None)
         groups: list[list[Job]] = [
             [(episode, c, {"seed": 0, "corruption": c.name}) for c in met]
@@ -48,8 +48,8 @@ def _pace(task: EpisodeTask, groups: list[list[Job]]) -> Pace:
     """Time all groups but the first, which warms up."""
 
     def alone(group: list[Job]) -> list[dict[str, Any]]:
-        assert task.simulator is not None
-        return [{**job, **run_episode(task.agent, task.simulator, e, c, 0)} for e, c, job in group]
+        assert task.world is not None
+        return [{**job, **run_episode(task.agent, task.world, e, c, 0)} for e, c, job in group]
 
     ways: dict[str, Callable] = {"alone": alone, "together": lambda group: list(task.work(group))}
     spent, same = dict.fromkeys(ways, 0.0), True
@@ -81,12 +81,12 @@ def _evaluation(count: int, number: int, folder: Path) -> float:
     started = time.perf_counter()
     evaluate(
         agent,
+        build.maker(cfg.env.world),
         episodes(cfg.env, cfg.split, count),
         conditions(list(cfg.suite.conditions), SEVERITY, None),
         name=f"{number} workers",
         out=folder / "rows.jsonl",
         split=cfg.split,
         workers=number,
-        size=cfg.env.size,
     )
     return time.perf_counter() - started

@@ -44,8 +44,8 @@ PARTS = {  # what making a batch consists of: module, class or None, function
         ("mitigate.worlds.apartments.navigation", "FreeSpace", "rays"),
     ),
     "corruption": (
-        ("mitigate.agents.topological.rendered", None, "corrupt_observation"),
-        ("recipes.perception", None, "corrupt_observation"),
+        ("mitigate.worlds.world", None, "corrupt_observation"),
+        ("mitigate.training.poses", None, "corrupt_observation"),
     ),
     NETWORK: (
         ("mitigate.agents.topological.agent", "TopologicalAgent", "perceive"),

@@ -6,6 +6,7 @@ as data, because a ``_target_`` in it could run anything.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,11 @@ def build(node: DictConfig, **given: Any) -> Any:
         if isinstance(cause, (ValueError, FileNotFoundError)):
             raise cause from error
         raise
+
+
+def maker(node: DictConfig) -> Callable[[], Any]:
+    """Return a function that makes what ``node`` describes, one each time; it can be pickled."""
+    return instantiate(node, _partial_=True, _convert_="all")
 
 
 def settings_of(node: DictConfig, weights: str) -> DictConfig:

@@ -1,7 +1,7 @@
 """Controls that frame every result: the shortest-path oracle and a random walker.
 
 ``python -m mitigate.evaluation.controls --split val_unseen --out runs/controls.jsonl`` runs both on
-the shipped episodes, clean. The oracle shows that episodes can be solved with the low-level
+the episodes of a world, clean. The oracle shows that episodes can be solved with the low-level
 actions; the random walker shows what chance gives.
 """
 
@@ -12,43 +12,36 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from tqdm import tqdm
 
-from mitigate.agents.topological.rollout import STOP_WITHIN
-from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
+from mitigate.agents.agent import Agent
+from mitigate.core import conf
+from mitigate.core.build import maker
+from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
+from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import metrics, rows
-from mitigate.evaluation.evaluator import Agent, run_episode
-from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import SUCCESS_METRES, load_episodes
+from mitigate.evaluation import rows
+from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.evaluate import episodes
+from mitigate.worlds.world import World
 
 _STOP_SHARE = 0.01  # of random actions; about 100 actions an episode
 
 
 class OracleAgent:
-    """Greedy geodesic follower: turns to the heading whose step lowers the geodesic distance most.
+    """Does what the world's expert says; it reads no frames."""
 
-    It reads the simulator, not the frames.
-    """
-
-    def __init__(self, simulator: Simulator) -> None:
-        self.simulator = simulator
+    def __init__(self, world: World) -> None:
+        self.world = world
 
     def reset(self, instruction: str) -> None:
-        pass
+        expert = self.world.expert()
+        if expert is None:
+            raise ValueError(f"{type(self.world).__name__} has no expert, so it has no oracle.")
+        self.expert = expert
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        simulator = self.simulator
-        if simulator.distance_to_goal() < STOP_WITHIN:
-            return STOP
-        turns = sorted(range(-12, 13), key=abs)
-        headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
-        ends = [
-            simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings
-        ]
-        best = turns[int(np.argmin([simulator.distance_to_goal(end) for end in ends]))]
-        return FORWARD if best == 0 else LEFT if best > 0 else RIGHT
+        return self.expert.action()
 
 
 class RandomAgent:
@@ -67,6 +60,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
+    parser.add_argument("--env", default="apartments", help="a config of conf/env")
     parser.add_argument("--split", default="val_unseen", choices=["val_seen", "val_unseen"])
     parser.add_argument("--task", default="vln", choices=["vln", "ogn"])
     parser.add_argument("--episodes", type=int, default=300)
@@ -74,24 +68,27 @@ def main() -> None:
     args = parser.parse_args()
     if args.episodes < 1:
         parser.error(f"--episodes {args.episodes} is none: give 1 or more.")
-    simulator = Simulator()
-    episodes = load_episodes(args.split, args.task)[: args.episodes]
-    controls: dict[str, Agent] = {"oracle": OracleAgent(simulator), "random": RandomAgent()}
+    env = conf.load_config("evaluate", [f"env={args.env}"]).env
+    split = args.split if args.task == "vln" else f"{args.split}_{args.task}"
+    world, chosen = maker(env.world)(), episodes(env, split, args.episodes)
+    controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": RandomAgent()}
     for name, agent in controls.items():
         label = {
             "agent": name,
             "name": name,
             "corruption": "clean",
             "severity": 0.0,
-            "split": args.split if args.task == "vln" else f"{args.split}_{args.task}",
+            "split": split,
             "seed": 0,
             "suite": SUITE_VERSION,
-            "rule": metrics.rule(SUCCESS_METRES),
+            "rule": world.rule,
         }
-        found = [
-            label | {"episode_id": e.episode_id} | run_episode(agent, simulator, e, CLEAN, 0)
-            for e in tqdm(episodes, desc=name)
-        ]
+        found = []
+        with Progress(name, len(chosen), unit="episode") as progress:
+            for episode in chosen:
+                measures = run_episode(agent, world, episode, CLEAN, 0)
+                found.append(label | {"episode_id": episode.episode_id} | measures)
+                progress.advance()
         rows.append(args.out, found)
         print(
             f"{name}: SR {np.mean([r['success'] for r in found]):.3f}  "

@@ -91,6 +91,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     _check_list(out / LIST, cfg.env.episodes[cfg.split])
     evaluate(
         agent,
+        build.maker(cfg.env.world),
         chosen,
         conditions(names, cfg.severity, cfg.severity_depth),
         name=name,
@@ -98,7 +99,6 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         split=cfg.split,
         seed=cfg.seed,
         workers=cfg.workers,
-        size=cfg.env.size,
         safeguard=open_safeguard(cfg.safeguard, log=out / DECISIONS),
     )
     write_table([out / ROWS], out)
@@ -140,6 +140,7 @@ def report_before_after(
     ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing. The
     pictures in ``folder/pictures`` show episodes that the training won back.
     """
+    from mitigate.core import build
     from mitigate.evaluation import columns
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.evaluation.trajectories import write_pictures
@@ -149,10 +150,11 @@ def report_before_after(
     suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
     agents: dict[str, Any] = {"before": base_agent, columns.of_run(cfg, folder): trained_agent}
     agents = {name: agent for name, agent in agents.items() if agent is not None}
-    rows = []
+    world, rows = build.maker(cfg.env.world), []
     for name, agent in agents.items():
         rows += evaluate(
             agent,
+            world,
             chosen,
             suite,
             name=name,
@@ -160,12 +162,9 @@ def report_before_after(
             split=quick.split,
             seed=cfg.seed,
             workers=quick.workers,
-            size=cfg.env.size,
         )
     write_table([folder / ROWS], folder)
-    written = write_pictures(
-        agents, chosen, rows, folder / "pictures", seed=cfg.seed, size=cfg.env.size
-    )
+    written = write_pictures(agents, world(), chosen, rows, folder / "pictures", seed=cfg.seed)
     print("\n".join(f"wrote {path}" for path in written), flush=True)
 
 

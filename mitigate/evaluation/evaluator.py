@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import time
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
@@ -21,17 +21,13 @@ import torch
 
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import weights_sha
-from mitigate.core.memory import Memory
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
-from mitigate.evaluation import metrics, rows
-from mitigate.evaluation.episode import FRAMES, Agent, LazyObservation, instruction, run_episode
+from mitigate.evaluation import rows
+from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.safeguard.guard import Safeguard
-from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import SUCCESS_METRES
 from mitigate.worlds.episodes import Episode
-
-__all__ = ["Agent", "EpisodeTask", "LazyObservation", "evaluate", "instruction", "run_episode"]
+from mitigate.worlds.world import World, remembering
 
 WORTH = 40  # episodes that make a process worth its start (ours): 4 s of 0.1 s each
 _PAUSE = 1.0  # seconds between two writes, at least
@@ -43,18 +39,18 @@ Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says 
 class EpisodeTask:
     """Runs jobs (``mitigate/core/workers.py``): each one's result is its label with its measures.
 
-    repaired: what a safeguard makes of instructions. size: pixels of a view. simulator: to use in
-    this process; others make their own. A label holds "seed".
+    make_world: each process makes one. repaired: what a safeguard makes of instructions. A label
+    holds "seed".
     """
 
     agent: Any
-    size: int
+    make_world: Callable[[], World]
     repaired: dict[str, str] = field(default_factory=dict)
-    simulator: Simulator | None = None
+    world: World | None = None
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "simulator": None}
+        return {**self.__dict__, "world": None}
 
     @contextmanager
     def ready(self) -> Iterator[None]:
@@ -62,7 +58,7 @@ class EpisodeTask:
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
         self.agent.eval()
-        self.simulator = self.simulator or Simulator(self.size)
+        self.world = self.world or self.make_world()
         try:
             yield
         finally:
@@ -70,18 +66,12 @@ class EpisodeTask:
 
     def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
         """Rows of ``jobs``, which should be of one episode: frames and features are kept."""
-        assert self.simulator is not None, "work() is called while ready()"
-        rendered = Memory(FRAMES)
-        with getattr(self.agent, "remembering", nullcontext)():
+        assert self.world is not None, "work() is called while ready()"
+        with remembering(self.agent), remembering(self.world):
             for episode, condition, label in jobs:
+                seed = label["seed"]
                 measures = run_episode(
-                    self.agent,
-                    self.simulator,
-                    episode,
-                    condition,
-                    label["seed"],
-                    self.repaired,
-                    rendered,
+                    self.agent, self.world, episode, condition, seed, self.repaired
                 )
                 yield {**label, **measures}
 
@@ -92,6 +82,7 @@ class EpisodeTask:
 
 def evaluate(
     agent: torch.nn.Module,
+    world: Callable[[], World],
     episodes: list[Episode],
     conditions: list[Corruption],
     *,
@@ -100,28 +91,27 @@ def evaluate(
     split: str,
     seed: int = 0,
     workers: int | None = 1,
-    size: int = 64,
     safeguard: Safeguard | None = None,
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
-    Args: conditions: corruptions to meet, ``CLEAN`` among them for PRS; "white_box" is left out
-    with a warning if the agent has no ``system_prompt``. name: the table's column.
-    split: what the rows say. seed: of the corruptions' keys. workers: processes, None: one a core
-    if there is work for them; the rows do not depend on it. size: pixels of a view. safeguard:
+    Args: world: makes a world, in each process. conditions: corruptions to meet, ``CLEAN`` among
+    them for PRS; "white_box" is left out with a warning if the agent has no ``system_prompt``.
+    name: the table's column. split: what the rows say. seed: of the corruptions' keys. workers:
+    processes, None: one a core if there is work for them; the rows do not depend on it. safeguard:
     repairs each instruction, once, before the agent hears it; ``name`` should say so.
     Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
     out = Path(out)
     conditions = _applicable(agent, conditions, name)
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
-    jobs = _jobs(agent, episodes, conditions, name, split, seed)
+    jobs = _jobs(agent, episodes, conditions, name, split, seed, world().rule)
     todo = [job for job in jobs if rows.identity(job[2]) not in known]
     heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
     decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
     repaired = {decision.original: decision.text for decision in decided}
     if todo:
-        _run(EpisodeTask(agent, size, repaired), todo, len(jobs), out, workers, f"{name}, {split}")
+        _run(EpisodeTask(agent, world, repaired), todo, len(jobs), out, workers, f"{name}, {split}")
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
 
 
@@ -132,6 +122,7 @@ def _jobs(
     name: str,
     split: str,
     seed: int,
+    rule: str,
 ) -> list[Job]:
     """All jobs, episode by episode, each with what its row says besides the measures."""
     label = {
@@ -140,7 +131,7 @@ def _jobs(
         "split": split,
         "seed": seed,
         "suite": SUITE_VERSION,
-        "rule": metrics.rule(SUCCESS_METRES),
+        "rule": rule,
     }
     return [
         (

@@ -13,16 +13,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mitigate.core.observation import DEPTH, RGB
+from mitigate.agents.agent import Agent
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
+from mitigate.core.pictures import draw_path, strip
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
 from mitigate.corruptions.gallery import depth_picture
-from mitigate.evaluation.evaluator import Agent, run_episode
+from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
-from mitigate.worlds.apartments.drawing import draw_path, draw_plan, strip
-from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import from_vlnce
-from mitigate.worlds.episodes import Episode
+from mitigate.worlds.episodes import Episode, from_vlnce
+from mitigate.worlds.world import World
 
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
 CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
@@ -48,36 +48,34 @@ class Walk:
 
 def draw_trajectories(
     agents: Mapping[str, Agent],
+    world: World,
     episode: Episode,
     corruption: Corruption,
     out: Path | str,
     seed: int = 0,
-    size: int = 64,
 ) -> Path:
     """Walk an episode and write one PNG: start panorama, plan, reference path, every walk.
 
-    The first agent walks clean and corrupted, the others corrupted. The same ``seed`` and ``size``
-    as an evaluation give the same walks as its rows.
+    The first agent walks clean and corrupted, the others corrupted. The same ``seed`` as an
+    evaluation gives the same walks as its rows. A world that has ``draw(axes)`` draws its plan.
 
     Args:
         agents: name -> agent; the names are the legend's.
         corruption: what the corrupted walks meet.
         out: the PNG to write; parent folders are made.
-        seed: of the corruption's keys. size: pixels of a view.
+        seed: of the corruption's keys.
     """
-    simulator = Simulator(size)
-    walks = list(_walks(agents, simulator, episode, corruption, seed))
-    simulator.reset(episode)
-    clean = simulator.observe()
-    hurt = corrupt_observation(clean, corruption, Key(seed, episode.episode_id, 0))
+    walks = list(_walks(agents, world, episode, corruption, seed))
+    start = dict(world.reset(episode))
+    met = corrupt_observation(start, corruption, Key(seed, episode.episode_id, 0))
     figure = Figure(figsize=INCHES, layout="constrained")
     above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
     entry = DEPTH if corruption.modality == "depth" else RGB
-    far = float(clean[DEPTH].max())
-    _show(above, clean[entry], far, f"start, straight ahead in the middle: {entry}, clean")
-    _show(below, hurt[entry], far, f"{label(corruption.name)}, severity {corruption.severity:g}")
-    draw_plan(plan, simulator.apartment)
-    _draw_walks(plan, simulator, episode, walks)
+    far = float(start[DEPTH].max()) if DEPTH in start else 0.0
+    _show(above, start[entry], far, f"start, straight ahead in the middle: {entry}, clean")
+    _show(below, met[entry], far, f"{label(corruption.name)}, severity {corruption.severity:g}")
+    getattr(world, "draw", _blank)(plan)
+    _draw_walks(plan, start[POSE], episode, walks)
     figure.suptitle("\n".join(textwrap.wrap(episode.instruction.text, 100)), fontsize=11)
     out = Path(out)
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -102,19 +100,22 @@ def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str
 
 def write_pictures(
     agents: Mapping[str, Agent],
+    world: World,
     episodes: Sequence[Episode],
     rows: Sequence[Row],
     folder: Path | str,
     *,
     seed: int = 0,
-    size: int = 64,
     count: int = 4,
 ) -> list[Path]:
     """Draw the first ``count`` episodes won back by training, and ``sheet.png`` with all of them.
 
     ``agents`` are before and after, by the names in ``rows`` (``won_back`` is the rule). Where
-    nothing was won back, or there is one agent alone, the first corrupted row is drawn instead.
+    nothing was won back, or there is one agent alone, the first corrupted row is drawn instead. Of
+    a world without poses there are none.
     """
+    if POSE not in world.sensors:
+        return []
     known = {episode.episode_id: episode for episode in episodes}
     place = {episode_id: index for index, episode_id in enumerate(known)}
     rows = sorted(rows, key=lambda row: place[row["episode_id"]])
@@ -123,7 +124,7 @@ def write_pictures(
     written = []
     for episode_id, corruption in chosen:
         out = Path(folder) / f"{episode_id}-{corruption.name}.png"
-        written.append(draw_trajectories(agents, known[episode_id], corruption, out, seed, size))
+        written.append(draw_trajectories(agents, world, known[episode_id], corruption, out, seed))
     return [*written, contact_sheet(written, Path(folder) / "sheet.png")] if written else []
 
 
@@ -150,7 +151,7 @@ def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
 
 def _walks(
     agents: Mapping[str, Agent],
-    simulator: Simulator,
+    world: World,
     episode: Episode,
     corruption: Corruption,
     seed: int,
@@ -162,25 +163,57 @@ def _walks(
         colour = CORRUPTED_WALKS[index % len(CORRUPTED_WALKS)]
         plans.append((f"{name}, {label(corruption.name)}", agent, corruption, colour))
     for name, agent, met, colour in plans:
-        measures: dict[str, Any] = run_episode(agent, simulator, episode, met, seed)
-        path, left = np.array(simulator.path), measures["distance_to_goal"]
-        yield Walk(name, path, bool(measures["success"]), left, colour)
+        traced = Traced(world)
+        measures: dict[str, Any] = run_episode(agent, traced, episode, met, seed)
+        left = measures.get("distance_to_goal", np.nan)
+        yield Walk(name, np.array(traced.path), bool(measures["success"]), left, colour)
 
 
-def _draw_walks(axes: Axes, simulator: Simulator, episode: Episode, walks: Sequence[Walk]) -> None:
-    reference = np.stack([from_vlnce(point) for point in episode.reference_path])
-    draw_path(axes, reference, REFERENCE, "reference path", "--")
+class Traced:
+    """A world that keeps where its agent was: ``path`` [n, 2], plan metres."""
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.path: list[np.ndarray] = []
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.world, name)
+
+    def reset(self, episode: Episode) -> Observation:
+        self.path = []
+        return self._kept(self.world.reset(episode))
+
+    def step(self, action: int) -> Observation:
+        return self._kept(self.world.step(action))
+
+    def _kept(self, seen: Observation) -> Observation:
+        here = np.asarray(seen[POSE][:2], np.float64)
+        if not self.path or not np.array_equal(here, self.path[-1]):
+            self.path.append(here)
+        return seen
+
+
+def _blank(axes: Axes) -> None:
+    axes.set_aspect("equal")
+    axes.axis("off")
+
+
+def _draw_walks(axes: Axes, start: np.ndarray, episode: Episode, walks: Sequence[Walk]) -> None:
+    if episode.reference_path:
+        reference = np.stack([from_vlnce(point) for point in episode.reference_path])
+        draw_path(axes, reference, REFERENCE, "reference path", "--")
     for walk in walks:
         draw_path(axes, walk.path, walk.colour, walk.legend)
     goals = np.stack([from_vlnce(goal.position) for goal in episode.goals])
     axes.plot(*goals.T, "*", color="#ffbf00", mec="black", ms=15, zorder=9, label="goal")
-    ahead = 0.6 * np.array([-np.sin(simulator.heading), np.cos(simulator.heading)])
-    axes.arrow(*simulator.xy, *ahead, width=0.05, color="black", zorder=8)
+    ahead = 0.6 * np.array([-np.sin(start[2]), np.cos(start[2])])
+    axes.arrow(*start[:2], *ahead, width=0.05, color="black", zorder=8)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, fontsize=9, frameon=False)
 
 
 def _show(axes: Axes, views: np.ndarray, far: float, title: str) -> None:
-    picture = strip(views)
+    views = views if views.ndim == 4 else views[None]
+    picture = strip(views) if len(views) == VIEWS else np.concatenate(list(views), axis=1)
     axes.imshow(depth_picture(picture[..., 0], far) if picture.shape[-1] == 1 else picture)
     axes.set_title(title, fontsize=9)
     axes.axis("off")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -13,35 +14,32 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import WORTH, EpisodeTask
 from mitigate.evaluation.rows import read
-from mitigate.worlds.apartments.renderer import Renderer
-from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import OGN_SHARE, draw_training_episode
+from mitigate.worlds.world import TrainingEpisodes, World
 
 
 def measure(
     agent: Any,
     schedule: Schedule,
-    renderer: Renderer,
+    world: Callable[[], World],
+    training: TrainingEpisodes,
     *,
     episodes: int,
-    apartments: int,
     seed: int,
     step: int,
     workers: int | None = None,
 ) -> dict[str, float]:
     """Success of ``agent`` under every corruption of ``schedule``, in [0, 1] by name.
 
-    ``episodes`` training episodes of the first ``apartments`` training layouts are
-    drawn from (seed, step), the same ones under every corruption. ``agent`` is a module with reset
-    and act; it is left in eval mode. ``workers``: processes, on which the rates do not depend;
-    None: one a core if there is work for them, and this one alone for an agent on a GPU.
+    ``episodes`` of ``training`` are drawn from (seed, step), the same ones under every corruption,
+    and walked in what ``world`` makes. ``agent`` is a module with reset and act; it is left in eval
+    mode. ``workers``: processes, on which the rates do not depend; None: one a core if there is
+    work for them, and this one alone for an agent on a GPU.
     """
     rng = generator(seed, "refresh", step)
-    drawn = [draw_training_episode(rng, apartments, OGN_SHARE) for _ in range(episodes)]
+    drawn = [training.draw(rng, (0, 1)) for _ in range(episodes)]
     met = [schedule.corruption(name) for name in schedule.names]
     groups = [[(e, c, {"corruption": c.name, "seed": seed}) for c in met] for e in drawn]
-    simulator = Simulator(renderer.size, renderer=renderer)
-    task = EpisodeTask(agent, renderer.size, simulator=simulator)
+    task = EpisodeTask(agent, world)
     if workers is None and any(p.device.type != "cpu" for p in agent.parameters()):
         workers = 1
     total = len(drawn) * len(met)

@@ -23,7 +23,7 @@ from hydra.core.config_store import ConfigStore
 from omegaconf import DictConfig
 from tqdm import tqdm
 
-from mitigate.core import conf
+from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.evaluation.evaluate import ROWS, episodes, load
 
@@ -233,8 +233,8 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
         and row["severity"] in (0.0, cfg.severity)
         and row["episode_id"] in drawn
     ]
-    seed, size = cfg.seeds[0], node.env.size
-    return write_pictures(agents, chosen, found, out / "pictures", seed=seed, size=size)
+    world = build.maker(node.env.world)()
+    return write_pictures(agents, world, chosen, found, out / "pictures", seed=cfg.seeds[0])
 
 
 def costs(out: Path) -> dict[str, float]:

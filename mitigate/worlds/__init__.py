@@ -1,1 +1,1 @@
-"""Environments: the embedded ``apartments`` world and the field's episode files."""
+"""Worlds: the contract, episode files, the embedded apartments, and the bridges to others."""

@@ -33,6 +33,16 @@ NEEDED = (
 )
 
 
+def from_vlnce(position: Vector) -> np.ndarray:
+    """VLN-CE position to plan metres, the frame of poses: float64 [2]."""
+    return np.array([position[0], -position[2]], np.float64)
+
+
+def heading_of(rotation: Vector) -> float:
+    """Quaternion [x, y, z, w] about the vertical to a heading in radians."""
+    return float(2 * np.arctan2(rotation[1], rotation[3]))
+
+
 @dataclass(frozen=True)
 class Goal:
     """Where to end: ``position`` [3] and success ``radius`` in metres, None if not in the file."""

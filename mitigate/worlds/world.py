@@ -6,7 +6,7 @@ one: ``docs/bring-your-own.md``.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any, Protocol, runtime_checkable
 
@@ -100,6 +100,7 @@ class Corrupted:
     ) -> None:
         self.world, self.by, self.seed, self.name = world, by, seed, name
         self.looks = 0
+        self.last: dict[str, np.ndarray] | None = None  # frames that were read last
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") or name == "world":
@@ -116,7 +117,7 @@ class Corrupted:
 
     def reset(self, episode: Episode) -> Observation:
         """Begin an episode, and the count of looks."""
-        self.episode, self.looks = episode, 0
+        self.episode, self.looks, self.last = episode, 0, None
         return self._seen(self.world.reset(episode))
 
     def step(self, action: int) -> Observation:
@@ -135,7 +136,8 @@ class Corrupted:
         def corrupted() -> dict[str, np.ndarray]:
             corruption, key = self._draw()
             self.looks += 1
-            return corrupt_observation(dict(clean), corruption, key)
+            self.last = corrupt_observation(dict(clean), corruption, key)
+            return self.last
 
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
 
@@ -150,12 +152,3 @@ def remembering(thing: Any) -> AbstractContextManager:
     """``thing.remembering()``, within which an agent or a world keeps what it computed for equal
     input, where it has that; its results do not depend on it."""
     return getattr(thing, "remembering", nullcontext)()
-
-
-def walk(world: World, agent: Any, first: Observation) -> Iterator[Observation]:
-    """Let an agent act from its first observation to the end; each observation on the way."""
-    observation = first
-    yield observation
-    while not world.done:
-        observation = world.step(agent.act(observation))
-        yield observation

@@ -152,7 +152,7 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
     table's column says so, because the weights' hash does not."""
     met = {}
 
-    def meet(agent, episodes, conditions, *, name, **others):
+    def meet(agent, world, episodes, conditions, *, name, **others):
         met[name] = agent
 
     monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", meet)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
-from mitigate.core.observation import DEPTH, POSE, RGB, STOP
+from mitigate.core.observation import DEPTH, POSE, RGB, STOP, Observation
 from mitigate.corruptions import (
     CLEAN,
     INSTRUCTION,
@@ -17,9 +19,10 @@ from mitigate.corruptions import (
 )
 from mitigate.evaluation import controls, evaluator, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
-from mitigate.evaluation.evaluator import LazyObservation, evaluate, run_episode
-from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.evaluator import evaluate
 from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
 
 CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]
@@ -29,13 +32,13 @@ SIZE = 16
 def run(folder, workers=1, episodes=2, conditions=CONDITIONS, agent=None, **options):
     return evaluate(
         agent or wanderer(stop=0.0),
+        partial(ApartmentsWorld, SIZE),
         load_episodes("val_seen")[:episodes],
         conditions,
         name="test",
         out=folder / "rows.jsonl",
         split="val_seen",
         workers=workers,
-        size=SIZE,
         **options,
     )
 
@@ -80,9 +83,9 @@ def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(
     (tmp_path / "rows.jsonl").write_text("".join(lines[:20]) + lines[20][:60])
     ran, real = [], evaluator.run_episode
 
-    def counted(agent, simulator, episode, corruption, *others):
+    def counted(agent, world, episode, corruption, *others):
         ran.append((episode.episode_id, corruption.name))
-        return real(agent, simulator, episode, corruption, *others)
+        return real(agent, world, episode, corruption, *others)
 
     monkeypatch.setattr(evaluator, "run_episode", counted)
     assert run(tmp_path) == rows
@@ -109,7 +112,7 @@ def test_frames_are_rendered_only_if_they_are_read():
         reads.append(1)
         return {RGB: np.zeros(1), DEPTH: np.ones(1)}
 
-    seen = LazyObservation(np.zeros(3), frames)
+    seen = Observation({POSE: np.zeros(3)}, frames, (RGB, DEPTH))
     assert list(seen) == [POSE, RGB, DEPTH] and len(seen) == 3 and seen[POSE].shape == (3,)
     assert not reads
     assert seen[RGB].sum() == 0 and seen[DEPTH].sum() == 1 and reads == [1]
@@ -130,10 +133,10 @@ class Watcher:
     ("name", "hurt", "whole"), [("low_light", RGB, DEPTH), ("multipath", DEPTH, RGB)]
 )
 def test_a_corruption_hurts_its_sensor_at_every_look(name, hurt, whole):
-    episode, simulator, agent = load_episodes("val_seen")[5], Simulator(SIZE), Watcher()
-    run_episode(agent, simulator, episode, CLEAN, 0)
+    episode, world, agent = load_episodes("val_seen")[5], ApartmentsWorld(SIZE), Watcher()
+    run_episode(agent, world, episode, CLEAN, 0)
     clean = agent.seen
-    measures = run_episode(agent, simulator, episode, Corruption(name, 0.8), 0)
+    measures = run_episode(agent, world, episode, Corruption(name, 0.8), 0)
     assert measures["decisions"] == 3 == len(agent.seen) and measures["success"] == 0
     for before, after in zip(clean, agent.seen, strict=True):
         assert np.array_equal(before[whole], after[whole])
@@ -157,21 +160,21 @@ class Listener:
 
 @pytest.mark.parametrize("name", [name for name in INSTRUCTION if name != "white_box"])
 def test_the_agent_hears_the_corrupted_instruction_of_its_episode(name):
-    simulator, agent = Simulator(SIZE), Listener()
+    world, agent = ApartmentsWorld(SIZE), Listener()
     for episode in load_episodes("val_seen")[:3]:
-        run_episode(agent, simulator, episode, Corruption(name, 1.0), 7)
+        run_episode(agent, world, episode, Corruption(name, 1.0), 7)
         clean, key = episode.instruction.text, Key(7, episode.episode_id)
         assert agent.told[-1][0] == corrupt_instruction(clean, name, 1.0, key) != clean
 
 
 def test_white_box_hurts_the_prompt_for_one_episode_and_never_runs_without_one():
-    episode, simulator, prompt = load_episodes("val_seen")[0], Simulator(SIZE), "Do: {task}"
+    episode, world, prompt = load_episodes("val_seen")[0], ApartmentsWorld(SIZE), "Do: {task}"
     agent = Listener(prompt)
-    run_episode(agent, simulator, episode, Corruption("white_box", 0.5), 7)
+    run_episode(agent, world, episode, Corruption("white_box", 0.5), 7)
     hurt = inject_system_prompt(prompt, 0.5, Key(7, episode.episode_id))
     assert agent.told == [(episode.instruction.text, hurt)] and agent.system_prompt == prompt
     with pytest.raises(ValueError, match="not applicable: the agent has no system prompt"):
-        run_episode(Listener(), simulator, episode, Corruption("white_box", 0.5), 7)
+        run_episode(Listener(), world, episode, Corruption("white_box", 0.5), 7)
 
 
 def test_instruction_rows_are_rows_like_others_and_white_box_is_left_out_with_a_warning(tmp_path):
@@ -186,10 +189,10 @@ def test_instruction_rows_are_rows_like_others_and_white_box_is_left_out_with_a_
 
 
 def test_the_random_control_repeats_itself_and_rarely_succeeds():
-    simulator, episodes = Simulator(SIZE), load_episodes("val_unseen")[::30]
-    rows = [run_episode(RandomAgent(), simulator, e, CLEAN, 0) for e in episodes]
-    assert rows == [run_episode(RandomAgent(), simulator, e, CLEAN, 0) for e in episodes]
-    oracle = [run_episode(OracleAgent(simulator), simulator, e, CLEAN, 0) for e in episodes]
+    world, episodes = ApartmentsWorld(SIZE), load_episodes("val_unseen")[::30]
+    rows = [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
+    assert rows == [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
+    oracle = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
     assert sum(r["success"] for r in rows) <= 3 < 10 == sum(r["success"] for r in oracle)
 
 

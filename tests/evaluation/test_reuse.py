@@ -4,38 +4,38 @@ from __future__ import annotations
 
 import os
 import signal
+from functools import partial
 
 import numpy as np
 import pytest
 import torch
 
 from mitigate.core import workers
-from mitigate.core.memory import Memory
 from mitigate.core.observation import DEPTH, RGB, STOP
 from mitigate.corruptions import CLEAN, NAMES, Corruption
 from mitigate.evaluation import rows
-from mitigate.evaluation.evaluator import evaluate, run_episode
-from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.evaluator import evaluate
 from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
 
 CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]
 SIZE = 16
 
 
-def measured(agent, episode, rendered=None):
-    simulator = Simulator(SIZE)
-    return [run_episode(agent, simulator, episode, c, 0, None, rendered) for c in CONDITIONS]
+def measured(agent, episode, world):
+    return [run_episode(agent, world, episode, c, 0) for c in CONDITIONS]
 
 
 def test_measures_are_the_same_with_and_without_what_was_kept():
-    agent, episode, rendered = wanderer(stop=0.0), load_episodes("val_seen")[0], Memory(1 << 24)
-    alone = measured(agent, episode)
-    with agent.remembering():
-        assert measured(agent, episode, rendered) == alone
-        features = len(agent._memory)
+    agent, episode, world = wanderer(stop=0.0), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
+    alone = measured(agent, episode, world)
+    with agent.remembering(), world.remembering():
+        assert measured(agent, episode, world) == alone
+        features, rendered = len(agent._memory), len(world._memory)
     looks = sum(row["decisions"] for row in alone)
-    assert len(rendered) < looks and features < 2 * looks
+    assert rendered < looks and features < 2 * looks
 
 
 class Scribbler:
@@ -52,12 +52,14 @@ class Scribbler:
 
 
 def test_an_agent_cannot_write_into_the_frames_that_are_kept():
-    agent, episode, simulator = Scribbler(), load_episodes("val_seen")[0], Simulator(SIZE)
-    kept, looks = Memory(1 << 24), []
-    for _ in range(2):
-        run_episode(agent, simulator, episode, CLEAN, 0, None, kept)
-        looks.append(agent.seen)
-    assert len(kept) == 1 and all(np.array_equal(a, b) for a, b in zip(*looks, strict=True))
+    agent, episode, world = Scribbler(), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
+    looks = []
+    with world.remembering():
+        for _ in range(2):
+            run_episode(agent, world, episode, CLEAN, 0)
+            looks.append(agent.seen)
+        assert len(world._memory) == 1
+    assert all(np.array_equal(a, b) for a, b in zip(*looks, strict=True))
 
 
 def encoded(agent):
@@ -68,13 +70,13 @@ def encoded(agent):
 
 
 def test_equal_frames_are_encoded_once_while_remembering_and_never_in_training_mode():
-    agent, episode, simulator = wanderer(stop=50.0), load_episodes("val_seen")[0], Simulator(SIZE)
+    agent, episode, world = wanderer(stop=50.0), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
     calls = encoded(agent)
 
     def twice():
         before = len(calls)
         for _ in range(2):
-            run_episode(agent, simulator, episode, CLEAN, 0)
+            run_episode(agent, world, episode, CLEAN, 0)
         return len(calls) - before
 
     assert twice() == 2
@@ -87,11 +89,11 @@ def test_equal_frames_are_encoded_once_while_remembering_and_never_in_training_m
 
 
 def test_changed_weights_meet_no_old_features():
-    agent, episode, simulator = wanderer(stop=50.0), load_episodes("val_seen")[0], Simulator(SIZE)
+    agent, episode, world = wanderer(stop=50.0), load_episodes("val_seen")[0], ApartmentsWorld(SIZE)
     calls = encoded(agent)
     for _ in range(2):
         with agent.remembering():
-            run_episode(agent, simulator, episode, CLEAN, 0)
+            run_episode(agent, world, episode, CLEAN, 0)
         with torch.no_grad():
             agent.rgb_encoder.embed.weight += 1
     assert len(calls) == 2
@@ -118,8 +120,14 @@ class Mortal(torch.nn.Module):
 
 
 def run(agent, out, count):
-    given = {"name": "test", "out": out, "split": "val_seen", "workers": count, "size": SIZE}
-    return evaluate(agent, load_episodes("val_seen")[:3], CONDITIONS[:4], **given)
+    given = {"name": "test", "out": out, "split": "val_seen", "workers": count}
+    return evaluate(
+        agent,
+        partial(ApartmentsWorld, SIZE),
+        load_episodes("val_seen")[:3],
+        CONDITIONS[:4],
+        **given,
+    )
 
 
 def test_a_killed_worker_changes_neither_rows_nor_file(tmp_path, capsys):

@@ -10,6 +10,7 @@ from mitigate.corruptions import Corruption
 from mitigate.evaluation import trajectories
 from mitigate.evaluation.trajectories import draw_trajectories, won_back, write_pictures
 from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import row
 
 
@@ -59,8 +60,9 @@ def test_a_picture_shows_the_first_agent_clean_and_all_corrupted(tmp_path, monke
     )
     agents = {"base": Straight(1), "hardened": Straight(3)}
     corruption = Corruption(name, 0.6)
+    world = ApartmentsWorld(64)
     out = draw_trajectories(
-        agents, load_episodes("val_seen")[0], corruption, tmp_path / "a" / "b.png"
+        agents, world, load_episodes("val_seen")[0], corruption, tmp_path / "a" / "b.png"
     )
     assert cv2.imread(str(out)).std() > 10
     labels = [rest[1].split(":")[0] for _, rest in drawn]
@@ -75,13 +77,13 @@ def test_pictures_and_a_sheet_of_the_episodes_won_back(tmp_path):
     ids = [episode.episode_id for episode in episodes]
     rows = cell("before", "flare", "100", ids) + cell("x", "flare", "111", ids)
     agents = {"before": Straight(1), "x": Straight(2)}
-    written = write_pictures(agents, episodes, rows, tmp_path)
+    written = write_pictures(agents, ApartmentsWorld(64), episodes, rows, tmp_path)
     assert [p.name for p in written] == [f"{ids[1]}-flare.png", "sheet.png"]
 
 
 def test_one_agent_alone_gets_a_picture_too_and_clean_rows_get_none(tmp_path):
-    (episode,) = load_episodes("val_seen")[:1]
+    (episode,), world = load_episodes("val_seen")[:1], ApartmentsWorld(64)
     rows = cell("x", "clean", "1", [episode.episode_id])
-    assert write_pictures({"x": Straight(1)}, [episode], rows, tmp_path) == []
+    assert write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path) == []
     rows += cell("x", "black_out", "1", [episode.episode_id])
-    assert len(write_pictures({"x": Straight(1)}, [episode], rows, tmp_path)) == 2
+    assert len(write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path)) == 2

@@ -13,6 +13,7 @@ from mitigate.safeguard import report
 from mitigate.safeguard.guard import Safeguard
 from mitigate.safeguard.model import LanguageModel
 from mitigate.training import train
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.safeguard.conftest import LORA
 
 TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Stop by the piano."]
@@ -64,6 +65,7 @@ def test_the_agent_hears_the_repaired_instruction_and_the_rows_say_so(tmp_path):
     Listener.heard.clear()
     rows = evaluator.evaluate(
         Listener(),
+        ApartmentsWorld,
         episodes,
         [CLEAN, Corruption("capitalize", 1.0), Corruption("black_box", 0.1)],
         name="listener+rules",

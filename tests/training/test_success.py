@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from mitigate.corruptions import Schedule
 from mitigate.training.success import measure
-from mitigate.worlds.apartments.renderer import Renderer
+from mitigate.worlds.apartments.tasks import DrawnEpisodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
 
 
 def test_rates_do_not_depend_on_the_number_of_processes(capsys):
-    agent, renderer = wanderer(stop=0.0).train(), Renderer(16)
+    agent, world = wanderer(stop=0.0).train(), partial(ApartmentsWorld, 16)
     schedule = Schedule("success_distributed", 0.6, names=("flare", "missing_data"))
-    options = {"episodes": 3, "apartments": 2, "seed": 0, "step": 60}
-    alone, two = (measure(agent, schedule, renderer, **options, workers=n) for n in (1, 2))
+    options = {"episodes": 3, "seed": 0, "step": 60}
+    alone, two = (
+        measure(agent, schedule, world, DrawnEpisodes(2), **options, workers=n) for n in (1, 2)
+    )
     assert alone == two and set(alone) == {"flare", "missing_data"} and not agent.training
     assert "success at step 60: 6 episodes" in capsys.readouterr().out

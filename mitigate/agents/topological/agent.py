@@ -7,28 +7,37 @@ observation renders nothing in between.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import copy
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from hashlib import blake2b
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.adapters import insert_adapters
+from mitigate.agents.adapters import insert_adapters, remove_adapters
+from mitigate.agents.agent import Output
+from mitigate.agents.topological import decisions as joining
+from mitigate.agents.topological import learning
 from mitigate.agents.topological import observation as checked
 from mitigate.agents.topological.controller import Controller
+from mitigate.agents.topological.decisions import MapDecisions, Piece
 from mitigate.agents.topological.encoders import SIZE, DepthEncoder, RGBEncoder
 from mitigate.agents.topological.mapping import TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
+from mitigate.agents.topological.stored import Store
 from mitigate.agents.topological.text import Vocabulary, pad
 from mitigate.agents.topological.waypoints import WaypointHead, select
 from mitigate.core.memory import Memory
 from mitigate.core.observation import STOP, VIEWS
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.world import World
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 SENSORS = ("rgb", "depth", "instruction")
+PARTS = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
 FEATURES = 1 << 25  # bytes of features kept while remembering (ours): about 900 panoramas
 
 
@@ -111,6 +120,49 @@ class TopologicalAgent(nn.Module):
         encode = self.vocabulary.encode
         rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
         return pad(rows).to(self.device)
+
+    # training (``learning.py``) -----------------------------------------------------------------
+
+    loss_weights = learning.LOSS_WEIGHTS
+    encoders: ClassVar = {"rgb": ("rgb_encoder",), "depth": ("depth_encoder", "waypoint_head")}
+    labels: ClassVar = {"rgb": "concepts", "depth": "free"}
+
+    stored_parts = ("planner",)  # what trains on stored features
+
+    def store(self, world: Callable[[], Any], folder: str) -> Store:
+        """Features of all scenes of a world, to train on without rendering (``stored.py``)."""
+        return Store(self, world, folder)
+
+    def parts(self) -> dict[str, nn.Module]:
+        """Its four modules by name."""
+        return {name: getattr(self, name) for name in PARTS}
+
+    def as_teacher(self) -> TopologicalAgent:
+        """A copy without adapters and with plain means over views."""
+        teacher = copy.deepcopy(self)
+        remove_adapters(teacher)
+        teacher.planner.fusion = None
+        return teacher
+
+    def collect(self, worlds: Sequence[World], episodes: Sequence[Episode], **how: Any) -> Piece:
+        """Roll out episodes with the oracle's answers; see :func:`learning.collect`."""
+        return learning.collect(self, worlds, episodes, **how)
+
+    def precompute(self, piece: Piece, *, clean: bool) -> Piece:
+        """Features in place of frames; see :func:`learning.precompute`."""
+        return learning.precompute(self, piece, clean=clean)
+
+    def join(self, pieces: Sequence[Piece]) -> MapDecisions:
+        """Pieces of :meth:`collect` as one padded batch."""
+        return joining.join(pieces, self.tokens)
+
+    def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
+        """Logits over [stop] and ghosts; see :func:`learning.decide`."""
+        return learning.decide(self, decisions, clean=clean)
+
+    def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
+        """View features of a sensor's frames; see :func:`learning.see`."""
+        return learning.see(self, sensor, frames, truth)
 
     # closed loop ------------------------------------------------------------------------------
 

@@ -1,7 +1,7 @@
-"""Episodes in lock-step for imitation: worlds to act in, the oracle, scheduled sampling.
+"""Episodes in lock-step for imitation: the oracle over the map's ghosts, scheduled sampling.
 
-A *world* is where decisions take effect: ``RenderedWorld`` walks in the simulator with corrupted
-frames; ``CachedWorld`` (``cache.py``) hops between poses whose features are stored.
+A *walk* is where decisions take effect: ``LiveWalk`` in any world, ``StoredWalk`` (``stored.py``)
+between poses whose features are stored.
 """
 
 from __future__ import annotations
@@ -13,9 +13,13 @@ from typing import Any, Protocol
 import numpy as np
 import torch
 
+from mitigate.agents.topological import observation as checked
+from mitigate.agents.topological.controller import Controller
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
+from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
+from mitigate.worlds.world import Expert, World
 
 STOP_WITHIN = 1.0  # metres: the oracle stops here ...
 STOP_BEST = 1.75  # ... or here, if no ghost is nearer to the goal
@@ -23,8 +27,8 @@ _TEMPERATURE = 0.3  # metres; ghosts about as good as the best share the target
 _TRAVEL = 0.4  # weight of the metres to a ghost against the metres from it to the goal
 
 
-class World(Protocol):
-    """One episode's world: where the agent is, and what a route does to that."""
+class Walk(Protocol):
+    """One episode's rollout: where the agent is, what a route does, what the oracle knows."""
 
     episode: Episode
 
@@ -33,7 +37,7 @@ class World(Protocol):
     def distance(self, xy: np.ndarray) -> float: ...
 
 
-# looks around in some worlds at once: views float32 [12, F] and waypoints [n, 2] of each
+# looks around in some walks at once: views float32 [12, F] and waypoints [n, 2] of each
 Look = Callable[[list], list[tuple[np.ndarray, np.ndarray]]]
 
 
@@ -56,10 +60,10 @@ class Trace:
     views: list[np.ndarray] = field(default_factory=list)
 
 
-def oracle(world: World, graph: TopologicalMap, decision: Decision) -> Step:
+def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
     """The shortest-path oracle's answer for a decision."""
-    nodes = [world.distance(p) for p in graph.positions]
-    ghosts = np.array([world.distance(graph.ghosts[g].position) for g in decision.ghosts])
+    nodes = [walk.distance(p) for p in graph.positions]
+    ghosts = np.array([walk.distance(graph.ghosts[g].position) for g in decision.ghosts])
     here = nodes[graph.current]
     target = np.zeros(1 + len(ghosts), np.float32)
     nearer = len(ghosts) > 0 and ghosts.min() < here - 0.25
@@ -72,37 +76,80 @@ def oracle(world: World, graph: TopologicalMap, decision: Decision) -> Step:
     return Step(decision, target, np.array([here, *nodes, *ghosts], np.float32))
 
 
+class LiveWalk:
+    """A rollout in a world, from the start of ``episode``.
+
+    labels: of the world's truth that are kept with each look, where the world has them. clean: keep
+    the frames before their corruption, too. ``looks``: what each decision saw, by name.
+    Raises ValueError if the world has no expert.
+    """
+
+    def __init__(
+        self, world: World, episode: Episode, labels: Sequence[str] = (), clean: bool = False
+    ) -> None:
+        self.world, self.episode, self.labels, self.clean = world, episode, labels, clean
+        self.observation = world.reset(episode)
+        expert = world.expert()
+        if expert is None:
+            raise ValueError(
+                f"{type(world).__name__} has no expert, so there is nobody to imitate there: give "
+                "it an expert() with distances to the goal (docs/bring-your-own.md)."
+            )
+        self.expert: Expert = expert
+        self.looks: list[dict[str, np.ndarray]] = []
+
+    def look(self) -> None:
+        """Read the frames here, with their labels, into ``looks``."""
+        rgb, depth = checked.frames(self.observation)
+        kept = {RGB: rgb, DEPTH: depth}
+        if self.clean:
+            before = checked.frames(self.observation.clean)
+            kept |= {CLEAN_RGB: before[0], CLEAN_DEPTH: before[1]}
+        truth = self.world.truth() if self.labels else {}
+        self.looks.append(kept | {name: truth[name] for name in self.labels if name in truth})
+
+    def pose(self) -> np.ndarray:
+        return checked.pose(self.observation).astype(np.float64)
+
+    def go(self, route: list[np.ndarray]) -> None:
+        controller = Controller()
+        controller.follow(route)
+        while (action := controller.action(self.pose())) is not None:
+            self.observation = self.world.step(action)
+
+    def distance(self, xy: np.ndarray) -> float:
+        return self.expert.distance(xy)
+
+
 @torch.no_grad()
 def roll_out(
     planner: Planner,
     tokens: torch.Tensor,
-    worlds: Sequence[World],
+    walks: Sequence[Walk],
     look: Look,
     *,
     follow_oracle: float,
     rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
-    """Run all worlds to the oracle's stop or ``limit`` decisions.
+    """Run all walks to the oracle's stop or ``limit`` decisions.
 
     Each decision follows the oracle with probability ``follow_oracle``, else the planner's own
     distribution over ghosts (sampled). The planner's stop is never taken, so that every trace holds
-    the decisions after a wrong one. ``rngs``: one generator a world, so that a world's draws do not
+    the decisions after a wrong one. ``rngs``: one generator a walk, so that its draws do not
     depend on which others run beside it.
     """
-    graphs = [TopologicalMap() for _ in worlds]
-    traces = [Trace(world.episode) for world in worlds]
+    graphs = [TopologicalMap() for _ in walks]
+    traces = [Trace(walk.episode) for walk in walks]
     text = planner.read(tokens)
-    tokens_of: list[list[torch.Tensor]] = [[] for _ in worlds]
-    running = list(range(len(worlds)))
+    tokens_of: list[list[torch.Tensor]] = [[] for _ in walks]
+    running = list(range(len(walks)))
     for _ in range(limit):
-        seen = look([worlds[i] for i in running])
+        seen = look([walks[i] for i in running])
         for i, (views, waypoints) in zip(running, seen, strict=True):
             traces[i].views.append(views)
-            graphs[i].add(worlds[i].pose(), waypoints)
-            traces[i].steps.append(
-                oracle(worlds[i], graphs[i], graphs[i].decision(worlds[i].pose()))
-            )
+            graphs[i].add(walks[i].pose(), waypoints)
+            traces[i].steps.append(oracle(walks[i], graphs[i], graphs[i].decision(walks[i].pose())))
         running = [i for i in running if traces[i].steps[-1].target[0] < 1.0]
         own = [i for i in running if rngs[i].random() >= follow_oracle]
         chosen = {i: _draw(traces[i].steps[-1].target[1:], rngs[i]) for i in running}
@@ -119,7 +166,7 @@ def roll_out(
             ghost = traces[i].steps[-1].decision.ghosts[chosen[i]]
             route = graphs[i].route(ghost)
             graphs[i].arrive(ghost)
-            worlds[i].go(route)
+            walks[i].go(route)
         if not running:
             break
     return traces

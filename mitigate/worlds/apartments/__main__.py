@@ -13,10 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.pictures import draw_path, strip
 from mitigate.worlds.apartments.apartment import Apartment
-from mitigate.worlds.apartments.drawing import draw_path, draw_plan, strip
+from mitigate.worlds.apartments.drawing import draw_plan
 from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import TASKS, from_vlnce, make_episode
+from mitigate.worlds.apartments.tasks import TASKS, make_episode
+from mitigate.worlds.episodes import from_vlnce
 
 
 def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
-
-import numpy as np
 
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.furniture import CATALOGUE
@@ -84,35 +81,3 @@ def draw_plan(axes: Any, apartment: Apartment) -> None:
     axes.set_ylim(-0.2, depth + 0.2)
     axes.set_aspect("equal")
     axes.axis("off")
-
-
-def draw_path(
-    axes: Any,
-    path: Sequence[np.ndarray] | np.ndarray,
-    colour: str,
-    label: str | None = None,
-    style: str = "-",
-) -> None:
-    """A walked or reference path (plan metres [n, 2]) on axes of ``draw_plan``."""
-    points = np.asarray(path)
-    axes.plot(points[:, 0], points[:, 1], style, color=colour, lw=2, label=label, zorder=6)
-    axes.plot(*points[0], "o", color=colour, ms=6, zorder=7)
-    axes.plot(*points[-1], "X", color=colour, ms=8, zorder=7)
-
-
-def side_by_side(views: np.ndarray) -> np.ndarray:
-    """Views [V, H, W, 3] uint8, or [V, H, W, 1] metres drawn as grey, as uint8 [H, V * W, 3]."""
-    if views.shape[-1] == 1:
-        grey = np.nan_to_num(views, posinf=0.0) / max(1e-6, float(np.nanmax(views)))
-        views = np.repeat((255 * grey.clip(0, 1)).astype(np.uint8), 3, axis=-1)
-    return np.concatenate(list(views), axis=1)
-
-
-def strip(
-    views: np.ndarray, order: Sequence[int] = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
-) -> np.ndarray:
-    """The 12 views side by side, each cropped to its own 30 degrees, ahead in the middle."""
-    size = views.shape[2]
-    half = int(round(np.tan(np.radians(15)) * size / 2))
-    low, high = size // 2 - half, size // 2 + half
-    return np.concatenate([views[k, :, low:high] for k in order], axis=1)

@@ -20,8 +20,7 @@ from mitigate.core.observation import (
 )
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.renderer import Renderer
-from mitigate.worlds.apartments.tasks import from_vlnce, heading_of
-from mitigate.worlds.episodes import Episode, Vector
+from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 
 NEAR = 0.5  # metres from a free cell that a start or goal may lie (ours): furniture may be a goal
 

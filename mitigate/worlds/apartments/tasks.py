@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,8 @@ from mitigate.worlds.episodes import (
     Episode,
     Goal,
     Instruction,
-    Vector,
+    from_vlnce,
+    heading_of,
     read_episodes,
     write_episodes,
 )
@@ -41,19 +42,9 @@ def to_vlnce(xy: np.ndarray) -> tuple[float, float, float]:
     return round(float(xy[0]), 4), 0.0, round(-float(xy[1]), 4)
 
 
-def from_vlnce(position: Vector) -> np.ndarray:
-    """VLN-CE position to plan metres: float64 [2]."""
-    return np.array([position[0], -position[2]], np.float64)
-
-
 def rotation_of(heading: float) -> tuple[float, float, float, float]:
     """Heading (radians, counter-clockwise) to a quaternion [x, y, z, w]."""
     return 0.0, float(np.sin(heading / 2)), 0.0, float(np.cos(heading / 2))
-
-
-def heading_of(rotation: Vector) -> float:
-    """Quaternion [x, y, z, w] about the vertical to a heading in radians."""
-    return float(2 * np.arctan2(rotation[1], rotation[3]))
 
 
 def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> Episode:
@@ -152,6 +143,19 @@ def _episode(
         geodesic_distance=info["geodesic_distance"],
         info=info,
     )
+
+
+@dataclass(frozen=True)
+class DrawnEpisodes:
+    """Training episodes (``worlds/world.py``) of the first ``layouts`` training layouts,
+    ``ogn_share`` of them object-goal episodes."""
+
+    layouts: int = 400
+    ogn_share: float = OGN_SHARE
+
+    def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
+        """A function of the generator's state and of ``share``: (piece, of how many)."""
+        return draw_training_episode(rng, share_of(self.layouts, *share), self.ogn_share)
 
 
 def share_of(apartments: int, piece: int, pieces: int) -> range:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -26,11 +27,13 @@ from mitigate.core.observation import (
 )
 from mitigate.evaluation import metrics
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
+from mitigate.worlds.apartments.drawing import draw_plan
 from mitigate.worlds.apartments.labels import free_directions, view_labels
+from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import shared_renderer
 from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import SUCCESS_METRES, from_vlnce, landmarks
-from mitigate.worlds.episodes import Episode
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks
+from mitigate.worlds.episodes import Episode, from_vlnce
 
 KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
 STOP_WITHIN = 1.0  # metres from the goal at which the oracle stops
@@ -112,17 +115,20 @@ class ApartmentsWorld:
 
     def truth(self) -> Mapping[str, np.ndarray]:
         """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),
-        free float32 [120, 12] (where one can go straight), goal float32 [12] (which views show what
-        the instruction ends at)."""
+        seen bool [12, things] (which pieces of furniture do), free float32 [120, 12] (where one can
+        go straight), goal float32 [12] (which views show what the instruction ends at)."""
         simulator = self.simulator
         _, depth, ids = self._frames()
-        concepts, seen = view_labels(simulator.apartment, ids, depth)
-        shown = seen[:, landmarks(simulator.episode)].any(1)
-        return {
-            "concepts": concepts,
-            "free": free_directions(simulator.space, simulator.xy, simulator.heading),
-            "goal": np.asarray(shown, np.float32),
-        }
+        place = (simulator.xy, simulator.heading)
+        return Labels(simulator.apartment, *place, ids, depth, landmarks(simulator.episode))
+
+    def landmarks(self, episode: Episode) -> list[int]:
+        """Which things, of the truth's "seen", mark the goal of an episode."""
+        return landmarks(episode)
+
+    def draw(self, axes: Any) -> None:
+        """The plan of the apartment on matplotlib axes, in the metres of poses."""
+        draw_plan(axes, self.simulator.apartment)
 
     def _observation(self) -> Observation:
         self._rendered = None
@@ -155,6 +161,10 @@ class ApartmentsWorld:
         space = self._entered.space
         return space.centre(int(rng.integers(len(space.cells)))) + rng.uniform(-0.05, 0.05, 2)
 
+    def points(self) -> np.ndarray:
+        """All points [n, 2] of the scene where an agent can stand, a cell apart."""
+        return (self._entered.space.cells[:, ::-1] + 0.5) * CELL
+
     def put(
         self,
         xy: np.ndarray,
@@ -176,15 +186,25 @@ class ApartmentsWorld:
 
 
 class Labels(Mapping[str, np.ndarray]):
-    """The truth of a pose, each label computed when it is read (free directions take longest)."""
+    """The truth of a pose, each label computed when it is first read."""
 
     def __init__(
-        self, apartment: Apartment, xy: np.ndarray, heading: float, ids: np.ndarray, depth: Any
+        self,
+        apartment: Apartment,
+        xy: np.ndarray,
+        heading: float,
+        ids: np.ndarray,
+        depth: np.ndarray,
+        marks: Sequence[int] | None = None,
     ) -> None:
-        self._make = {
-            "concepts": lambda: view_labels(apartment, ids, depth)[0],
+        shown = lru_cache(maxsize=1)(lambda: view_labels(apartment, ids, depth))
+        self._make: dict[str, Callable[[], np.ndarray]] = {
+            "concepts": lambda: shown()[0],
+            "seen": lambda: shown()[1],
             "free": lambda: free_directions(apartment.space, xy, heading),
         }
+        if marks is not None:
+            self._make["goal"] = lambda: np.asarray(shown()[1][:, marks].any(1), np.float32)
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self._make[name]()

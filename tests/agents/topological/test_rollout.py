@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.topological import cache
-from mitigate.agents.topological.rollout import STOP_BEST, roll_out
+from mitigate.agents.topological.rollout import STOP_BEST, LiveWalk, roll_out
+from mitigate.agents.topological.stored import SPACING, Store, StoredWalk
 from mitigate.agents.topological.text import Vocabulary, pad
 from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import VIEWS
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.tasks import load_episodes, make_episode
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import room, sure, wanderer
 
-SIZE = 16
+SIZE, SCENE = 16, "apartments/train/000000"
 
 
 class RoomWorld:
@@ -91,16 +94,17 @@ def test_a_rollout_is_a_function_of_its_generator():
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
     """An untrained agent and its features of the first training apartment."""
-    agent, folder = wanderer(), tmp_path_factory.mktemp("cache")
-    cache.build(agent, folder, range(1), SIZE)
-    return agent, cache.load(folder, 0), folder
+    agent = wanderer()
+    store = Store(agent, partial(ApartmentsWorld, SIZE, 1), tmp_path_factory.mktemp("stored"))
+    store.build()
+    return agent, store.features(SCENE), store
 
 
 def test_a_world_turned_in_the_cache_is_the_one_rendered_at_that_heading(stored):
     agent, features, _ = stored
     apartment, renderer = apartment_of("apartments/train/000000"), Renderer(SIZE)
     renderer.load(apartment)
-    world = cache.CachedWorld(make_episode(apartment, "vln", 0), features)
+    world = StoredWalk(make_episode(apartment, "vln", 0), features, ApartmentsWorld(SIZE))
     for turn in (0, 1, 4, 11):
         world.turn, world.index = turn, 7 * turn
         x, y, heading = world.pose()
@@ -118,9 +122,8 @@ def test_a_world_turned_in_the_cache_is_the_one_rendered_at_that_heading(stored)
 
 def test_waypoints_in_the_cache_point_to_the_same_places_at_every_heading(stored):
     _, features, _ = stored
-    world = cache.CachedWorld(
-        make_episode(apartment_of("apartments/train/000000"), "vln", 1), features
-    )
+    episode = make_episode(apartment_of(SCENE), "vln", 1)
+    world = StoredWalk(episode, features, ApartmentsWorld(SIZE))
 
     def ends() -> np.ndarray:
         _, waypoints = world.look()
@@ -137,14 +140,24 @@ def test_waypoints_in_the_cache_point_to_the_same_places_at_every_heading(stored
 def test_a_cached_world_stands_on_free_lattice_poses(stored):
     _, features, _ = stored
     apartment = apartment_of("apartments/train/000000")
-    world = cache.CachedWorld(make_episode(apartment, "vln", 0), features)
+    world = StoredWalk(make_episode(apartment, "vln", 0), features, ApartmentsWorld(SIZE))
     world.go([apartment.space.centre(10), apartment.space.centre(200)])
-    assert np.hypot(*(world.pose()[:2] - apartment.space.centre(200))) < cache.SPACING
+    assert np.hypot(*(world.pose()[:2] - apartment.space.centre(200))) < SPACING
     assert apartment.space.index[tuple((features.xy.T[::-1] / 0.1).astype(int))].min() >= 0
 
 
 def test_building_again_keeps_what_is_there(stored):
-    agent, _, folder = stored
-    before = cache.path_of(folder, 0).stat().st_mtime_ns
-    cache.build(agent, folder, range(1), SIZE)
-    assert cache.path_of(folder, 0).stat().st_mtime_ns == before
+    _, _, store = stored
+    before = store.path(SCENE).stat().st_mtime_ns
+    store.build()
+    assert store.path(SCENE).stat().st_mtime_ns == before
+
+
+class Unguided(ApartmentsWorld):
+    def expert(self):
+        return None
+
+
+def test_a_world_without_an_expert_says_so():
+    with pytest.raises(ValueError, match="Unguided has no expert"):
+        LiveWalk(Unguided(SIZE), load_episodes("val_seen")[0])

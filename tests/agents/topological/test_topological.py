@@ -10,8 +10,7 @@ import torch.nn.functional as F
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.topological import agent as topological
 from mitigate.agents.topological.encoders import halved
-from mitigate.core.observation import DEPTH, MAX_STEPS, POSE, RGB, STOP
-from mitigate.evaluation.evaluator import LazyObservation
+from mitigate.core.observation import DEPTH, MAX_STEPS, RGB, STOP, Observation
 from mitigate.worlds.apartments.simulator import Simulator
 from mitigate.worlds.apartments.tasks import load_episodes
 from tests.agents.rooms import wanderer
@@ -34,7 +33,7 @@ def drive(agent, simulator, number=0, change=lambda frames: frames) -> tuple[lis
         return change(simulator.observe())
 
     while not simulator.done:
-        actions.append(agent.act(LazyObservation(simulator.odometry()[POSE], frames)))
+        actions.append(agent.act(Observation(simulator.odometry(), frames, (RGB, DEPTH))))
         simulator.step(actions[-1])
     return actions, looks
 

@@ -10,9 +10,9 @@ from torchrl.envs import SerialEnv, TransformedEnv, check_env_specs
 from mitigate.core.observation import DEPTH, MAX_STEPS, POSE, RGB
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Key, Schedule, corrupt_observation
-from mitigate.evaluation.controls import OracleAgent
 from mitigate.worlds.apartments.env import ApartmentsEnv
 from mitigate.worlds.apartments.tasks import episode_file, load_episodes
+from mitigate.worlds.apartments.world import GeodesicExpert
 from mitigate.worlds.transforms import CorruptObservation
 
 SIZE = 16
@@ -75,9 +75,9 @@ def test_a_file_of_episodes_is_run_in_order_and_over_again():
 def test_the_oracle_is_rewarded_once_at_stop_and_ends_the_episode(episodes):
     env = ApartmentsEnv(episodes[:1], size=SIZE)
     data, rewards = env.reset(), []
-    agent = OracleAgent(env.simulator)
+    expert = GeodesicExpert(env.simulator)
     while not data["done"]:
-        data["action"] = torch.tensor(agent.act({}))
+        data["action"] = torch.tensor(expert.action())
         data = env.step(data)["next"]
         rewards.append(float(data["reward"]))
     assert rewards[-1] == 1.0 and sum(rewards) == 1.0

@@ -10,11 +10,13 @@ import pytest
 from mitigate.core.observation import FORWARD, LEFT, MAX_STEPS, RIGHT, STOP
 from mitigate.corruptions import CLEAN
 from mitigate.evaluation.controls import OracleAgent
-from mitigate.evaluation.evaluator import run_episode
+from mitigate.evaluation.episode import run_episode
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.navigation import CELL, FreeSpace
 from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import SUCCESS_METRES, from_vlnce, load_episodes
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.episodes import from_vlnce
 
 
 @pytest.fixture(scope="module")
@@ -41,8 +43,8 @@ def box(width: int, depth: int) -> FreeSpace:
 
 
 def test_the_oracle_solves_ten_episodes(episodes):
-    simulator = Simulator(16)
-    rows = [run_episode(OracleAgent(simulator), simulator, e, CLEAN, 0) for e in episodes]
+    world = ApartmentsWorld(16)
+    rows = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
     assert [row["success"] for row in rows] == [1] * 10
     assert min(row["spl"] for row in rows) > 0.8
     assert [row["decisions"] for row in rows] == [0] * 10  # it reads no frame

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.evaluation import perception
+from tools import perception
 
 
 @pytest.fixture(scope="module")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 
 from mitigate.agents.adapters import backbone_sha
@@ -10,17 +12,19 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
 from mitigate.training.trainer import Trainer
-from recipes.imitation import ImitationRecipe
+from mitigate.worlds.apartments.tasks import DrawnEpisodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+from recipes.imitate import Imitate
 from tests.evaluation.made_rows import cell
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
+SOURCES = {"world": partial(ApartmentsWorld, 64, 2), "training": DrawnEpisodes(2)}
 RING = {"target_modules": [], "ring": [r"rgb_encoder\.stages\.2"]}
 
 
-def recipe(agent: TopologicalAgent, *parts: str) -> ImitationRecipe:
-    return ImitationRecipe(
-        agent, Schedule("clean", 0.0), parts, episodes=1, apartments=2, follow_oracle=1.0
-    )
+def recipe(agent: TopologicalAgent, *parts: str) -> Imitate:
+    schedule = Schedule("clean", 0.0)
+    return Imitate(agent, **SOURCES, schedule=schedule, train_parts=parts, episodes=1)
 
 
 def test_adapters_alone_train_in_frozen_modules(tmp_path):
@@ -35,12 +39,17 @@ def test_a_prior_is_one_agents_evaluation(tmp_path):
     schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
     hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
     rows.write(tmp_path / "one.jsonl", cell(8) + hard)
-    ImitationRecipe(TopologicalAgent(16), schedule, prior=str(tmp_path / "one.jsonl"))
+    Imitate(TopologicalAgent(16), **SOURCES, schedule=schedule, prior=str(tmp_path / "one.jsonl"))
     for other, said in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
         mixed = [{**row, **other} for row in hard]
         rows.write(tmp_path / "two.jsonl", hard + mixed)
         with pytest.raises(ValueError, match=f"several {said}"):
-            ImitationRecipe(TopologicalAgent(16), schedule, prior=str(tmp_path / "two.jsonl"))
+            Imitate(
+                TopologicalAgent(16),
+                **SOURCES,
+                schedule=schedule,
+                prior=str(tmp_path / "two.jsonl"),
+            )
 
 
 def test_an_unknown_part_is_refused():
@@ -50,18 +59,19 @@ def test_an_unknown_part_is_refused():
 
 def test_a_step_needs_an_episode():
     with pytest.raises(ValueError, match="give 1 or more"):
-        ImitationRecipe(TopologicalAgent(16, SMALL), Schedule("clean", 0.0), episodes=0)
+        schedule = Schedule("clean", 0.0)
+        Imitate(TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
 
 
 def test_measuring_success_leaves_the_agent_in_training_mode():
     """Or all that follows would train without dropout."""
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
-    made = ImitationRecipe(
+    made = Imitate(
         TopologicalAgent(16, SMALL),
-        schedule,
-        ("planner",),
+        **SOURCES,
+        schedule=schedule,
+        train_parts=("planner",),
         episodes=1,
-        apartments=1,
         refresh_every=1,
         refresh_episodes=1,
     ).train()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 import torch
@@ -12,14 +14,17 @@ from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import checkpoints, weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.training.trainer import Trainer
-from recipes.conv_adapter import ConvAdapterRecipe
-from recipes.imitation import MODULES, ImitationRecipe
-from recipes.ts_distill import TeacherStudent, ViewDistillation, policy_kl
+from mitigate.worlds.apartments.tasks import DrawnEpisodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+from recipes.adapt import AdaptViews
+from recipes.distil import Distil, DistilViews, policy_kl
+from recipes.imitate import Imitate
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 ADAPTERS = {"target_modules": [r"(rgb|depth)_encoder\.stages\.1"], "ring": [r"rgb.*stages\.2"]}
-EPISODES = {"episodes": 1, "apartments": 2, "follow_oracle": 1.0}
-VIEWS = {"panoramas": 1, "apartments": 2}
+SOURCES = {"world": partial(ApartmentsWorld, 64, 2), "training": DrawnEpisodes(2)}
+EPISODES = {"episodes": 1, "follow_oracle": 1.0, **SOURCES}
+VIEWS = {"panoramas": 1, "schedule": Schedule("per_episode", 0.6), **SOURCES}
 
 
 def small(seed: int = 0, **options) -> TopologicalAgent:
@@ -44,8 +49,8 @@ def teacher(tmp_path_factory) -> str:
 
 
 @pytest.fixture(scope="module")
-def recipe(teacher) -> TeacherStudent:
-    return TeacherStudent(small(), teacher, schedule=missing_data(), **EPISODES)
+def recipe(teacher) -> Distil:
+    return Distil(small(), teacher=teacher, schedule=missing_data(), **EPISODES)
 
 
 @pytest.fixture(scope="module")
@@ -54,18 +59,15 @@ def batch(recipe) -> dict:
     return recipe.batch(0)
 
 
-def gradients(recipe: TeacherStudent, loss: torch.Tensor) -> set[str]:
+def gradients(recipe: Distil, loss: torch.Tensor) -> set[str]:
     """The agent's parts that ``loss`` reaches; the teacher must never be one."""
     recipe.zero_grad()
     loss.backward(retain_graph=True)
     assert all(p.grad is None for p in recipe.teacher.parameters())
     return {
         part
-        for part in MODULES
-        if any(
-            p.grad is not None and p.grad.abs().sum() > 0
-            for p in getattr(recipe.agent, part).parameters()
-        )
+        for part, module in recipe.agent.parts().items()
+        if any(p.grad is not None and p.grad.abs().sum() > 0 for p in module.parameters())
     }
 
 
@@ -80,13 +82,13 @@ def test_each_term_reaches_what_it_should_and_nothing_else(recipe, batch):
 
 def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
     """The teacher's own waypoints, from clean depth, would be others."""
-    views, _ = recipe.perception(batch)
-    student = recipe.plan(recipe.agent, batch, views)["logits"]
+    decisions = batch["decisions"]
+    student = recipe.agent.decide(decisions).logits
     with torch.no_grad():
-        wanted = recipe.plan(recipe.teacher, batch, batch["clean_views"])["logits"]
+        wanted = recipe.teacher.decide(decisions, clean=True).logits
     assert torch.equal(torch.isfinite(student), torch.isfinite(wanted))
-    assert torch.equal(torch.isfinite(student), batch["decisions"].allowed)
-    assert not np.allclose(batch["depth"].numpy(), 0) and torch.isfinite(
+    assert torch.equal(torch.isfinite(student), decisions.allowed)
+    assert not np.allclose(decisions.depth.numpy(), 0) and torch.isfinite(
         policy_kl(student, wanted, 2.0)
     )
 
@@ -97,9 +99,9 @@ def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
         agent = small()
         common = {"schedule": missing_data(), "seed": 3, **EPISODES}
         made = (
-            ImitationRecipe(agent, **common)
+            Imitate(agent, **common)
             if kind == "imitation"
-            else TeacherStudent(agent, teacher, w_kl=0.0, w_feat=0.0, **common)
+            else Distil(agent, teacher=teacher, w_kl=0.0, w_feat=0.0, **common)
         )
         Trainer(made, steps=2, folder=tmp_path / kind, seed=3).fit()
         shas.append(weights_sha(agent))
@@ -108,12 +110,13 @@ def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
 
 def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
     agent = small()
-    made = TeacherStudent(agent, teacher, schedule=missing_data(), **EPISODES)
+    made = Distil(agent, teacher=teacher, schedule=missing_data(), **EPISODES)
     before, start = weights_sha(made.teacher), weights_sha(agent)
     made.train()
     assert not made.teacher.training
     Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
-    assert weights_sha(made.teacher) == before == made.teacher_sha and weights_sha(agent) != start
+    assert weights_sha(made.teacher) == before == made.identity()["teacher_sha256"]
+    assert weights_sha(agent) != start
 
 
 def test_kl_is_zero_only_for_equal_policies_and_ignores_what_is_no_candidate():
@@ -132,11 +135,9 @@ def test_kl_is_zero_only_for_equal_policies_and_ignores_what_is_no_candidate():
 @pytest.mark.parametrize("kind", ["views", "adapters"])
 def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
     def made():
-        schedule = Schedule("per_episode", 0.6)
         if kind == "views":
-            return ViewDistillation(small(), modality, teacher, schedule=schedule, **VIEWS)
-        agent = small(adapters=ADAPTERS)
-        return ConvAdapterRecipe(agent, modality, schedule=schedule, **VIEWS)
+            return DistilViews(small(), modality=modality, teacher=teacher, **VIEWS)
+        return AdaptViews(small(adapters=ADAPTERS), modality=modality, **VIEWS)
 
     whole, first, second = made(), made(), made()
     Trainer(whole, steps=3, folder=tmp_path / "whole", seed=0).fit()
@@ -148,7 +149,7 @@ def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path
 
 def test_adapters_train_alone(tmp_path):
     agent = small(adapters=ADAPTERS)
-    made = ConvAdapterRecipe(agent, "rgb", schedule=Schedule("per_episode", 0.6), **VIEWS)
+    made = AdaptViews(agent, modality="rgb", **VIEWS)
     start = weights_sha(agent)
     Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
     assert made.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
@@ -156,12 +157,12 @@ def test_adapters_train_alone(tmp_path):
 
 def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
     with pytest.raises(FileNotFoundError, match="make train RECIPE=da_per_episode"):
-        TeacherStudent(small(), str(tmp_path), schedule=missing_data(), **EPISODES)
+        Distil(small(), teacher=str(tmp_path), schedule=missing_data(), **EPISODES)
 
 
 def test_adapters_alone_are_no_teacher():
     with pytest.raises(ValueError, match="holds adapters alone"):
-        ViewDistillation(small(), "rgb", "checkpoints/hardened/conv_adapter", **VIEWS)
+        DistilViews(small(), modality="rgb", teacher="checkpoints/hardened/conv_adapter", **VIEWS)
 
 
 def test_one_option_names_the_teacher_of_all_stages():
@@ -172,15 +173,21 @@ def test_one_option_names_the_teacher_of_all_stages():
 
 
 def test_frozen_views_are_no_part_of_the_loss(teacher):
-    frozen = TeacherStudent(small(), teacher, train_parts=("planner",), schedule=missing_data())
-    assert frozen.match == ("nodes",)
+    parts = {"train_parts": ("planner",), "schedule": missing_data(), **EPISODES}
+    losses = []
+    for match in (None, ("nodes",)):
+        frozen = Distil(small(), teacher=teacher, match=match, **parts).eval()
+        values = frozen(frozen.batch(0))
+        losses.append(values["loss"])
+        assert ("feat_views" in values) == (match is None)
+    assert losses[0] == losses[1]
 
 
 def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
     sources = []
     for seed in (1, 2):
         checkpoint.save_weights(small(seed), tmp_path / "teacher")
-        made = ViewDistillation(small(), "rgb", str(tmp_path / "teacher"), **VIEWS)
+        made = DistilViews(small(), modality="rgb", teacher=str(tmp_path / "teacher"), **VIEWS)
         sources.append(made.identity()["teacher_sha256"])
         trainer = Trainer(made, steps=1, folder=tmp_path / "run", config=made.identity())
         if seed == 1:
@@ -192,9 +199,12 @@ def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
 
 def test_an_unknown_feature_is_refused(teacher):
     with pytest.raises(ValueError, match="match=.*views, nodes"):
-        TeacherStudent(small(), teacher, match=("logits",), schedule=missing_data(), **EPISODES)
+        made = Distil(
+            small(), teacher=teacher, match=("logits",), schedule=missing_data(), **EPISODES
+        )
+        made(made.batch(0))
 
 
 def test_adapters_are_asked_for_where_there_are_none():
-    with pytest.raises(ValueError, match="no adapters in its rgb encoder"):
-        ConvAdapterRecipe(small(), "rgb", schedule=Schedule("clean", 0.0), **VIEWS)
+    with pytest.raises(ValueError, match="no adapters there"):
+        AdaptViews(small(), modality="rgb", **VIEWS)

@@ -1,6 +1,6 @@
 """What an agent still sees under each corruption: a look at its encoders in half a minute.
 
-    python -m mitigate.evaluation.perception checkpoints/base runs/mine/agent
+    python tools/perception.py checkpoints/base runs/mine/agent
 
 Random poses of a validation split, each under every corruption; RGB is scored by the F1 of the
 things that each view shows (labels of the id pass), depth by the overlap of the predicted and the

@@ -1,0 +1,52 @@
+"""Frames as pictures, for logs and reports."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.observation import DEPTH, RGB, VIEWS
+
+AHEAD_IN_THE_MIDDLE = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
+
+
+def side_by_side(views: np.ndarray) -> np.ndarray:
+    """Views [V, H, W, 3] uint8, or [V, H, W, 1] metres drawn as grey, as uint8 [H, V * W, 3]."""
+    if views.shape[-1] == 1:
+        grey = np.nan_to_num(views, posinf=0.0) / max(1e-6, float(np.nanmax(views)))
+        views = np.repeat((255 * grey.clip(0, 1)).astype(np.uint8), 3, axis=-1)
+    return np.concatenate(list(views), axis=1)
+
+
+def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.ndarray:
+    """The 12 views side by side, each cropped to its own 30 degrees, ahead in the middle."""
+    size = views.shape[2]
+    half = int(round(np.tan(np.radians(15)) * size / 2))
+    low, high = size // 2 - half, size // 2 + half
+    return np.concatenate([views[k, :, low:high] for k in order], axis=1)
+
+
+def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
+    """RGB, or else depth, of an observation as uint8 [H, W, 3]; None if it holds neither."""
+    held = observation or {}
+    frame = next((np.asarray(held[name]) for name in (RGB, DEPTH) if name in held), None)
+    if frame is None:
+        return None
+    views = frame if frame.ndim == 4 else frame[None]
+    return strip(views) if len(views) == VIEWS and views.shape[-1] == 3 else side_by_side(views)
+
+
+def draw_path(
+    axes: Any,
+    path: Sequence[np.ndarray] | np.ndarray,
+    colour: str,
+    label: str | None = None,
+    style: str = "-",
+) -> None:
+    """A walked or reference path (plan metres [n, 2]) on matplotlib axes."""
+    points = np.asarray(path)
+    axes.plot(points[:, 0], points[:, 1], style, color=colour, lw=2, label=label, zorder=6)
+    axes.plot(*points[0], "o", color=colour, ms=6, zorder=7)
+    axes.plot(*points[-1], "X", color=colour, ms=8, zorder=7)

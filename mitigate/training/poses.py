@@ -1,0 +1,133 @@
+"""Batches of corrupted panoramas from random poses with their labels, for recipes that teach
+encoders. They depend on no weights, so workers make them ahead of time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import torch
+
+from mitigate.core.observation import RGB, VIEWS
+from mitigate.core.pictures import side_by_side
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.training.success import measure
+from mitigate.worlds.world import Placeable, TrainingEpisodes
+
+PIECE = 6  # panoramas that one job renders (ours)
+
+
+class Poses:
+    """Args:
+    agent: whose success rates a success-distributed schedule without rates starts from, on
+    ``refresh_episodes`` episodes of ``training`` each.
+    world: makes a world that can look from anywhere (``worlds/world.py``). sensor: "rgb" or
+    "depth". label: the entry of its truth that is learned. panoramas: a batch. every: of the views
+    of a panorama, only every second one is learned from (2), since neighbours overlap, or all (1).
+
+    Raises ValueError for an unknown sensor and for a world that cannot look from anywhere.
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], Any],
+        training: TrainingEpisodes,
+        schedule: Schedule,
+        *,
+        sensor: str,
+        label: str,
+        panoramas: int,
+        every: int,
+        seed: int,
+        refresh_episodes: int = 8,
+    ) -> None:
+        if sensor not in ("rgb", "depth"):
+            raise ValueError(f"modality={sensor!r} is unknown; choose 'rgb' or 'depth'.")
+        self.agent, self.make_world, self.training, self.schedule = agent, world, training, schedule
+        self.sensor, self.label, self.panoramas, self.every = sensor, label, panoramas, every
+        self.seed, self.refresh_episodes = seed, refresh_episodes
+        self._world: Placeable | None = None
+        self._last: np.ndarray | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_world": None}
+
+    @property
+    def world(self) -> Placeable:
+        """The world of this process."""
+        if self._world is None:
+            made = self.make_world()
+            if not isinstance(made, Placeable):
+                raise ValueError(
+                    f"{type(made).__name__} cannot look from anywhere (scenes, enter, point, put), "
+                    "so encoders cannot be taught on random poses there. Leave out the stages that "
+                    "do (stages.NAME=null), or give the world these (docs/bring-your-own.md)."
+                )
+            self._world = made
+        return self._world
+
+    def jobs(self, step: int) -> list[tuple]:
+        """(step, piece, of how many, panoramas, the schedule's state) of each piece."""
+        if self.schedule.mode == "success_distributed" and self.schedule.success is None:
+            self.schedule.refresh(
+                measure(
+                    self.agent,
+                    self.schedule,
+                    self.make_world,
+                    self.training,
+                    episodes=self.refresh_episodes,
+                    seed=self.seed,
+                    step=step,
+                )
+            )
+            self.agent.train()
+        pieces = -(-self.panoramas // PIECE)
+        counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
+        state = self.schedule.state_dict()
+        return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]
+
+    def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
+        """(frames, the same before the corruption, labels) of each random pose of a piece."""
+        step, piece, pieces, count, state = job
+        if state != self.schedule.state_dict():
+            self.schedule.load_state_dict(state)
+        rng = generator(self.seed, "perception", self.sensor, step, piece)
+        scenes = share_of(self.world.scenes, piece, pieces)
+        return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
+
+    def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
+        """The pieces as tensors "frames", "clean" and "targets"."""
+        rows = [row for piece in pieces for row in piece]
+        names = ("frames", "clean", "targets")
+        self._last = rows[-1][0]
+        return {
+            name: torch.from_numpy(np.stack(column))
+            for name, column in zip(names, zip(*rows, strict=True), strict=True)
+        }
+
+    def figures(self) -> dict[str, np.ndarray]:
+        """The last views of the last batch: of RGB side by side, of depth in metres as grey."""
+        return {} if self._last is None else {"views": side_by_side(self._last)}
+
+    def _panorama(self, rng: np.random.Generator, scenes: Any, name: str) -> tuple[np.ndarray, ...]:
+        """Frames, the same before the corruption, and labels of one random pose."""
+        self.world.enter(scenes[int(rng.integers(len(scenes)))])
+        xy = self.world.point(rng)
+        heading = float(rng.uniform(-np.pi, np.pi))
+        views = np.arange(VIEWS)
+        if self.every > 1:
+            views = np.arange(int(rng.integers(self.every)), VIEWS, self.every)
+        clean, truth = self.world.put(xy, heading, views=views, rgb=self.sensor == RGB)
+        frames = corrupt_observation(clean, *self.schedule.draw(self.seed, name, 0))
+        target = truth[self.label]
+        target = target[views] if len(target) == VIEWS else target
+        return frames[self.sensor][views], clean[self.sensor][views], target
+
+
+def share_of(scenes: Any, piece: int, pieces: int) -> Any:
+    """The scenes that piece ``piece`` of ``pieces`` of every step draws from: a worker process then
+    opens only those of its pieces."""
+    return scenes[piece % len(scenes) :: pieces]

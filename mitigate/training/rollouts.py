@@ -1,0 +1,119 @@
+"""Batches of decisions that an agent takes in corrupted worlds, for recipes that imitate.
+
+Every step rolls out a few training episodes with the current weights under the schedule's
+corruptions; its batch is all their decisions.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from mitigate.agents.agent import Decisions
+from mitigate.core.files import sha256
+from mitigate.core.pictures import picture
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule
+from mitigate.training.success import measure, prior_rates
+from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
+
+PIECES = 4  # jobs that the episodes of a step are shared out to (ours)
+
+
+class Rollouts:
+    """Args:
+    agent: walks with its current weights, and gives the batches (``agents/agent.py``).
+    world: makes a world. training: where episodes come from. schedule: which frame is corrupted by
+    what, a success-distributed one by rates of ``agent``.
+    episodes: a step. expert_share: of their decisions that the expert takes.
+    prior: rows of one earlier evaluation, from which a success-distributed schedule starts.
+    refresh_every: steps between two measurements of the success rates that such a schedule draws
+    by, each on ``refresh_episodes`` training episodes under every corruption; 0: never.
+    clean: keep what there was to see before the corruption; ``teachers`` compute from it what does
+    not change.
+
+    Raises ValueError for no episodes, and as ``prior_rates`` does.
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        schedule: Schedule,
+        *,
+        episodes: int,
+        expert_share: float,
+        seed: int,
+        prior: str | None = None,
+        refresh_every: int = 0,
+        refresh_episodes: int = 8,
+        clean: bool = False,
+        teachers: Sequence[Any] = (),
+    ) -> None:
+        if episodes < 1:
+            raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
+        self.agent, self.world, self.training, self.schedule = agent, world, training, schedule
+        self.episodes, self.expert_share, self.seed = episodes, expert_share, seed
+        self.prior, self.refresh_every = prior, refresh_every
+        self.refresh_episodes, self.clean, self.teachers = refresh_episodes, clean, teachers
+        self.picture: np.ndarray | None = None
+        if prior is not None:
+            schedule.refresh(prior_rates(prior))
+
+    def identity(self) -> dict[str, str]:
+        """The hash of the prior's file."""
+        return {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
+
+    def jobs(self, step: int) -> list[tuple]:
+        """(step, piece, of how many, episodes, the schedule's state) of each piece."""
+        if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):
+            self.refresh(step)
+        parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
+        state = self.schedule.state_dict()
+        return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
+
+    def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
+        """What was decided in the episodes of a piece, and a picture of the last look."""
+        step, piece, pieces, count, state = job
+        if state != self.schedule.state_dict():
+            self.schedule.load_state_dict(state)
+        rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
+        episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]
+        worlds = [
+            Corrupted(self.world(), self.schedule, self.seed, f"{step}-{piece}-{i}")
+            for i in range(count)
+        ]
+        made = self.agent.collect(
+            worlds, episodes, expert_share=self.expert_share, rngs=rngs, clean=self.clean
+        )
+        for teacher in self.teachers:
+            if hasattr(teacher, "precompute"):
+                made = teacher.precompute(made, clean=True)
+        return made, picture(worlds[0].last)
+
+    def collate(self, pieces: list[tuple]) -> Decisions:
+        """The decisions of all pieces."""
+        self.picture = pieces[0][1]
+        return self.agent.join([piece for piece, _ in pieces])
+
+    def figures(self) -> dict[str, np.ndarray]:
+        """A panorama as the agent saw it in the last batch."""
+        return {} if self.picture is None else {"seen": self.picture}
+
+    def refresh(self, step: int) -> None:
+        """Measure the success under every corruption on training episodes, for the schedule."""
+        self.schedule.refresh(
+            measure(
+                self.agent,
+                self.schedule,
+                self.world,
+                self.training,
+                episodes=self.refresh_episodes,
+                seed=self.seed,
+                step=step,
+            )
+        )
+        self.agent.train()

@@ -1,0 +1,231 @@
+"""Teacher-student distillation: a frozen teacher sees clean what the student sees corrupted.
+
+``Distil`` works on rolled-out episodes of any trainable agent:
+
+    L = w_il L_imitation + w_kl T^2 KL(pi_T || pi_S) + w_feat sum of MSE(f_S, f_T)
+
+Under corruption the student may have other candidates than the teacher would (with depth gone it
+finds other places to go to). Both therefore answer over the same ones, the student's.
+``DistilViews`` works on random poses: the student's encoders learn to give for a corrupted view
+what the teacher's give for the clean one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mitigate.core import checkpoint
+from mitigate.corruptions import Schedule
+from mitigate.training.parts import load_teacher, train_only
+from mitigate.training.poses import Poses
+from mitigate.training.recipe import Recipe
+from mitigate.training.rollouts import Rollouts
+from mitigate.worlds.world import TrainingEpisodes, World
+from recipes.imitate import batch_of, imitation, loss_weights
+from recipes.pretrain import views_to_learn
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+
+class Distil(Recipe):
+    """Args: as ``recipes/imitate.py``; teacher: weights, or "start" for ``agent`` as it is now;
+    w_il, w_kl, w_feat, temperature: of the loss above; match: which of the agent's features are
+    matched, None: all. A feature that no trained weight makes is not.
+
+    With ``w_kl = w_feat = 0`` this is imitation, bit for bit. Raises FileNotFoundError for a
+    missing teacher; ValueError as imitation does.
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        schedule: Schedule,
+        teacher: str,
+        train_parts: Sequence[str] | None = None,
+        episodes: int = 3,
+        follow_oracle: float = 0.5,
+        seed: int = 0,
+        losses: Mapping[str, float] | None = None,
+        w_il: float = 1.0,
+        w_kl: float = 1.0,
+        w_feat: float = 1.0,
+        temperature: float = 2.0,
+        match: Sequence[str] | None = None,
+        prior: str | None = None,
+        refresh_every: int = 0,
+        refresh_episodes: int = 8,
+    ) -> None:
+        super().__init__()
+        self.agent, self.losses = agent, loss_weights(agent, losses)
+        self.teacher = load_teacher(agent, teacher)
+        train_only(agent, agent.parts() if train_parts is None else train_parts)
+        self.w_il, self.w_kl, self.w_feat = w_il, w_kl, w_feat
+        self.temperature, self.match = temperature, match
+        self.rollouts = Rollouts(
+            agent,
+            world,
+            training,
+            schedule,
+            episodes=episodes,
+            expert_share=follow_oracle,
+            seed=seed,
+            prior=prior,
+            refresh_every=refresh_every,
+            refresh_episodes=refresh_episodes,
+            clean=True,
+            teachers=(self.teacher,),
+        )
+
+    def identity(self) -> dict[str, str]:
+        return {**self.rollouts.identity(), "teacher_sha256": checkpoint.weights_sha(self.teacher)}
+
+    def train(self, mode: bool = True) -> Self:
+        super().train(mode)
+        self.teacher.eval()
+        return self
+
+    def jobs(self, step: int) -> list[tuple]:
+        return self.rollouts.jobs(step)
+
+    def work(self, job: tuple) -> Any:
+        return self.rollouts.work(job)
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        return batch_of(self.rollouts.collate(pieces))
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        decisions = batch["decisions"]
+        out = self.agent.decide(decisions)
+        values = imitation(out, decisions, self.losses)
+        with torch.no_grad():
+            wanted = self.teacher.decide(decisions, clean=True)
+        values["kl"] = policy_kl(out.logits, wanted.logits, self.temperature)
+        loss = self.w_il * values["loss"]
+        if self.w_kl:
+            loss = loss + self.w_kl * self.temperature**2 * values["kl"]
+        for name, feature in matched(out.features, self.match).items():
+            values[f"feat_{name}"] = feature_loss(feature, wanted.features[name])
+            if self.w_feat and (feature.requires_grad or not torch.is_grad_enabled()):
+                loss = loss + self.w_feat * values[f"feat_{name}"]
+        return {**values, "loss": loss}
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """The schedule's weights, for the log."""
+        return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return self.rollouts.figures()
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.rollouts.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.rollouts.schedule.load_state_dict(state["schedule"])
+
+
+class DistilViews(Recipe):
+    """Args: agent, modality, world, training, schedule, panoramas, refresh_episodes: as
+    ``recipes/pretrain.py``. teacher: weights, or "start" for ``agent`` as it is now. w_labels,
+    w_feat: weights of the labels' loss and of the features'. adapters_only: train the agent's
+    adapters and nothing else.
+
+    Raises FileNotFoundError for a missing teacher.
+    """
+
+    ahead = True
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        modality: str,
+        teacher: str,
+        schedule: Schedule,
+        panoramas: int = 12,
+        seed: int = 0,
+        w_labels: float = 1.0,
+        w_feat: float = 1.0,
+        refresh_episodes: int = 8,
+        adapters_only: bool = False,
+    ) -> None:
+        super().__init__()
+        self.agent, self.modality = agent, modality
+        self.poses = Poses(
+            agent,
+            world,
+            training,
+            schedule,
+            panoramas=panoramas,
+            seed=seed,
+            refresh_episodes=refresh_episodes,
+            **views_to_learn(agent, modality, adapters_only),
+        )
+        self.teacher = load_teacher(agent, teacher)
+        self.w_labels, self.w_feat = w_labels, w_feat
+
+    def identity(self) -> dict[str, str]:
+        return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
+
+    def train(self, mode: bool = True) -> Self:
+        super().train(mode)
+        self.teacher.eval()
+        return self
+
+    def jobs(self, step: int) -> list[tuple]:
+        return self.poses.jobs(step)
+
+    def work(self, job: tuple) -> Any:
+        return self.poses.work(job)
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        return self.poses.collate(pieces)
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        out = self.agent.see(self.modality, batch["frames"], batch["targets"])
+        with torch.no_grad():
+            wanted = self.teacher.see(self.modality, batch["clean"])
+        feat = feature_loss(out.features["views"], wanted.features["views"])
+        loss = self.w_labels * out.losses["labels"] + self.w_feat * feat
+        return {"loss": loss, "feat": feat, **out.losses, **out.figures}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return self.poses.figures()
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.poses.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.poses.schedule.load_state_dict(state["schedule"])
+
+
+def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict[str, Tensor]:
+    """The features of ``names``, None: all. Raises ValueError for one that the agent has not."""
+    unknown = sorted(set(names or ()) - set(features))
+    if unknown:
+        raise ValueError(f"match={unknown} is unknown; choose from {', '.join(features)}.")
+    return {n: f for n, f in features.items() if names is None or n in names}
+
+
+def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
+    """KL(pi_T || pi_S) of logits [B, n] at ``temperature``, mean over the batch; -inf is no
+    candidate, and must be so in both."""
+    p = (teacher / temperature).log_softmax(-1)
+    q = (student / temperature).log_softmax(-1)
+    possible = torch.isfinite(teacher)
+    each = p.exp() * (p - q).masked_fill(~possible, 0.0)
+    return each.sum(-1).mean()
+
+
+def feature_loss(student: Tensor, teacher: Tensor) -> Tensor:
+    """Mean squared error in units of the teacher's variance, so that scales do not matter."""
+    error = (student.float() - teacher.float()).square().mean()
+    return error / teacher.float().var().clamp(min=1e-6)

@@ -1,0 +1,127 @@
+"""Imitation of a world's expert with scheduled sampling, on corrupted frames.
+
+Every step rolls out a few training episodes with the current weights under the schedule's
+corruptions, then trains on all their decisions. Loss = cross-entropy to the expert, plus the
+agent's own auxiliary losses. The same recipe under three schedules gives ``da_per_frame``,
+``da_per_episode`` and ``da_success``. It trains any agent of ``agents/agent.py`` in any world that
+has an expert.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mitigate.agents.agent import Decisions, Output
+from mitigate.corruptions import Schedule
+from mitigate.training.parts import train_only
+from mitigate.training.recipe import Recipe
+from mitigate.training.rollouts import Rollouts
+from mitigate.worlds.world import TrainingEpisodes, World
+
+
+class Imitate(Recipe):
+    """Args:
+    agent: trained in place. world, training, schedule: makes a world, where its episodes come from,
+    which frame is corrupted by what.
+    train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. None: all.
+    episodes: a step. follow_oracle: share of rollout decisions taken by the expert.
+    losses: weights of the agent's auxiliary losses by name, where they are not its own.
+    prior, refresh_every, refresh_episodes: of a success-distributed schedule (``Rollouts``).
+
+    Raises ValueError for an unknown part and for no episodes.
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        schedule: Schedule,
+        train_parts: Sequence[str] | None = None,
+        episodes: int = 3,
+        follow_oracle: float = 0.5,
+        seed: int = 0,
+        losses: Mapping[str, float] | None = None,
+        prior: str | None = None,
+        refresh_every: int = 0,
+        refresh_episodes: int = 8,
+    ) -> None:
+        super().__init__()
+        train_only(agent, agent.parts() if train_parts is None else train_parts)
+        self.agent, self.losses = agent, loss_weights(agent, losses)
+        self.rollouts = Rollouts(
+            agent,
+            world,
+            training,
+            schedule,
+            episodes=episodes,
+            expert_share=follow_oracle,
+            seed=seed,
+            prior=prior,
+            refresh_every=refresh_every,
+            refresh_episodes=refresh_episodes,
+        )
+
+    def identity(self) -> dict[str, str]:
+        return self.rollouts.identity()
+
+    def jobs(self, step: int) -> list[tuple]:
+        return self.rollouts.jobs(step)
+
+    def work(self, job: tuple) -> Any:
+        return self.rollouts.work(job)
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        return batch_of(self.rollouts.collate(pieces))
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        decisions = batch["decisions"]
+        return imitation(self.agent.decide(decisions), decisions, self.losses)
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """The schedule's weights, for the log."""
+        return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return self.rollouts.figures()
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.rollouts.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.rollouts.schedule.load_state_dict(state["schedule"])
+
+
+def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:
+    """Cross-entropy of ``out`` to the expert's answers, less their entropy, averaged by weight; the
+    auxiliary losses are added by ``weights``, 1 unless named.
+
+    Returns "loss", and the parts and figures to log.
+    """
+    assert out.logits is not None, "decide() gave no logits"
+    mask = torch.isfinite(out.logits) if out.mask is None else out.mask
+    target = decisions.target
+    log_p = out.logits.log_softmax(-1).masked_fill(~mask, 0.0)
+    entropy = -(target * target.clamp(min=1e-9).log()).sum(-1)
+    each = -(target * log_p).sum(-1) - entropy
+    loss = imitated = (each * decisions.weight).sum() / decisions.weight.sum()
+    for name, value in out.losses.items():
+        loss = loss + weights.get(name, 1.0) * value
+    right = target.gather(1, out.logits.argmax(-1)[:, None])[:, 0] > 0.4 * target.max(1).values
+    figures = {"imitation": imitated, **out.losses, "accuracy": right.float().mean(), **out.figures}
+    return {"loss": loss, **figures}
+
+
+def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, float]:
+    """Weights of an agent's auxiliary losses by name: its own, and in their place those given."""
+    return {**getattr(agent, "loss_weights", {}), **(given or {})}
+
+
+def batch_of(decisions: Decisions) -> dict[str, Any]:
+    """Decisions as the trainer takes a batch."""
+    return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}

@@ -1,0 +1,79 @@
+"""Imitation on stored features: no rendering, hundreds of decisions a step.
+
+The encoders are frozen; their features of a lattice of poses of every scene are computed once. For
+an agent that has a ``store``. Otherwise as ``recipes/imitate.py``, whose loss it uses.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from torch import Tensor
+
+from mitigate.core.seeding import generator
+from mitigate.training.parts import train_only
+from mitigate.training.recipe import Recipe
+from mitigate.training.rollouts import PIECES
+from mitigate.worlds.world import TrainingEpisodes, World
+from recipes.imitate import batch_of, imitation, loss_weights
+
+_DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions
+
+
+class ImitateStored(Recipe):
+    """Args: agent: ``agent.stored_parts`` of it is trained in place. world, training: of the scenes
+    whose features are stored. folder: of the stores. episodes: a step. steps: over 0.6 of them the
+    oracle's share of rollout decisions falls from 1 to ``follow_oracle``. losses: as ``Imitate``.
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        folder: str,
+        steps: int,
+        episodes: int = 40,
+        follow_oracle: float = 0.25,
+        seed: int = 0,
+        losses: Mapping[str, float] | None = None,
+    ) -> None:
+        super().__init__()
+        if episodes < 1:
+            raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
+        train_only(agent, agent.stored_parts)
+        self.agent, self.world, self.source, self.folder = agent, world, training, folder
+        self.steps, self.episodes, self.follow_oracle, self.seed = (
+            steps,
+            episodes,
+            follow_oracle,
+            seed,
+        )
+        self.losses = loss_weights(agent, losses)
+
+    def start(self) -> None:
+        """Make the store, in the precision of the training."""
+        self.store = self.agent.store(self.world, self.folder)
+        self.store.build()
+
+    def jobs(self, step: int) -> list[tuple]:
+        """(step, piece, of how many, episodes) of each piece."""
+        parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
+        return [(step, i, len(parts), len(part)) for i, part in enumerate(parts)]
+
+    def work(self, job: tuple) -> Any:
+        step, piece, pieces, count = job
+        rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
+        episodes = [self.source.draw(rng, (piece, pieces)) for rng in rngs]
+        share = max(0.0, 1 - step / (_DECAY * self.steps))
+        expert_share = self.follow_oracle + share * (1 - self.follow_oracle)
+        return self.store.collect(episodes, expert_share=expert_share, rngs=rngs)
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        return batch_of(self.agent.join(pieces))
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        decisions = batch["decisions"]
+        return imitation(self.agent.decide(decisions), decisions, self.losses)
