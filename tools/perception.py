@@ -27,8 +27,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
 from mitigate.corruptions import RGB as RGB_NAMES
 from mitigate.evaluation.bootstrap import resampled_means
-from mitigate.evaluation.columns import name_of
-from mitigate.evaluation.evaluate import load
+from mitigate.evaluation.evaluate import load, name_of
 from mitigate.evaluation.sections import label
 from mitigate.worlds.apartments.labels import free_directions, view_labels
 from mitigate.worlds.apartments.renderer import Renderer

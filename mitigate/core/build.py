@@ -6,7 +6,8 @@ as data, because a ``_target_`` in it could run anything.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from functools import partial
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
@@ -42,15 +43,21 @@ def maker(node: DictConfig) -> Callable[[], Any]:
     return instantiate(node, _partial_=True, _convert_="all")
 
 
-def settings_of(node: DictConfig, weights: str) -> DictConfig:
-    """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too)."""
-    return merged(node, carried(node, weights))
+def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -> DictConfig:
+    """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too).
 
-
-def merged(node: DictConfig, own: dict[str, Any]) -> DictConfig:
-    """Return a copy of ``node`` with the settings ``own`` in place of its own."""
-    found = OmegaConf.merge(node, own)
+    What the command line names counts more (``overrides``): ``agent.blind=[rgb]``, and of a config
+    chosen by ``agent=mine`` what is not the class's default.
+    """
+    keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
+    named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
+    if ["agent"] in keys:
+        plain = defaults(node)
+        named |= {name for name in plain if node[name] != plain[name]}
+    found = OmegaConf.merge(node, carried(node, weights))
     assert isinstance(found, DictConfig)
+    for setting in named:
+        found[setting] = node[setting]
     return found
 
 
@@ -90,6 +97,9 @@ def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Modul
 
     seeding.seed_everything(seed, "agent")
     agent = build(node)
+    if not hasattr(agent, "settings"):  # those of its config are what is known of it
+        plain = OmegaConf.to_container(node, resolve=True)
+        agent.settings = partial(dict, {k: v for k, v in plain.items() if k != "_target_"})
     if weights is not None and hardened.adapters_only(weights):
         hardened.check(Path(weights))
         hardened.fill(agent, weights)

@@ -72,8 +72,13 @@ def explain(error: Exception, primary: str) -> str:
     return " ".join(str(error).split())
 
 
-def load_config(primary: str, overrides: Iterable[str] = ()) -> DictConfig:
-    """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program."""
+def load_config(
+    primary: str, overrides: Iterable[str] = (), further: Path | None = None
+) -> DictConfig:
+    """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program; ``further``: a
+    folder with more configs."""
+    if further is not None:
+        overrides = [*overrides, f"hydra.searchpath=[file://{further.resolve()}]"]
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(CONF), version_base="1.3"):
         return compose(primary, list(overrides))

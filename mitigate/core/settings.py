@@ -72,8 +72,8 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
     if found != target:
         raise ValueError(
             f"{file} is of the agent {_short(found)}, but the agent here is {target}: choose the "
-            "agent that the weights belong to (agent=...). Only the reference agent can be "
-            "exported and loaded as a hardened folder."
+            "agent that the weights belong to (agent=...; in Python, "
+            "load_hardened(folder, agent=...) fills one that you built)."
         )
     for key, _ in _entries(settings):
         if any(part.startswith("_") for part in key.split(".")):

@@ -83,10 +83,7 @@ def run(
             "family=white_box is not applicable to a file: it hurts the system prompt of an agent, "
             "which no episode holds. Evaluate an agent that has one, or use family=black_box."
         )
-    if Path(out).resolve() == Path(source).resolve():
-        raise ValueError(f"{out} is the file that is read: give the corrupted one another name.")
-    if Path(out).is_dir():
-        raise ValueError(f"{out} is a folder: name the file to write in it.")
+    _check_target(source, out)
     extras = read_extras(source)
     words = tokenizer_for(tokenizer, extras) if tokenizer else None
     mask = mask_token if mask_token is not None else (words and words.mask_token) or "[MASK]"
@@ -104,7 +101,7 @@ def run(
     episodes = tqdm(read_episodes(source, hidden_goals=True), unit="episode", disable=None)
     other_words = words is not None and tokenizer != VOCABULARY
     write_episodes(out, _changed(episodes, corrupted, words, counts, other_words), extras)
-    summary = {
+    settings = {
         "source": str(source),
         "family": family,
         "severity": severity,
@@ -114,12 +111,27 @@ def run(
         "tokenizer": tokenizer,
         "mask_token": mask,
         "tagger": tagger,
+    }
+    return _summarised(settings, counts, out)
+
+
+def _check_target(source: Path | str, out: Path | str) -> None:
+    if Path(out).resolve() == Path(source).resolve():
+        raise ValueError(f"{out} is the file that is read: give the corrupted one another name.")
+    if Path(out).is_dir():
+        raise ValueError(f"{out} is a folder: name the file to write in it.")
+
+
+def _summarised(settings: dict[str, Any], counts: Counts, out: Path | str) -> dict[str, Any]:
+    """Write the summary of what was done beside ``out``, and return it."""
+    summary = {
+        **settings,
         "episodes": counts.episodes,
         "changed": counts.changed,
         "skipped_languages": dict(counts.skipped_languages),
         "tokens": dict(counts.tokens),
     }
-    if family in MANNERS:
+    if settings["family"] in MANNERS:
         summary["gate"] = _rates(counts.gate)
     with atomic_text(f"{out}.summary.json") as file:
         json.dump(summary, file, indent=2, ensure_ascii=False)

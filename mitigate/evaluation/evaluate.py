@@ -6,6 +6,7 @@ command again only fills what is missing.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -67,10 +68,9 @@ ConfigStore.instance().store(name="evaluate_schema", node=EvaluateConfig)
 def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
 
-    ``overrides``: those of the command line. Its agent's settings (``agent.blind=[rgb]``, or a
-    config chosen by ``agent=mine``) count more than the weights' own. The table's column names
-    every setting in which the agent is not the one that the weights belong to, and a size of view
-    that is not the agent's.
+    ``overrides``: those of the command line; what they say of the agent (``agent.blind=[rgb]``, or
+    a config chosen by ``agent=mine``) counts more than the weights' own settings, and the table's
+    column names it.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
@@ -81,17 +81,20 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         flush=True,
     )
     from mitigate.core import build
-    from mitigate.evaluation import columns
+    from mitigate.core.identity import identity
     from mitigate.evaluation.evaluator import evaluate
-    from mitigate.safeguard.guard import open_safeguard
+    from mitigate.safeguard import guard
 
-    node, name = columns.agent_and_name(cfg, overrides)
+    node = build.settings_of(cfg.agent, cfg.checkpoint, overrides)
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
+    front, world = guard.label(cfg.safeguard), build.maker(cfg.env.world)
+    name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), front])
+    name = name.removesuffix("+none")
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     _check_list(out / LIST, cfg.env.episodes[cfg.split])
     evaluate(
         agent,
-        build.maker(cfg.env.world),
+        world,
         chosen,
         conditions(names, cfg.severity, cfg.severity_depth),
         name=name,
@@ -99,7 +102,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         split=cfg.split,
         seed=cfg.seed,
         workers=cfg.workers,
-        safeguard=open_safeguard(cfg.safeguard, log=out / DECISIONS),
+        safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
+        identity=identity(agent, world().sensors, front),
     )
     write_table([out / ROWS], out)
     return out
@@ -123,6 +127,34 @@ def _check_list(note: Path, source: str) -> None:
         file.writelines(f"{d}  {name}\n" for name, d in {**held, source: found}.items())
 
 
+def name_of(weights: str) -> str:
+    """Return the name of weights by their path: of the run, for a run's ``agent`` folder."""
+    path = Path(weights.removesuffix(".safetensors"))
+    while path.name in ("model", "agent", "run"):
+        path = path.parent
+    return path.name or "agent"
+
+
+def changed(overrides: Sequence[str]) -> list[str]:
+    """Return the options of a command line that change the agent or what it sees, as parts of a
+    column's name."""
+    own = [option.lstrip("+") for option in overrides]
+    own = [option for option in own if option.startswith(("agent.", "env.size="))]
+    return [_plain(option.removeprefix("agent.")).strip("-") for option in own]
+
+
+def column_of(cfg: DictConfig, folder: Path) -> str:
+    """Return the column of a training: the recipe, and the options that its folder's name holds, so
+    that other settings are no other seeds of it."""
+    options = folder.name.partition(f"-seed{cfg.seed}-")[2]
+    return f"{cfg.name}+{options}" if options else cfg.name
+
+
+def _plain(text: str) -> str:
+    """Return ``text`` with a dash for all that a file's name should not hold."""
+    return re.sub(r"[^A-Za-z0-9.@-]+", "-", text)
+
+
 def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
     by ``node``. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
@@ -141,14 +173,13 @@ def report_before_after(
     pictures in ``folder/pictures`` show episodes that the training won back.
     """
     from mitigate.core import build
-    from mitigate.evaluation import columns
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.evaluation.trajectories import write_pictures
 
     quick = cfg.evaluation
     chosen = episodes(cfg.env, quick.split, quick.episodes)
     suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    agents: dict[str, Any] = {"before": base_agent, columns.of_run(cfg, folder): trained_agent}
+    agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
     agents = {name: agent for name, agent in agents.items() if agent is not None}
     world, rows = build.maker(cfg.env.world), []
     for name, agent in agents.items():

@@ -21,6 +21,7 @@ import torch
 
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import weights_sha
+from mitigate.core.identity import identity as identity_of
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.evaluation import rows
@@ -92,6 +93,7 @@ def evaluate(
     seed: int = 0,
     workers: int | None = 1,
     safeguard: Safeguard | None = None,
+    identity: str | None = None,
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
@@ -99,13 +101,24 @@ def evaluate(
     them for PRS; "white_box" is left out with a warning if the agent has no ``system_prompt``.
     name: the table's column. split: what the rows say. seed: of the corruptions' keys. workers:
     processes, None: one a core if there is work for them; the rows do not depend on it. safeguard:
-    repairs each instruction, once, before the agent hears it; ``name`` should say so.
+    repairs each instruction, once, before the agent hears it. identity: of the agent in its rows
+    (``core/identity.py``); None: of the agent behind the world's sensors.
     Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
     out = Path(out)
     conditions = _applicable(agent, conditions, name)
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
-    jobs = _jobs(agent, episodes, conditions, name, split, seed, world().rule)
+    made = world()
+    label = {
+        "agent": identity or identity_of(agent, made.sensors),
+        "name": name,
+        "split": split,
+        "seed": seed,
+        "suite": SUITE_VERSION,
+        "rule": made.rule,
+        **({"weights": weights_sha(agent)} if isinstance(agent, torch.nn.Module) else {}),
+    }
+    jobs = _jobs(episodes, conditions, label)
     todo = [job for job in jobs if rows.identity(job[2]) not in known]
     heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
     decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
@@ -116,23 +129,9 @@ def evaluate(
 
 
 def _jobs(
-    agent: torch.nn.Module,
-    episodes: list[Episode],
-    conditions: list[Corruption],
-    name: str,
-    split: str,
-    seed: int,
-    rule: str,
+    episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
 ) -> list[Job]:
     """All jobs, episode by episode, each with what its row says besides the measures."""
-    label = {
-        "agent": weights_sha(agent)[:12],
-        "name": name,
-        "split": split,
-        "seed": seed,
-        "suite": SUITE_VERSION,
-        "rule": rule,
-    }
     return [
         (
             episode,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass
@@ -138,6 +139,23 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     if choice != "lora" and not Path(choice).is_dir():
         raise ValueError(unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder.")
     return Safeguard(open_adapter(ADAPTER if choice == "lora" else choice), log=log)
+
+
+def label(choice: str) -> str:
+    """Return a short name for a safeguard: an adapter's folder with a hash of its weights, an
+    endpoint's host and model; the names of ours as they are."""
+    if choice.startswith(("http://", "https://")):
+        return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
+    from mitigate.core.files import sha256
+    from mitigate.safeguard.adapter_folder import ADAPTER as WEIGHTS
+
+    weights = Path(choice) / WEIGHTS
+    if not weights.is_file():
+        return Path(choice).name
+    folder = Path(choice)
+    while folder.name == "agent":  # every trained adapter lies in a folder called so
+        folder = folder.parent
+    return f"{folder.name}-{sha256(weights)[:6]}"
 
 
 class _Draft:

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.agents import adapters
-from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint
 from mitigate.core.files import sha256
 from mitigate.corruptions import SUITE_VERSION
@@ -23,7 +22,7 @@ VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
 LICENCE = "Apache-2.0"
 
 
-def facts(cfg: dict[str, Any], agent: TopologicalAgent) -> dict[str, Any]:
+def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
     """Return what the resolved config ``cfg`` of a run and this checkout say about ``agent``.
 
     Raises FileNotFoundError if the base or a teacher that the run names is gone.
@@ -39,7 +38,7 @@ def facts(cfg: dict[str, Any], agent: TopologicalAgent) -> dict[str, Any]:
         "suite": SUITE_VERSION,
         "base": reference(cfg["init"]) if cfg.get("init") else None,
         "teachers": [reference(path) for path in teachers],
-        "vocabulary": hardened.vocabulary_sha(agent),
+        "vocabulary": hardened.vocabulary_sha(agent) if hasattr(agent, "vocabulary") else None,
         "commit": commit(),
         "versions": {package: _version(package) for package in VERSIONS},
         "license": LICENCE,
@@ -60,13 +59,18 @@ def commit() -> str | None:
     return found.stdout.strip() or None if found.returncode == 0 else None
 
 
+def weights_of(row: Row) -> str:
+    """Return the hash of the weights that a row is of; rows of before had it as their agent's."""
+    return str(row.get("weights", row["agent"]))
+
+
 def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
     """Return SR, SPL and PRS with 95 % intervals of the rows of ``agents`` (their weights' sha).
 
     One entry for each split, suite, rule and severity; intervals are [value, low, high], as in
     the report. The rows of other agents are left out.
     """
-    mine = [{**row, "name": "agent", "agent": "agent"} for row in rows if row["agent"] in agents]
+    mine = [{**row, "name": "agent", "agent": "agent"} for row in rows if weights_of(row) in agents]
     return [_entry(section) for section in sections(mine)] if mine else []
 
 
@@ -120,7 +124,7 @@ def _origin(card: dict[str, Any]) -> str:
     kind = (
         "These are adapters; the base they belong to is not in this folder"
         if card["adapters_only"]
-        else "The weights are whole, in float16"
+        else f"The weights are whole{', in float16' if card.get('program', True) else ''}"
     )
     computed = f", trained in {card['precision']}" if card.get("precision") else ""
     return (
@@ -153,6 +157,14 @@ def _cell(found: list[float | None]) -> str:
 
 
 def _use(card: dict[str, Any]) -> str:
+    load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
+    if not card.get("program", True):
+        return (
+            f"## Use\n\n```python\nimport mitigate\n\nagent = {load}, agent=Mine(...))\n```\n\n"
+            "Build the agent with the settings in `config.yaml`; it is filled in place. Files are "
+            "compared with the sha256 in `card.json` first. A fresh process reloaded the folder "
+            f"and walked {card['checked']['walks']} episodes to the same measures."
+        )
     times, checked = card["latency_ms"], card["checked"]
     networks = list(times["eager"])
     lines = [
@@ -162,8 +174,7 @@ def _use(card: dict[str, Any]) -> str:
     ]
     table = "\n".join(["| network | fastest | processor |", "| --- | ---: | ---: |", *lines])
     return (
-        "## Use\n\n```python\nimport mitigate\n\n"
-        f'agent = mitigate.load_hardened("checkpoints/hardened/{card["name"]}")\n```\n\n'
+        f"## Use\n\n```python\nimport mitigate\n\nagent = {load})\n```\n\n"
         "Files are compared with the sha256 in `card.json` first. `program.pt2` runs a decision "
         "without this code; `program.json` describes its inputs. Reloaded in a fresh process, "
         f"the outputs on a fixed probe were equal within {checked['reload_tolerance']:g} (agent) "

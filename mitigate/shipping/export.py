@@ -26,11 +26,13 @@ from torch import Tensor
 
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import checkpoint, checksums, settings
+from mitigate.core import build, checkpoint, conf, settings
 from mitigate.core.files import sha256
+from mitigate.evaluation import evaluate
 from mitigate.evaluation import rows as result_rows
-from mitigate.shipping import hardened, programs
-from mitigate.shipping.card import facts, metrics, readme
+from mitigate.shipping import hardened, others, programs
+from mitigate.shipping.card import facts, metrics, readme, weights_of
+from mitigate.shipping.others import Walks
 
 HARDENED = Path("checkpoints/hardened")
 # largest absolute difference of an output on the probe (ours; logits are of the order of 1 to 10)
@@ -50,12 +52,15 @@ def export(
     rows: Iterable[Path | str] = (),
     overwrite: bool = False,
     onnx: bool = False,
+    walks: Walks | None = None,
 ) -> Path:
     """Write the agent of the finished run folder ``run`` to ``out/name`` and return that folder.
 
     Args:
         rows: row files or folders with the agent's evaluation; the run folder's own are found.
-        overwrite: replace ``out/name``. onnx: write the two networks as ONNX files too.
+        overwrite: replace ``out/name``. onnx: write the two networks as ONNX files too. walks: for
+            an agent of another class than ours, how to make it and what to check it by; its folder
+            holds no programs.
     Raises FileNotFoundError if ``run`` holds no finished run, ValueError if ``out/name`` exists,
     if ``rows`` say nothing about this agent, or if the written folder does not reload to the same
     outputs; then nothing is written.
@@ -67,12 +72,12 @@ def export(
         raise ValueError(
             f"{target} exists already: choose another name, or replace it with --overwrite."
         )
-    cfg, agent = _finished(run)
+    cfg, agent = _finished(run, walks)
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
         draft = Path(aside) / name
         draft.mkdir()
-        _write(draft, run, cfg, agent, name, list(rows), onnx)
+        _write(draft, run, cfg, agent, name, list(rows), onnx, walks)
         if target.exists():
             target.rename(Path(aside) / "old")
         draft.rename(target)
@@ -97,7 +102,7 @@ def check_outputs(folder: str, expected: str) -> None:
             )
 
 
-def _finished(run: Path) -> tuple[dict[str, Any], TopologicalAgent]:
+def _finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any]:
     """Return the config and the agent of a finished run."""
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / hardened.CONFIG
     if not (weights.is_file() and config.is_file()):
@@ -105,9 +110,11 @@ def _finished(run: Path) -> tuple[dict[str, Any], TopologicalAgent]:
             f"{run} holds no finished run: it needs config.yaml and agent/{checkpoint.WEIGHTS}. "
             "Run `make train` to the end, then name its folder (runs/...)."
         )
-    agent = hardened.build(config)
+    agent = hardened.build(config) if walks is None else walks.make_agent()
     checkpoint.load_weights(agent, weights)
-    if not all(torch.isfinite(value.half()).all() for value in agent.state_dict().values()):
+    if walks is None and not all(
+        torch.isfinite(value.half()).all() for value in agent.state_dict().values()
+    ):
         raise ValueError(f"{weights} holds numbers that are not finite in float16.")
     return settings.read(config), agent.eval()
 
@@ -116,28 +123,57 @@ def _write(
     draft: Path,
     run: Path,
     cfg: dict[str, Any],
-    agent: TopologicalAgent,
+    agent: Any,
     name: str,
     rows: list[Path | str],
     onnx: bool,
+    walks: Walks | None,
 ) -> None:
     """Fill ``draft`` and check it."""
-    size = agent.rgb_encoder.size
-    given = programs.probe(agent, size)
     config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)  # where it ran is no matter
     config = config.replace(f"{Path.cwd()}/", "")
     (draft / hardened.CONFIG).write_text(config, encoding="utf-8")
     adapters_only = _only_adapters_trained(cfg, agent)
-    shipped = agent
-    if adapters_only:
-        adapters.save_adapters(agent, draft)
-    else:
-        shipped = copy.deepcopy(agent)
-        checkpoint.save_weights(agent, draft, half=True)
-        checkpoint.load_weights(shipped, draft)
-    checksums.delete_sidecars(draft, "*")  # the card has all sums
     known = facts(cfg, agent)  # before the slow part: what is missing shows at once
+    shipped = agent
+    others.write(draft, agent, adapters_only, half=walks is None)
+    if walks is None and not adapters_only:
+        shipped = copy.deepcopy(agent)
+        checkpoint.load_weights(shipped, draft)
     found = _metrics(run, rows, {checkpoint.weights_sha(a) for a in (agent, shipped)})
+    made, wanted = {"program": False, "checked": {"walks": others.WALKS}, "latency_ms": {}}, {}
+    if walks is None:
+        made, wanted = _programs(draft, agent, shipped, onnx)
+    card = {
+        "format": hardened.FORMAT,
+        "name": name,
+        **known,
+        "agent": checkpoint.weights_sha(shipped),
+        "run_agent": checkpoint.weights_sha(agent),
+        "adapters_only": adapters_only,
+        "metrics": found,
+        **made,
+    }
+    (draft / hardened.README).write_text(readme(card), encoding="utf-8")
+    for file in draft.iterdir():
+        file.chmod(0o644)  # safetensors are written for their owner alone
+    card["files"] = {file.name: sha256(file) for file in sorted(draft.iterdir())}
+    card["sha256"] = hardened.card_sha(card)
+    _write_json(draft / hardened.CARD, card)
+    print("reloading in a fresh process", flush=True)
+    if walks is None:
+        _reload(draft, wanted)
+    else:
+        others.reload(draft, agent, walks)
+
+
+def _programs(
+    draft: Path, agent: TopologicalAgent, shipped: TopologicalAgent, onnx: bool
+) -> tuple[dict[str, Any], dict[str, Tensor]]:
+    """Write the exported programs of ``shipped``; what the card says of them, and the outputs on
+    the probe."""
+    size = agent.rgb_encoder.size
+    given = programs.probe(agent, size)
     print("exporting the programs", flush=True)
     exported = programs.export_programs(shipped, size)
     programs.save_programs(exported, draft / hardened.PROGRAM)
@@ -155,33 +191,17 @@ def _write(
         from mitigate.shipping.onnx_programs import save_onnx
 
         save_onnx(shipped, size, draft, EXPORTED)
-    card = {
-        "format": hardened.FORMAT,
-        "name": name,
-        **known,
-        "agent": checkpoint.weights_sha(shipped),
-        "run_agent": checkpoint.weights_sha(agent),
-        "adapters_only": adapters_only,
-        "metrics": found,
-        "checked": {
-            "float16": rounded,
-            "float16_tolerance": ROUNDED,
-            "reload_tolerance": RELOADED,
-            "program_tolerance": EXPORTED,
-        },
-        "latency_ms": programs.latency({"eager": eager, "exported": modules}, shipped, size),
+    checked = {
+        "float16": rounded,
+        "float16_tolerance": ROUNDED,
+        "reload_tolerance": RELOADED,
+        "program_tolerance": EXPORTED,
     }
-    (draft / hardened.README).write_text(readme(card), encoding="utf-8")
-    for file in draft.iterdir():
-        file.chmod(0o644)  # safetensors are written for their owner alone
-    card["files"] = {file.name: sha256(file) for file in sorted(draft.iterdir())}
-    card["sha256"] = hardened.card_sha(card)
-    _write_json(draft / hardened.CARD, card)
-    print("reloading in a fresh process", flush=True)
-    _reload(draft, wanted)
+    latency = programs.latency({"eager": eager, "exported": modules}, shipped, size)
+    return {"checked": checked, "latency_ms": latency}, wanted
 
 
-def _only_adapters_trained(cfg: dict[str, Any], agent: TopologicalAgent) -> bool:
+def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
     """Whether all but the adapters of ``agent`` is, bit for bit, what the run started from."""
     init = cfg.get("init")
     if not adapters.adapted(agent) or not init or hardened.adapters_only(init):
@@ -201,10 +221,10 @@ def _metrics(run: Path, rows: list[Path | str], agents: set[str]) -> list[dict[s
     except FileNotFoundError:
         own = []
     given = result_rows.gather(rows) if rows else []
-    if rows and not any(row["agent"] in agents for row in given):
+    if rows and not any(weights_of(row) in agents for row in given):
         raise ValueError(
-            f"The rows given are of {', '.join(sorted({row['agent'] for row in given}))}, not of "
-            f"this agent ({', '.join(sorted(agents))}). Evaluate it: `make evaluate "
+            f"The rows given are of {', '.join(sorted({weights_of(row) for row in given}))}, not "
+            f"of this agent ({', '.join(sorted(agents))}). Evaluate it: `make evaluate "
             f'ARGS="checkpoint={run}/agent"`.'
         )
     return metrics(result_rows.upsert(own, given), agents)
@@ -240,17 +260,36 @@ def _write_json(file: Path, value: Any) -> None:
 
 def main() -> None:
     """Read the command line."""
-    parser = argparse.ArgumentParser(prog="mitigate.export", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="mitigate export", description=__doc__.splitlines()[0])
     parser.add_argument("run", type=Path, help="a finished run folder, such as runs/...")
     parser.add_argument("name", help="name of the folder to write")
+    parser.add_argument(
+        "overrides",
+        nargs="*",
+        metavar="key=value",
+        help="of an agent of your own: agent=policy env=corridor, as for mitigate evaluate",
+    )
+    parser.add_argument("--config-dir", type=Path, help="where such configs are")
     parser.add_argument("--out", type=Path, default=HARDENED, help="where to write it")
     parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
-    given = vars(parser.parse_args())
+    given = vars(parser.parse_intermixed_args())
+    overrides, configs = given.pop("overrides"), given.pop("config_dir")
     try:
+        if overrides:
+            given["walks"] = _walks_of(given["run"], overrides, configs)
         folder = export(given.pop("run"), given.pop("name"), **given)
     except (ValueError, FileNotFoundError) as error:
         sys.exit(f"error: {error}")
     card = hardened.read_card(folder)
     print(f"latency in ms: {json.dumps(card['latency_ms'])}\nwrote {folder}")
+
+
+def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
+    """How to make the agent and the world that ``overrides`` name; the agent's settings are those
+    beside the run's weights, read as data."""
+    cfg = conf.load_config("evaluate", overrides, configs)
+    node = build.settings_of(cfg.agent, str(run / "agent"), overrides)
+    listed = evaluate.episodes(cfg.env, cfg.split, others.WALKS)
+    return Walks(build.maker(node), build.maker(cfg.env.world), listed)

@@ -22,13 +22,13 @@ from mitigate.core.files import sha256
 FORMAT = 1
 CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
-FILES = (CONFIG, README, PROGRAM, INPUTS)  # besides the weights, in every folder
+FILES = (CONFIG, README, PROGRAM, INPUTS)  # besides the weights; of an agent of ours
 ENTRIES = ("files", "adapters_only", "base", "vocabulary", "commit")  # what loading reads of a card
 TARGET = "mitigate.agents.topological.TopologicalAgent"
 _AGAIN = "Fetch the folder again, or export it again with `make export`."
 
 
-def load_hardened(folder: str | Path, *, base: str | Path | None = None) -> TopologicalAgent:
+def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: Any = None) -> Any:
     """Return the agent of a hardened checkpoint on the CPU, in eval mode, ready for ``reset``.
 
     Args:
@@ -36,12 +36,16 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None) -> Topo
         base: for a folder of adapters, the weights they belong to (a file or folder); None: where
             the card says, looked for below the current folder, the folders above ``folder`` and
             the checkout.
+        agent: an agent of a class of your own, with the settings of the one that was exported, to
+            be filled in place; None: the reference agent, built here.
     Raises FileNotFoundError or ValueError, naming the file, if the folder is not whole or not what
     its card states.
     """
     folder = Path(folder)
     card = check(folder)
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
+        if agent is not None:
+            return fill(agent, folder, base=base).eval()
         agent = build(folder / CONFIG)
         if card["vocabulary"] != vocabulary_sha(agent):
             raise ValueError(
@@ -69,9 +73,7 @@ def agent_settings(config: Path) -> dict[str, Any]:
     return schema.check(settings.read_agent(config, TARGET, schema.AGENT), config)
 
 
-def fill(
-    agent: TopologicalAgent, folder: str | Path, *, base: str | Path | None = None
-) -> TopologicalAgent:
+def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
     """Read the weights of a hardened folder into ``agent``, adapters and base alike.
 
     Arguments and errors as :func:`load_hardened`; ValueError too if the agent is another one.
@@ -104,7 +106,8 @@ def check(folder: Path) -> dict[str, Any]:
     card = read_card(folder)
     files = card["files"]
     own = (adapters.WEIGHTS, adapters.SETTINGS) if card["adapters_only"] else (checkpoint.WEIGHTS,)
-    for name in (*own, *FILES):
+    needed = FILES if card.get("program", True) else (CONFIG, README)
+    for name in (*own, *needed):
         if name not in files:
             raise ValueError(f"{folder / CARD} does not list {name}, which must be there. {_AGAIN}")
     for name, wanted in files.items():

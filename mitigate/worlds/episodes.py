@@ -112,6 +112,22 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         )
 
 
+class ListedEpisodes:
+    """Training episodes (``worlds/world.py``) drawn from a file.
+
+    Args: path: as :func:`read_episodes`; errors as there. Worker processes that draw different
+    pieces of a batch draw from different episodes, every n-th of the file.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        self.path, self._listed = str(path), list(read_episodes(path))
+
+    def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
+        """A function of the generator's state and of ``share``: (piece, of how many)."""
+        mine = self._listed[share[0] % len(self._listed) :: share[1]]
+        return mine[int(rng.integers(len(mine)))]
+
+
 def read_extras(path: Path | str) -> dict[str, Any]:
     """Return what ``path`` holds beside its episodes, such as R2R-CE's ``instruction_vocab``."""
     return {key: value for key, value in json_members(path, "episodes") if key != "episodes"}

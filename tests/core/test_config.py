@@ -12,7 +12,8 @@ from omegaconf import DictConfig, OmegaConf
 
 from mitigate.core import conf
 from mitigate.corruptions import NAMES
-from mitigate.evaluation import columns, evaluate
+from mitigate.evaluation import evaluate
+from mitigate.safeguard import guard
 from mitigate.training import table2, train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 
@@ -89,8 +90,8 @@ def test_weights_are_named_after_their_folder_or_run():
         "x/base/model.safetensors",
         "base.safetensors",
     ):
-        assert columns.name_of(path) == "base"
-    assert columns.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
+        assert evaluate.name_of(path) == "base"
+    assert evaluate.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
 
 
 def test_an_unknown_condition_or_split_names_the_nearest():
@@ -170,29 +171,9 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
     assert changed.blind == ("rgb",) and changed.planner.fusion == {"rate": 4, "cap": 3}
 
 
-@pytest.mark.parametrize(
-    ("settings", "overrides", "name"),
-    [
-        ({}, [], "base"),
-        ({}, ["agent=topological", "++env.size=64"], "base"),
-        ({"blind": ["depth"]}, ["agent=mine"], "base+blind-depth"),
-        ({"blind": []}, ["agent.blind=[]"], "base"),
-        ({"blind": ["depth"]}, [], "base+blind-depth"),  # an edited conf/agent/topological.yaml
-    ],
-)
-def test_a_columns_name_follows_the_settings_however_they_were_given(settings, overrides, name):
-    cfg = conf.load_config("evaluate")
-    cfg.agent.update(settings)
-    node, found = columns.agent_and_name(cfg, overrides)
-    assert found == name and node.blind == settings.get("blind", [])
-
-
-@pytest.mark.parametrize("sign", ["", "++"])
-def test_views_of_another_size_are_another_column(sign):
-    cfg = conf.load_config("evaluate", [f"{sign}env.size=32"])
-    assert columns.agent_and_name(cfg)[1] == "base+env.size-32"
-    own = conf.load_config("evaluate", ["env.size=32", "agent.size=32"])
-    assert columns.agent_and_name(own, ["agent.size=32"])[1] == "base+size-32"
+def test_options_of_the_agent_and_its_views_are_in_the_name():
+    options = ["agent=topological", "++env.size=32", "agent.blind=[rgb]", "split=val_seen"]
+    assert evaluate.changed(options) == ["env.size-32", "blind-rgb"]
 
 
 def test_columns_tell_safeguards_apart(tmp_path):
@@ -201,14 +182,12 @@ def test_columns_tell_safeguards_apart(tmp_path):
         folder = tmp_path / run / "agent"
         folder.mkdir(parents=True)
         (folder / "adapter_model.safetensors").write_bytes(weights)
-    first, second = (
-        columns.safeguard_label(str(tmp_path / x / "agent")) for x in ("first", "second")
-    )
+    first, second = (guard.label(str(tmp_path / x / "agent")) for x in ("first", "second"))
     assert first.startswith("first-") and second.startswith("second-")
     (tmp_path / "first" / "agent" / "adapter_model.safetensors").write_bytes(b"c")
-    assert columns.safeguard_label(str(tmp_path / "first" / "agent")) != first
-    assert columns.safeguard_label("http://one:80/v1@m") == "one-80-v1@m"
-    assert [columns.safeguard_label(x) for x in ("rules", "lora")] == ["rules", "lora"]
+    assert guard.label(str(tmp_path / "first" / "agent")) != first
+    assert guard.label("http://one:80/v1@m") == "one-80-v1@m"
+    assert [guard.label(x) for x in ("rules", "lora")] == ["rules", "lora"]
 
 
 def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):

@@ -20,7 +20,7 @@ from mitigate.agents.fusion import reliability
 from mitigate.agents.topological import TopologicalAgent, schema
 from mitigate.agents.topological.planner import Planner
 from mitigate.core import build, checkpoint, conf, settings
-from mitigate.evaluation import columns, evaluate
+from mitigate.evaluation import evaluate
 from mitigate.shipping import export, hardened
 from mitigate.training import train
 
@@ -67,7 +67,7 @@ def refusals(folder: Path) -> list[str]:
     said = []
     for read in (
         lambda: build.carried(node(), str(folder)),
-        lambda: columns.settings(node(), str(folder), []),
+        lambda: build.settings_of(node(), str(folder), []),
         lambda: hardened.agent_settings(folder / hardened.CONFIG),
         lambda: evaluate.load(node(), str(folder)),
     ):

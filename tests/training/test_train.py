@@ -13,7 +13,7 @@ from safetensors.torch import load_file
 
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
-from mitigate.evaluation import columns
+from mitigate.evaluation.evaluate import column_of
 from mitigate.training import train
 from tests.tiny import TinyAgent
 
@@ -153,8 +153,8 @@ def test_a_trainings_column_says_with_which_options_it_was_trained():
     """Seeds are pooled by name, so another learning rate must not look like another seed."""
     cfg = conf.load_config("train", ["recipe=da_success", "seed=3"])
     plain, other = (Path(train.default_folder(cfg, options)) for options in ("", "trainer.lr=1e-5"))
-    assert columns.of_run(cfg, plain) == "da_success"
-    assert columns.of_run(cfg, other) == "da_success+trainer.lr-1e-5"
+    assert column_of(cfg, plain) == "da_success"
+    assert column_of(cfg, other) == "da_success+trainer.lr-1e-5"
 
 
 @pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])

@@ -69,6 +69,15 @@ class TopologicalAgent(nn.Module):
                 f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSORS)}."
             )
         self.blind = tuple(blind)
+        self._settings = copy.deepcopy(
+            {
+                "width": width,
+                "planner": planner,
+                "blind": list(blind),
+                "adapters": adapters,
+                "size": size,
+            }
+        )
         self._memory: Memory | None = None
         self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
@@ -79,8 +88,8 @@ class TopologicalAgent(nn.Module):
             insert_adapters(self, **adapters)
 
     def settings(self) -> dict[str, Any]:
-        """What its config must say so that the weights are read as they were trained."""
-        return {"vocabulary": list(self.vocabulary.words)}
+        """All that makes it besides weights: what its config must say."""
+        return {**self._settings, "vocabulary": list(self.vocabulary.words)}
 
     @property
     def device(self) -> torch.device:

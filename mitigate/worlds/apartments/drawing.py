@@ -21,63 +21,43 @@ _ROOMS = {
 
 def draw_plan(axes: Any, apartment: Apartment) -> None:
     """Rooms, doorways and furniture seen from above on matplotlib axes, metres."""
-    from matplotlib.patches import Rectangle
-
-    paint = palette(apartment.split)
     for room in apartment.rooms:
-        x0, y0, x1, y1 = room.rect
-        axes.add_patch(
-            Rectangle((x0, y0), x1 - x0, y1 - y0, fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
-        )
-        axes.text(
-            (x0 + x1) / 2,
-            (y0 + y1) / 2,
-            room.kind,
-            ha="center",
-            va="center",
-            fontsize=10,
-            color="#333333",
-            zorder=4,
-        )
+        _draw_room(axes, room)
     for door in apartment.doors:
         half = (0.07, DOOR / 2) if door.axis == 0 else (DOOR / 2, 0.07)
-        axes.add_patch(
-            Rectangle(
-                (door.x - half[0], door.y - half[1]),
-                2 * half[0],
-                2 * half[1],
-                fc="white",
-                ec="none",
-                zorder=2,
-            )
-        )
+        corner, size = (door.x - half[0], door.y - half[1]), (2 * half[0], 2 * half[1])
+        _draw_box(axes, corner, size, fc="white", ec="none", zorder=2)
+    paint = palette(apartment.split)
     for piece in apartment.furniture:
-        x0, y0, x1, y1 = piece.rect
         colour = paint.colours[piece.colour].mean(0) if piece.colour else (0.62, 0.62, 0.64)
-        solid = CATALOGUE[piece.category].solid
-        axes.add_patch(
-            Rectangle(
-                (x0, y0),
-                x1 - x0,
-                max(y1 - y0, 0.05),
-                fc=colour,
-                ec="#222222",
-                lw=0.7,
-                alpha=0.9 if solid else 0.45,
-                zorder=3,
-            )
-        )
-        axes.text(
-            *piece.centre,
-            piece.category,
-            ha="center",
-            va="center",
-            fontsize=5,
-            zorder=5,
-            bbox={"fc": "white", "ec": "none", "alpha": 0.6, "pad": 0.4},
-        )
+        _draw_piece(axes, piece, colour)
     width, depth = apartment.extent
     axes.set_xlim(-0.2, width + 0.2)
     axes.set_ylim(-0.2, depth + 0.2)
     axes.set_aspect("equal")
     axes.axis("off")
+
+
+def _draw_room(axes: Any, room: Any) -> None:
+    x0, y0, x1, y1 = room.rect
+    _draw_box(axes, (x0, y0), (x1 - x0, y1 - y0), fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
+    style = {"ha": "center", "va": "center", "fontsize": 10, "color": "#333333", "zorder": 4}
+    axes.text((x0 + x1) / 2, (y0 + y1) / 2, room.kind, **style)
+
+
+def _draw_piece(axes: Any, piece: Any, colour: Any) -> None:
+    x0, y0, x1, y1 = piece.rect
+    alpha = 0.9 if CATALOGUE[piece.category].solid else 0.45
+    size = (x1 - x0, max(y1 - y0, 0.05))
+    _draw_box(axes, (x0, y0), size, fc=colour, ec="#222222", lw=0.7, alpha=alpha, zorder=3)
+    box = {"fc": "white", "ec": "none", "alpha": 0.6, "pad": 0.4}
+    style = {"ha": "center", "va": "center", "fontsize": 5, "zorder": 5, "bbox": box}
+    axes.text(*piece.centre, piece.category, **style)
+
+
+def _draw_box(
+    axes: Any, corner: tuple[float, float], size: tuple[float, float], **style: Any
+) -> None:
+    from matplotlib.patches import Rectangle
+
+    axes.add_patch(Rectangle(corner, *size, **style))

@@ -1,0 +1,90 @@
+"""The world, the agent and the commands of docs/bring-your-own.md, from outside the package."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
+CODE = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]
+CONFIGS = dict(re.findall(r"`(mine/[\w/]+\.yaml)`[^\n]*\n\n```yaml\n(.*?)```", PAGE, re.DOTALL))
+COMMANDS = re.search(r"```bash\n(.*?)```", PAGE, re.DOTALL)[1].splitlines()
+LONGEST = 80  # lines, of a world and an agent that are trained, evaluated and exported
+
+
+def run(folder: Path, *command: str) -> str:
+    done = subprocess.run(
+        [sys.executable, *command],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory) -> Path:
+    """Where a stranger saved the page's files and ran its commands."""
+    folder = tmp_path_factory.mktemp("mine")
+    (folder / "corridor.py").write_text(CODE)
+    for name, text in CONFIGS.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    run(folder, "-c", "import corridor; corridor.write_lists()")
+    for command in COMMANDS:
+        run(folder, *shlex.split(command)[1:])
+    return folder
+
+
+def success(file: Path) -> dict[str, float]:
+    found: dict[str, list[int]] = {}
+    for row in map(json.loads, file.read_text().splitlines()):
+        found.setdefault(row["corruption"], []).append(row["success"])
+    return {name: sum(won) / len(won) for name, won in found.items()}
+
+
+def test_a_world_and_an_agent_fit_on_a_page():
+    assert len(CODE.splitlines()) < LONGEST and len(CONFIGS) == 3 == len(COMMANDS)
+
+
+def test_it_learns_by_imitation_distillation_and_adapters_and_meets_the_suite(folder):
+    reached = success(folder / "runs/corridor-s0.6-seed0/rows.jsonl")
+    assert set(reached) > {"clean", "spatter", "black_out"} and reached["clean"] > 0.9
+    assert sum(reached.values()) / len(reached) > 0.6
+    stages = [p.parent.name for p in (folder / "runs").glob("*/*/step-*.pt")]
+    assert {"imitate", "distil", "adapt"} == set(stages)
+
+
+def test_the_saved_agent_is_the_one_that_was_trained(folder):
+    """Its settings come with its weights: the command names no adapters."""
+    rows = "rows.jsonl"
+    trained = folder / "runs/corridor-s0.6-seed0" / rows
+    assert success(folder / "again" / rows) == success(trained)
+    first, again = (
+        json.loads(f.read_text().splitlines()[0]) for f in (trained, folder / "again" / rows)
+    )
+    assert first["agent"] == again["agent"]
+
+
+def test_the_exported_folder_fills_an_agent_that_its_user_built(folder):
+    said = run(
+        folder,
+        "-c",
+        "import mitigate, corridor\n"
+        "mine = corridor.Policy(adapters=True)\n"
+        "agent = mitigate.load_hardened('hardened/corridor', agent=mine)\n"
+        "print(type(agent).__name__)\n"
+        "try:\n    mitigate.load_hardened('hardened/corridor')\n"
+        "except ValueError as error:\n    print(error)",
+    )
+    assert said.startswith("Policy\n") and "is of the agent corridor.Policy" in said
