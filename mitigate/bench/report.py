@@ -9,23 +9,9 @@ from mitigate.bench.timing import machine
 from mitigate.bench.training import CAPS, LAYOUTS, Stage, table
 from mitigate.core.observation import VIEWS
 from mitigate.corruptions import SUITE_VERSION
+from mitigate.corruptions.registry import record
 
 AIM = 0.15  # of a training step, at most, in which no network computes
-# Where the time of a corruption goes that may miss its bar, found with a profiler.
-REASONS = {
-    "motion_blur": "16 taps of 16-bit integers a colour value, and a padded copy of the frame.",
-    "low_light": "The kernel takes under three cycles for 16 colour values; the rest is the call.",
-    "spatter": "As low_light: the same kernel, another mask.",
-    "flare": "As low_light, and one kernel call a view, because each view has its own mask.",
-    "defocus": "The bar is for a sigma of 2.5 px (s = 0.5). At s = 0.6 it is 3.0 px, 20 % more or "
-    "less by episode, which takes more taps; padding adds a sixth of the pixels at 224 x 224.",
-    "foreign_object": "A copy of the frame, then the black disk.",
-    "black_out": "A copy of the frame where the view is kept; a fresh hash for each frame.",
-    "missing_data": "A dozen instructions a pixel for validity, range and kind of hole; the bar is "
-    "about two plain copies.",
-    "quantization": "One division a pixel. Multiplying by 1 / step would be faster, and would "
-    "round other pixels at the middle of a step.",
-}
 
 
 def page(
@@ -123,7 +109,7 @@ def _over(costs: dict[str, dict[str, Cost]]) -> list[str]:
         "| --- | --- | ---: | ---: | ---: | ---: | --- |",
         *(
             f"| `{name}` | {label} | {cost.steady - cost.bar:.4f} | {cost.call:.4f} "
-            f"| {cost.steady - cost.call:.4f} | {cost.copy:.4f} | {REASONS.get(name, '')} |"
+            f"| {cost.steady - cost.call:.4f} | {cost.copy:.4f} | {record(name).reason} |"
             for name, label, cost in missed
             if cost.bar is not None
         ),

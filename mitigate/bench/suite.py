@@ -15,25 +15,12 @@ from mitigate.bench.peers import peers
 from mitigate.bench.timing import fresh, steady
 from mitigate.corruptions import NAMES, RGB, Key, corrupt
 from mitigate.corruptions.gallery import rendered_frame
+from mitigate.corruptions.registry import record
 
 SEVERITY = 0.6  # the paper's for R2R
 SEED = 7  # of the apartment rendered and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-# Milliseconds a frame to stay under, at 480x640 and 224x224 (aims, docs/benchmarks.md).
-BARS = {
-    "motion_blur": (1.1, 0.10),
-    "low_light": (0.10, 0.010),
-    "low_light_noise": (1.6, 0.26),
-    "spatter": (0.15, 0.010),
-    "flare": (0.10, 0.010),
-    "defocus": (1.2, 0.10),
-    "foreign_object": (0.042, 0.010),
-    "black_out": (0.017, 0.004),
-    "gaussian_noise": (0.39, 0.065),
-    "missing_data": (0.09, 0.008),
-    "multipath": (0.65, 0.09),
-    "quantization": (0.056, 0.006),
-}
+NONE = (None, None)
 PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the worst pair: low_light_noise, then multipath
 EPISODES = 4  # in which the steady state is measured, each by itself; their mean counts
 TINY = 4  # pixels: what a call on such a frame costs does not depend on the frame
@@ -46,7 +33,7 @@ class Cost:
     ``steady``: the frames of an episode; ``per_frame``: each frame starts an episode, as in the
     per-frame regime; ``first``: a new severity as well, whose tables are then built; ``call``: the
     steady state of a frame of 4 x 4 pixels; ``copy``: a plain copy of the frame; ``peers``: by
-    library; ``bar``: of BARS, None where it has none.
+    library; ``bar``: of its record, None where it has none.
     """
 
     steady: float
@@ -92,7 +79,7 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
                 rgb if name in RGB else depth,
                 seconds,
                 others[name],
-                BARS[name][column] if column < 2 else None,
+                (record(name).bars or NONE)[column] if column < 2 else None,
             )
             for name in NAMES
         }

@@ -8,6 +8,7 @@ from mitigate.corruptions.instruction import (
 )
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
+from mitigate.corruptions.record import Record
 from mitigate.corruptions.schedule import MODES, Schedule
 from mitigate.corruptions.suite import (
     CLEAN,
@@ -33,6 +34,7 @@ __all__ = [
     "DepthSensor",
     "Key",
     "NotApplicable",
+    "Record",
     "Schedule",
     "corrupt",
     "corrupt_instruction",

@@ -12,9 +12,6 @@ from mitigate.corruptions.keying import Key
 from mitigate.corruptions.suite import DEPTH, NAMES, RGB, corrupt
 
 GRID = np.linspace(0.0, 1.0, 101)
-# How far a corruption may hurt less at the next severity of GRID, where it may: a rise of SSIM, a
-# fall of the mean depth error in metres (tests/corruptions/test_rules.py).
-SLIPS = {"motion_blur": 0.03, "quantization": 0.005}
 EPISODES = 3  # random draws that a curve averages over
 SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # pixels (Wang et al. 2004)
 SSIM_C1, SSIM_C2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2  # the same

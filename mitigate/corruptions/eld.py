@@ -20,6 +20,7 @@ from numba import njit
 
 from mitigate.corruptions.keying import Key, digest, mix, normal_table, unit_normals, view_streams
 from mitigate.corruptions.masks import low_light_mask
+from mitigate.corruptions.record import Record
 
 WHITE = 15583.0  # sensor units at full scale: 14 bits less the black level (Sony A7S2)
 DARKEST = 300.0  # exposure ratio at s = 1 (ELD trains on 100-300)
@@ -174,3 +175,22 @@ def low_light_noise(
     parts = t.photons, t.read, t.row, t.decode, t.offset
     _sample(views, mask, streams, row_streams, *parts, out)
     return out
+
+
+RECORDS = (
+    Record(
+        name="low_light_noise",
+        modality="rgb",
+        apply=low_light_noise,
+        severity="low_light, then light / 300^s and gain",
+        place=2,
+        label="L-L w/ noise",
+        fails="the same, with the sensor's noise",
+        formula=("`low_light`, then the ELD model below"),
+        sources=("Wei et al., TPAMI 2021 (ELD), Sony A7S2"),
+        source="ELD, TPAMI 2021",
+        episode="gradient",
+        frame="noise",
+        bars=(1.6, 0.26),
+    ),
+)

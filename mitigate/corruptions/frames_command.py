@@ -33,7 +33,7 @@ from collections.abc import Sequence
 from dataclasses import MISSING, fields
 
 from mitigate.core.names import unknown
-from mitigate.corruptions import catalogue, folders
+from mitigate.corruptions import folders, registry
 from mitigate.corruptions.folders import UNITS, Settings
 from mitigate.corruptions.plan import told
 from mitigate.corruptions.suite import check_name
@@ -97,7 +97,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(__doc__)
         return 0 if arguments else 2
     if "--list" in arguments:
-        print(catalogue.table())
+        print(registry.table())
         return 0
     try:
         source, out, settings = parse(arguments)

@@ -2,67 +2,11 @@
 
 from __future__ import annotations
 
-from mitigate.corruptions import depth, eld, keying, masks, rgb
-from mitigate.corruptions.catalogue import CATALOGUE
-from mitigate.corruptions.curves import EPISODES, GRID, SLIPS, Curve
+from mitigate.corruptions import eld, keying
+from mitigate.corruptions.curves import EPISODES, GRID, Curve
+from mitigate.corruptions.registry import record
 from mitigate.corruptions.suite import DEPTH, NAMES, RGB, SUITE_VERSION
 
-FAILS = {
-    "motion_blur": "the camera turned during the exposure",
-    "low_light": "little light, falling off",
-    "low_light_noise": "the same, with the sensor's noise",
-    "spatter": "mud or water on the lens",
-    "flare": "a light shines into the lens",
-    "defocus": "out of focus",
-    "foreign_object": "something sits before the lens",
-    "black_out": "a view is lost",
-    "gaussian_noise": "noise that grows with distance",
-    "missing_data": "holes",
-    "multipath": "over-estimation beside edges",
-    "quantization": "depth in coarse steps",
-}
-FORMULAS = {
-    "motion_blur": "(1 - a) x + a blur(x), a = 0.5 + 0.5 s; line of length L = "
-    f"{rgb.BLUR_LENGTH:g} s W at U(-{rgb.BLUR_ANGLE:g}, {rgb.BLUR_ANGLE:g}) degrees; L < 1 "
-    f"px changes nothing; from {rgb.LONG_BLUR:g} px every second column, after "
-    "smoothing by (1 2 1)/4",
-    "low_light": f"x (1 - s ({masks.DARK_BASE:g} + {masks.DARK_RAMP:g} t)); t in [0, 1] a linear "
-    "ramp, or the distance to one light",
-    "low_light_noise": "`low_light`, then the ELD model below",
-    "spatter": f"the top {masks.SPATTER_COVER:g} s of a random field, correlation "
-    f"{masks.SPATTER_CORRELATION:g} side; soft edge of {masks.SPATTER_EDGE:g} sd; opacity 0.5 + "
-    f"0.5 s; mud {masks.SPATTER_COLOURS[0]} or water {masks.SPATTER_COLOURS[1]}",
-    "flare": f"x + (255 - x) g; g = s ({masks.FLARE_CORE:g} "
-    f"exp(-(r/{masks.FLARE_CORE_WIDTH:g})^2/2) + {masks.FLARE_HALO:g} "
-    f"exp(-r/{masks.FLARE_HALO_WIDTH:g})) times {masks.FLARE_TINT}, at most 1; "
-    "r over the diagonal; centre U(0.1, 0.9) W, U(0, 0.5) H",
-    "defocus": f"Gaussian, sigma = 5 s u side/224, u ~ U({1 - rgb.DEFOCUS_SPREAD:g}, "
-    f"{1 + rgb.DEFOCUS_SPREAD:g}); sigma < {rgb.DEFOCUS_LEAST:g} px changes nothing",
-    "foreign_object": f"black disk at the centre, radius {masks.DISK_RADIUS:g} s side",
-    "black_out": "black where U(0, 1) < s",
-    "gaussian_noise": f"z + s ({depth.NOISE_BASE:g} + {depth.NOISE_SQUARE:g} z^2) N(0, 1)",
-    "missing_data": f"the top {depth.HOLE_SHARE:g} s of a random field, correlation "
-    f"{depth.HOLE_CORRELATION:g} side; its top {100 * depth.FAR_SHARE:g} % reads z_max, the rest 0",
-    "multipath": f"far = largest depth within {depth.ECHO_REACH:g} side (a square); gap = far - z, "
-    f"at most {depth.ECHO_GAP:g} metres; z + c/(4 pi f) atan2(b sin p, 1 + b cos p), "
-    f"p = 4 pi f gap/c, b = {depth.ECHO_STRENGTH:g} s, f = {depth.ECHO_HERTZ / 1e6:g} MHz",
-    "quantization": f"rint(z/step) step, step = {depth.STEP:g} s metres",
-}
-CONSTANTS = {
-    "motion_blur": "kernels of ImageNet-C are 3-14 % of W; yaw turns dominate; a is the paper's "
-    "blend with the original",
-    "low_light": "between RobustNav, which leaves 0.57-0.31 of the mean, and 3DCC (0.24-0.12)",
-    "low_light_noise": "Wei et al., TPAMI 2021 (ELD), Sony A7S2",
-    "spatter": "colours and cover of ImageNet-C (0.04-0.57); correlation and edge are ours",
-    "flare": "radial gradient of the paper; constants are ours",
-    "defocus": "disks of ImageNet-C have radii of 3-10 px at 224; randomised as in the paper",
-    "foreign_object": "the paper; the radius is ours",
-    "black_out": 'the paper\'s "fixed probability"; p = s is ours',
-    "gaussian_noise": "D435: RMS grows with z^2; s = 0.1 is about a Kinect, 0.5 the D435's limit",
-    "missing_data": "Zhang & Funkhouser 2018: often over half is missing indoors",
-    "multipath": "phasor sum of two paths (Fuchs 2010, Jimenez 2014); f, b, reach and gap are ours",
-    "quantization": "Ideses 2007, Wei 2013; the step is ours",
-}
 HEAD = """# The corruption suite
 
 Twelve ways in which an RGB-D camera fails, each with a severity s from 0 to 1. Version {version}
@@ -168,8 +112,8 @@ def page(found: dict[str, Curve], seed: int) -> str:
         episodes=EPISODES,
         steps=len(GRID),
         table=_strengths(found),
-        blur_most=SLIPS["motion_blur"],
-        step_most=SLIPS["quantization"],
+        blur_most=record("motion_blur").slip,
+        step_most=record("quantization").slip,
         blur_slip=f"{found['motion_blur'].slip:.1g}",
         step_slip=f"{found['quantization'].slip:.1g}",
     )
@@ -182,9 +126,9 @@ def formulas() -> str:
 
 
 def _cells(name: str) -> tuple[str, ...]:
-    entry = CATALOGUE[name]
+    entry = record(name)
     scopes = (scope if scope != "-" else "" for scope in (entry.episode, entry.frame))
-    return (f"`{name}`", FAILS[name], FORMULAS[name], CONSTANTS[name], *scopes)
+    return (f"`{name}`", entry.fails, entry.formula, entry.sources, *scopes)
 
 
 def _strengths(found: dict[str, Curve]) -> str:

@@ -10,7 +10,8 @@ from itertools import accumulate
 from typing import Any
 
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.corruptions.suite import CLEAN, NAMES, RGB, Corruption, check_name, check_severity
+from mitigate.corruptions.registry import modality
+from mitigate.corruptions.suite import CLEAN, NAMES, Corruption, check_name, check_severity
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
 Severity = float | Sequence[float]  # one, or the ends of a range
@@ -130,7 +131,7 @@ class Schedule:
     def corruption(self, name: str, place: float = 0.5) -> Corruption:
         """The corruption ``name`` at this schedule's severity for its modality; of a range, at
         ``place`` between its ends (0 to 1, the middle unless told)."""
-        depth = name not in RGB and self.severity_depth is not None
+        depth = modality(name) == "depth" and self.severity_depth is not None
         severity: Any = self.severity_depth if depth else self.severity
         low, high = severity if isinstance(severity, tuple) else (severity, severity)
         return Corruption(name, low + place * (high - low))

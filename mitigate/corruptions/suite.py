@@ -13,42 +13,28 @@ import numpy as np
 
 from mitigate.core import observation
 from mitigate.core.names import unknown
-from mitigate.corruptions import depth, eld, rgb
+from mitigate.corruptions import depth, registry
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
+from mitigate.corruptions.record import MODALITIES
 
 SUITE_VERSION = "1.1"  # changes when any pixel or word of any corruption changes
 
-_RGB = {
-    "motion_blur": rgb.motion_blur,
-    "low_light": rgb.low_light,
-    "low_light_noise": eld.low_light_noise,
-    "spatter": rgb.spatter,
-    "flare": rgb.flare,
-    "defocus": rgb.defocus,
-    "foreign_object": rgb.foreign_object,
-    "black_out": rgb.black_out,
-}
-_DEPTH = {
-    "gaussian_noise": depth.gaussian_noise,
-    "missing_data": depth.missing_data,
-    "multipath": depth.multipath,
-    "quantization": depth.quantization,
-}
-RGB = tuple(_RGB)
-DEPTH = tuple(_DEPTH)
+RGB = registry.names("rgb")
+DEPTH = registry.names("depth")
 NAMES = RGB + DEPTH
 # what is done to the words before an episode begins: see instruction.py
-INSTRUCTION = (
-    *("friendly", "novice", "professional", "formal"),
-    *("capitalize", "mask", "black_box", "white_box"),
-)
+INSTRUCTION = registry.names("instruction")
 SENSOR = DepthSensor()
 MOST_VIEWS = 36  # of one instant: R2R's discrete panoramas (3 elevations of 12); VLN-CE has 12
 
 
-def check_name(name: str, allowed: tuple[str, ...] = NAMES) -> str:
-    """Return ``name``, or raise ValueError with the nearest allowed name."""
+def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
+    """Return ``name``, or raise ValueError with the nearest allowed name; by default the
+    corruptions of frames, with those of installed packages, are allowed."""
+    if name in (NAMES if allowed is None else allowed):
+        return name
+    allowed = registry.known("rgb", "depth") if allowed is None else allowed
     if name in allowed:
         return name
     raise ValueError(unknown("corruption", name, allowed))
@@ -71,7 +57,7 @@ def check_severity(severity: float) -> float:
 
 @dataclass(frozen=True)
 class Corruption:
-    """What is done: ``name`` ("clean", one of NAMES or INSTRUCTION) at ``severity`` in [0, 1].
+    """What is done: ``name`` ("clean", or a known one) at ``severity`` in [0, 1].
 
     Raises ValueError for an unknown name, a severity outside [0, 1], or "clean" with severity > 0.
     """
@@ -80,7 +66,8 @@ class Corruption:
     severity: float
 
     def __post_init__(self) -> None:
-        check_name(self.name, ("clean", *NAMES, *INSTRUCTION))
+        if self.name not in ("clean", *NAMES, *INSTRUCTION):
+            check_name(self.name, ("clean", *registry.known(*MODALITIES)))
         object.__setattr__(self, "severity", check_severity(self.severity))
         if self.name == "clean" and self.severity > 0.0:
             raise ValueError(
@@ -91,11 +78,7 @@ class Corruption:
     @property
     def modality(self) -> str:
         """What is hurt: "rgb", "depth", "instruction", or "none" for clean episodes."""
-        if self.name == "clean":
-            return "none"
-        if self.name in INSTRUCTION:
-            return "instruction"
-        return "rgb" if self.name in _RGB else "depth"
+        return "none" if self.name == "clean" else registry.modality(self.name)
 
 
 CLEAN = Corruption("clean", 0.0)
@@ -195,12 +178,13 @@ def corrupt(
     severity = check_severity(severity)
     key = as_key(key)
     frame = np.asarray(frame)
-    views = _rgb_views(frame) if name in _RGB else _depth_views(frame, sensor)
+    record = registry.record(name)
+    rgb = record.modality == "rgb"
+    views = _rgb_views(frame) if rgb else _depth_views(frame, sensor)
     if severity == 0.0:
         return frame.copy()
-    if name in _RGB:
-        return _RGB[name](views, severity, key, heading).reshape(frame.shape)
-    return _DEPTH[name](views, severity, key, sensor).reshape(frame.shape)
+    assert record.apply is not None, "names of frames have a function"
+    return record.apply(views, severity, key, heading if rgb else sensor).reshape(frame.shape)
 
 
 def corrupt_observation(

@@ -234,19 +234,20 @@ def _check_episodes(source: str, listed: list) -> None:
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
     """Return one Corruption for each name; ``clean`` has severity 0."""
-    from mitigate.corruptions import CLEAN, DEPTH, INSTRUCTION, RGB, Corruption
+    from mitigate.corruptions import CLEAN, Corruption
+    from mitigate.corruptions.registry import known, modality
     from mitigate.corruptions.suite import check_severity
 
-    allowed = ("clean", *RGB, *DEPTH, *INSTRUCTION)
+    allowed = ("clean", *known("rgb", "depth", "instruction"))
     for name in names:
         if name not in allowed:
             raise ValueError(unknown("condition", name, allowed))
     severity = check_severity(severity)  # also where all conditions are clean
     depth = severity if severity_depth is None else check_severity(severity_depth)
-    return [
-        CLEAN if name == "clean" else Corruption(name, depth if name in DEPTH else severity)
-        for name in names
-    ]
+    strength = {
+        name: depth if modality(name) == "depth" else severity for name in names if name != "clean"
+    }
+    return [Corruption(name, strength[name]) if name in strength else CLEAN for name in names]
 
 
 def write_table(rows: list[Path], out: Path) -> None:

@@ -12,10 +12,14 @@ from functools import cached_property
 
 import numpy as np
 
-from mitigate.corruptions import DEPTH, INSTRUCTION, RGB
+from mitigate.corruptions.registry import known
 from mitigate.evaluation.rows import Row, upsert
 
-BLOCKS = {"RGB": RGB, "Depth": DEPTH, "Instruction": INSTRUCTION}  # the paper's, in its order
+BLOCKS = {  # the paper's, in its order; those of installed packages behind
+    "RGB": known("rgb"),
+    "Depth": known("depth"),
+    "Instruction": known("instruction"),
+}
 PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt: these have no row
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}

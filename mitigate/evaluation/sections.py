@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mitigate.corruptions.registry import title
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import BLOCKS, METRICS, PROMPT_ONLY, Gap, Grid, Retention, grids
@@ -16,15 +17,6 @@ from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 
 REFERENCES = ("base", "before")  # such a column comes first; the others are compared with it
-LABELS = {  # the paper's Table II
-    "low_light": "L-L w/o noise",
-    "low_light_noise": "L-L w/ noise",
-    "black_out": "Black-out",
-    "capitalize": "Capitalizing",
-    "mask": "Masking",
-    "black_box": "Black-box prompt",
-    "white_box": "White-box prompt",
-}
 
 
 @dataclass(frozen=True)
@@ -102,7 +94,7 @@ def sections(rows: Iterable[Row]) -> list[Section]:
 
 def label(corruption: str) -> str:
     """Return the name of a corruption as the paper's table prints it."""
-    return LABELS.get(corruption, corruption.replace("_", " ").capitalize())
+    return title(corruption)
 
 
 def _section(grid: Grid, severity: float) -> Section:

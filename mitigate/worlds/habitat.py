@@ -15,7 +15,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
-from mitigate.corruptions import catalogue
+from mitigate.corruptions import registry
 from mitigate.corruptions.depth import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
@@ -80,9 +80,9 @@ def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
     entries = list(entries)
     given = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
     for name in names:
-        hurt = catalogue.modality(name)
+        hurt = registry.modality(name)
         if hurt not in given:
-            fit = ", ".join(name for name in NAMES if catalogue.modality(name) in given)
+            fit = ", ".join(name for name in NAMES if registry.modality(name) in given)
             raise ValueError(
                 f"{name!r} hurts {hurt}, but the observation does not hold a camera called {hurt}, "
                 f"{hurt}_30, ... (it holds {', '.join(entries) or 'nothing'}). "

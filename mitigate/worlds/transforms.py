@@ -16,9 +16,9 @@ from mitigate.corruptions import (
     DepthSensor,
     Key,
     Schedule,
-    catalogue,
     corrupt_normalised,
     corrupt_observation,
+    registry,
 )
 
 
@@ -112,9 +112,9 @@ class CorruptObservation(Transform):
 
     def _check_entries(self, frames: Collection[str]) -> None:
         """Raise ValueError at the first data, not when the draw first asks for what they lack."""
-        lost = [name for name in self.schedule.names if catalogue.modality(name) not in frames]
+        lost = [name for name in self.schedule.names if registry.modality(name) not in frames]
         if lost and self.schedule.mode != "clean":
-            modality = catalogue.modality(lost[0])
+            modality = registry.modality(lost[0])
             fit = ", ".join(name for name in self.schedule.names if name not in lost)
             raise ValueError(
                 f"The schedule may draw {lost[0]!r}, which hurts {modality}, but the data have no "

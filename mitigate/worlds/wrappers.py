@@ -26,8 +26,8 @@ from mitigate.corruptions import (
     corrupt_normalised,
     corrupt_observation,
 )
-from mitigate.corruptions.catalogue import modality
 from mitigate.corruptions.normalised import check_sensor
+from mitigate.corruptions.registry import modality
 
 
 class CorruptObservation(gymnasium.ObservationWrapper):

@@ -1,0 +1,107 @@
+"""One record a corruption, and a corruption from another package in a suite."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from mitigate.corruptions import INSTRUCTION, NAMES, Record, registry
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
+MINE = re.search(r"`rain.py`:\n\n```python\n(.*?)```", PAGE, re.DOTALL)[1]
+POINT = re.search(r"```toml\n(.*?)```", PAGE, re.DOTALL)[1]
+
+
+def suite(name: str) -> list[str]:
+    return yaml.safe_load((ROOT / f"conf/suite/{name}.yaml").read_text())["conditions"]
+
+
+def test_the_suites_hold_what_the_records_say():
+    assert suite("full") == ["clean", *NAMES]
+    assert suite("rgb") == ["clean", *registry.names("rgb")]
+    assert suite("depth") == ["clean", *registry.names("depth")]
+    assert suite("instructions") == ["clean", *INSTRUCTION]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_record_of_ours_says_all_that_the_pages_print(name):
+    record = registry.record(name)
+    assert all((record.severity, record.fails, record.formula, record.sources, record.bars))
+    assert record.name == name and name in registry.table()
+
+
+def test_a_wrong_record_is_refused():
+    def same(views, *_):
+        return views
+
+    for wrong, said in (
+        ({"modality": "sonar"}, "rgb, depth, instruction"),
+        ({"name": "Heavy Rain"}, "lower case with underscores"),
+        ({"apply": None}, "needs a function"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            Record(**{"name": "rain", "modality": "rgb", "apply": same, "severity": "s", **wrong})
+
+
+@pytest.fixture
+def installed(tmp_path) -> dict[str, str]:
+    """The environment of a process where the page's package is installed."""
+    (tmp_path / "rain.py").write_text(MINE)
+    group, line = POINT.strip().splitlines()
+    folder = tmp_path / "rain-1.0.dist-info"
+    folder.mkdir()
+    name, _, value = line.partition(" = ")
+    assert group == '[project.entry-points."mitigate.corruptions"]'
+    (folder / "METADATA").write_text("Metadata-Version: 2.1\nName: rain\nVersion: 1.0\n")
+    (folder / "entry_points.txt").write_text(
+        f"[mitigate.corruptions]\n{name} = {value.strip(chr(34))}\n"
+    )
+    return {**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"}
+
+
+def run(installed: dict[str, str], folder: Path, *command: str) -> str:
+    done = subprocess.run(
+        [sys.executable, *command], cwd=folder, env=installed, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_a_corruption_of_another_package_joins_a_suite_a_schedule_and_the_list(installed, tmp_path):
+    options = ["episodes=2", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
+    said = run(installed, ROOT, "-m", "mitigate.evaluate", *options, f"out={tmp_path}/out")
+    assert "| Rain |" in said and "PRS-SR (RGB)" in said
+    rows = [json.loads(x) for x in (tmp_path / "out/rows.jsonl").read_text().splitlines()]
+    assert {row["corruption"] for row in rows} == {"clean", "rain", "flare"}
+    assert "rain" in run(installed, tmp_path, "-m", "mitigate.corrupt", "--list")
+    code = (
+        "from mitigate.corruptions import *\n"
+        "drawn, key = Schedule.always('rain', 0.5).draw(0, 'e', 1)\n"
+        "assert (drawn.name, drawn.modality) == ('rain', 'rgb') and 'rain' not in NAMES"
+    )
+    run(installed, tmp_path, "-c", code)
+
+
+def test_it_changes_frames_by_its_key_and_not_at_severity_0(installed, tmp_path):
+    code = (
+        "import numpy as np\nfrom mitigate.corruptions import corrupt\n"
+        "frame = np.full((32, 32, 3), 90, np.uint8)\n"
+        "a, b, c = (corrupt(frame, 'rain', 0.8, key=k) for k in (1, 1, 2))\n"
+        "assert (a == b).all() and (a != c).any() and (a != frame).any()\n"
+        "assert (corrupt(frame, 'rain', 0, key=1) == frame).all()"
+    )
+    run(installed, tmp_path, "-c", code)
+
+
+def test_a_name_that_is_not_installed_is_unknown_here():
+    with pytest.raises(KeyError):
+        registry.record("rain")
+    assert registry.title("rain_drops") == "Rain drops"
