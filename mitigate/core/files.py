@@ -20,6 +20,17 @@ CHUNK = 1 << 16  # characters read at a time (ours)
 LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (ours)
 
 
+PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
+ROOT = PACKAGE.parent  # of the checkout, or of all installed packages
+
+
+def find(path: str | Path) -> Path:
+    """Return ``path``, or where the project itself has it, if it does not exist from here: the
+    configs name shipped weights and episodes as ``checkpoints/base``, ``mitigate/worlds/...``."""
+    places = (Path(path), ROOT / path, PACKAGE / path)
+    return next((place for place in places if place.exists()), Path(path))
+
+
 def open_text(path: Path | str) -> TextIO:
     """Open ``path`` for reading as UTF-8; gzip is told by the first two bytes, not by the name.
 

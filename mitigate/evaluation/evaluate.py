@@ -19,7 +19,7 @@ from hydra.core.hydra_config import HydraConfig
 from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
-from mitigate.core.files import atomic_text, sha256
+from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import unknown
 
 if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
@@ -117,7 +117,7 @@ def _check_list(note: Path, source: str) -> None:
     """
     known = note.read_text(encoding="utf-8").splitlines() if note.is_file() else []
     held = {name: digest for digest, _, name in (line.partition("  ") for line in known)}
-    found = sha256(source)
+    found = sha256(find(source))
     if held.get(source, found) != found:
         raise ValueError(
             f"{note.parent} holds rows of another {source} than there is now. Name another folder "
@@ -214,7 +214,7 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
         raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
-    listed = list(read_episodes(env.episodes[split]))
+    listed = list(read_episodes(find(env.episodes[split])))
     _check_episodes(env.episodes[split], listed)
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]

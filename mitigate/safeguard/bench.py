@@ -43,8 +43,8 @@ COLUMNS = {
 
 def measure(kind: str, base: str) -> dict[str, float]:
     """Return the figures of one kind, measured in this process."""
+    from mitigate.recipes.safeguard_lora import SafeguardLora
     from mitigate.safeguard.model import LanguageModel
-    from recipes.safeguard_lora import SafeguardLora
 
     precision, autocast, ours = KINDS[kind]
     cfg = conf.load_config("train", ["recipe=safeguard_lora"])

@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
 
+from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.safeguard import masks, rules
@@ -138,7 +139,7 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
         return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
     if choice != "lora" and not Path(choice).is_dir():
         raise ValueError(unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder.")
-    return Safeguard(open_adapter(ADAPTER if choice == "lora" else choice), log=log)
+    return Safeguard(open_adapter(find(ADAPTER) if choice == "lora" else choice), log=log)
 
 
 def label(choice: str) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
-from mitigate.core.files import sha256
+from mitigate.core.files import find, sha256
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.rows import Row
@@ -47,8 +47,8 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
 def reference(weights: str) -> dict[str, str]:
     """Return the path of ``weights`` (below the current folder: relative) and its sha256."""
-    own = Path(weights) / adapters.WEIGHTS
-    file = own if own.is_file() else checkpoint.weights_file(weights)
+    own = find(weights) / adapters.WEIGHTS
+    file = own if own.is_file() else checkpoint.weights_file(find(weights))
     return {"weights": weights.removeprefix(f"{Path.cwd()}/"), "sha256": sha256(file)}
 
 

@@ -17,7 +17,7 @@ import torch
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent, schema
 from mitigate.core import checkpoint, settings
-from mitigate.core.files import sha256
+from mitigate.core.files import PACKAGE, ROOT, sha256
 
 FORMAT = 1
 CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
@@ -162,7 +162,7 @@ def vocabulary_sha(agent: TopologicalAgent) -> str:
 
 
 def _base(folder: Path, reference: dict[str, str], given: str | Path | None) -> Path:
-    roots = (Path(), *folder.resolve().parents, Path(__file__).resolve().parents[2])
+    roots = (Path(), *folder.resolve().parents, ROOT, PACKAGE)
     places = [root / reference["weights"] for root in roots] if given is None else [Path(given)]
     files = [p if p.suffix == ".safetensors" else p / checkpoint.WEIGHTS for p in places]
     found = [file for file in files if file.is_file()]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 from torch import nn
@@ -12,6 +11,7 @@ from torch import nn
 from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
 from mitigate.agents.adapters import adapter_parameters, remove_adapters
 from mitigate.core import checkpoint
+from mitigate.core.files import find
 from mitigate.core.names import unknown
 
 ADAPTERS = "adapters"  # in a list of parts: those in frozen modules
@@ -41,7 +41,7 @@ def load_teacher(agent: nn.Module, weights: str) -> nn.Module:
     Raises ValueError for weights that are adapters alone or do not fit, FileNotFoundError for
     weights that are not there.
     """
-    if (Path(weights) / ADAPTERS_FILE).is_file():
+    if (find(weights) / ADAPTERS_FILE).is_file():
         raise ValueError(
             f"{weights} holds adapters alone, and a teacher needs whole weights: name a folder "
             f"with {checkpoint.WEIGHTS}, such as checkpoints/teacher."
@@ -49,7 +49,7 @@ def load_teacher(agent: nn.Module, weights: str) -> nn.Module:
     teacher = without_adapters(agent)
     if weights != START:
         try:
-            checkpoint.load_weights(teacher, weights)
+            checkpoint.load_weights(teacher, find(weights))
         except FileNotFoundError as error:
             raise FileNotFoundError(
                 f"There is no teacher at {weights}. Train one with `make train "

@@ -13,12 +13,12 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import checkpoints, weights_sha
 from mitigate.corruptions import Schedule
+from mitigate.recipes.adapt import AdaptViews
+from mitigate.recipes.distil import Distil, DistilViews, policy_kl
+from mitigate.recipes.imitate import Imitate
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
-from recipes.adapt import AdaptViews
-from recipes.distil import Distil, DistilViews, policy_kl
-from recipes.imitate import Imitate
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 ADAPTERS = {"target_modules": [r"(rgb|depth)_encoder\.stages\.1"], "ring": [r"rgb.*stages\.2"]}

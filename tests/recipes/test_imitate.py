@@ -11,10 +11,10 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
+from mitigate.recipes.imitate import Imitate
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
-from recipes.imitate import Imitate
 from tests.evaluation.made_rows import cell
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}

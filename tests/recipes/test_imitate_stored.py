@@ -10,9 +10,9 @@ import torch
 
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import seeding
+from mitigate.recipes.imitate_stored import ImitateStored
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
-from recipes.imitate_stored import ImitateStored
 
 SCENE = "apartments/train/000000"
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}

@@ -10,10 +10,10 @@ import pytest
 import torch
 
 from mitigate.core import checkpoint
+from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.safeguard.data import Pair
 from mitigate.safeguard.model import LanguageModel, collate, open_adapter
 from mitigate.training.trainer import Trainer
-from recipes.safeguard_lora import SafeguardLora
 from tests.safeguard.conftest import LORA, write_tiny_model
 
 

@@ -1,0 +1,130 @@
+"""Worlds as torchrl environments, and torchrl and gymnasium environments as worlds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from torchrl.envs.utils import check_env_specs
+
+from mitigate.core.observation import RGB, STOP, Observation, Sensor
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation.episode import run_episode
+from mitigate.worlds.apartments.tasks import DrawnEpisodes, load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.episodes import Episode, Instruction
+from mitigate.worlds.tensordict import EnvWorld, WorldEnv
+from mitigate.worlds.world import Corrupted
+
+gymnasium = pytest.importorskip("gymnasium")
+SIZE = 16
+
+
+def episode(seed: int) -> Episode:
+    told = Instruction("Go.")
+    return Episode(
+        f"e{seed}", "0", "room", (0, 0, 0), (0, 0, 0, 1), (), told, (), info={"seed": seed}
+    )
+
+
+class Brightness:
+    """Says 0 (STOP) in the dark and 1 in the light; keeps what it saw."""
+
+    def reset(self, instruction):
+        self.seen = []
+
+    def act(self, observation):
+        self.seen.append(np.array(observation[RGB]))
+        return int(self.seen[-1].mean() > 100)
+
+
+class Room(gymnasium.Env):
+    """Lit for as many steps as the seed says; to stop in the dark is right."""
+
+    def __init__(self, entry: str | None = None):
+        box = gymnasium.spaces.Box(0, 255, (SIZE, SIZE, 3), np.uint8)
+        self.entry, self.action_space = entry, gymnasium.spaces.Discrete(2)
+        self.observation_space = box if entry is None else gymnasium.spaces.Dict({entry: box})
+
+    def _look(self):
+        frame = np.full((SIZE, SIZE, 3), 200 if self.left > 0 else 10, np.uint8)
+        return frame if self.entry is None else {self.entry: frame}
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.left = seed
+        return self._look(), {}
+
+    def step(self, action):
+        won = self.left <= 0 and action == STOP
+        self.left -= 1
+        return self._look(), float(won), action == STOP, False, {"won": won}
+
+
+@pytest.mark.parametrize(
+    "world", [ApartmentsWorld(SIZE), Corrupted(ApartmentsWorld(SIZE), Corruption("flare", 0.5), 0)]
+)
+def test_any_world_is_an_environment_of_torchrl(world):
+    check_env_specs(WorldEnv(world, load_episodes("val_seen")[:2]))
+    check_env_specs(WorldEnv(world, DrawnEpisodes(2)), seed=3)
+
+
+def test_the_environment_shows_what_the_world_shows_and_pays_success_at_the_end():
+    world, listed = ApartmentsWorld(SIZE), load_episodes("val_seen")[:1]
+    env = WorldEnv(ApartmentsWorld(SIZE), listed)
+    data, seen = env.reset(), world.reset(listed[0])
+    rewards = []
+    while not data["done"]:
+        assert np.array_equal(data["rgb"].numpy(), seen[RGB])
+        action = world.expert().action()
+        data, seen = env.step(data.set("action", torch.tensor(action)))["next"], world.step(action)
+        rewards.append(float(data["reward"]))
+    assert sum(rewards) == rewards[-1] == world.measures()["success"] == 1
+
+
+@pytest.mark.parametrize("entry", [None, "camera"])
+def test_a_gymnasium_environment_is_a_world(entry):
+    from mitigate.worlds.gym import GymWorld
+
+    named = {} if entry is None else {"entries": {"rgb": entry}, "success": "won"}
+    world, agent = GymWorld(Room(entry), **named), Brightness()
+    assert world.sensors[RGB] == Sensor(RGB, (SIZE, SIZE, 3), "uint8")
+    measures = run_episode(agent, world, episode(3), CLEAN, 0)
+    assert measures["success"] == 1 and measures["steps"] == 4 == measures["decisions"]
+    dark = run_episode(agent, world, episode(3), Corruption("low_light", 1.0), 0)
+    assert dark["success"] == 0 and dark["steps"] == 1  # it stops in what it takes for the dark
+    with pytest.raises(ValueError, match="has 2"):
+        world.step(5)
+
+
+def test_a_gymnasium_environment_without_frames_is_refused_with_what_it_has():
+    from mitigate.worlds.gym import GymWorld
+
+    with pytest.raises(ValueError, match="it has camera"):
+        GymWorld(Room("camera"))
+    with pytest.raises(ValueError, match="uint8"):
+        GymWorld(gymnasium.make("CartPole-v1"))
+
+
+def test_an_environment_of_torchrl_is_a_world():
+    """There and back: the apartments as an environment, and that as a world again."""
+    listed = load_episodes("val_seen")[:1]
+    world = EnvWorld(WorldEnv(ApartmentsWorld(SIZE), listed))
+    assert world.sensors[RGB].shape == (12, SIZE, SIZE, 3)
+
+    class Stopper(Brightness):
+        def act(self, observation):
+            super().act(observation)
+            return STOP
+
+    agent = Stopper()
+    measures = run_episode(agent, world, listed[0], Corruption("black_out", 1.0), 0)
+    assert measures["steps"] == 1 and measures["success"] == 0 and agent.seen[0].max() == 0
+    clean = ApartmentsWorld(SIZE).reset(listed[0])
+    run_episode(agent, world, listed[0], CLEAN, 0)
+    assert np.array_equal(agent.seen[0], clean[RGB]) and isinstance(clean, Observation)
+
+
+def test_an_environment_without_the_named_frames_is_refused():
+    with pytest.raises(ValueError, match="no entry pixels"):
+        EnvWorld(WorldEnv(ApartmentsWorld(SIZE), load_episodes("val_seen")[:1]), {"rgb": "pixels"})
