@@ -14,11 +14,13 @@ from mitigate.core.names import unknown
 
 
 class Command(NamedTuple):
-    """A module whose ``main()`` reads ``sys.argv`` and returns an exit status, and what it does."""
+    """A module whose ``main()`` reads ``sys.argv`` and returns an exit status, what it does, an
+    example of its options, and the extra of the package that it needs."""
 
     module: str
     about: str
     example: str
+    extra: str = "train"
 
 
 COMMANDS = {
@@ -46,6 +48,7 @@ COMMANDS = {
         "mitigate.corruptions.frames_command",
         "corrupt a folder of recorded frames",
         "recorded/ corrupted/ corruption=spatter severity=0.5",
+        "files",
     ),
     "corrupt_episodes": Command(
         "mitigate.corruptions.episodes_command",
@@ -71,7 +74,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if name not in COMMANDS:
         sys.exit(f"mitigate: {unknown('command', name, COMMANDS)} See mitigate --help.")
     sys.argv = [f"mitigate {name}", *options]
-    sys.exit(import_module(COMMANDS[name].module).main())
+    try:
+        module = import_module(COMMANDS[name].module)
+    except ModuleNotFoundError as error:
+        if (error.name or "mitigate").startswith("mitigate"):
+            raise
+        sys.exit(
+            f"mitigate {name} needs {error.name}, which is not installed: pip install "
+            f"'mitigate[{COMMANDS[name].extra}]' (in a checkout: make install)."
+        )
+    sys.exit(module.main())
 
 
 def usage() -> str:

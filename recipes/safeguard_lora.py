@@ -1,15 +1,13 @@
 """LoRA fine-tuning of the safeguard's language model: corrupted text in, plain text out.
 
 Loss = cross-entropy on the completion alone, averaged over its tokens in the whole step. A step's
-pairs are grouped by length into micro-batches, whose gradients are added up, so that memory is that
-of one micro-batch.
+pairs are grouped by length into micro-batches.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-import torch
 from torch import Tensor
 
 from mitigate.core.seeding import generator
@@ -73,28 +71,18 @@ class SafeguardLora(Recipe):
             "episode_ids": [f"pair {index}" for index, _, _ in encoded],
         }
 
-    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        trained = [p for p in self.agent.parameters() if p.requires_grad]
+    def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
+        """One group each, with its share of the step's tokens."""
         tokens = sum(int(group["completion"].sum()) for group in batch["groups"])
-        gradients = [torch.zeros_like(p) for p in trained]
-        total, right = torch.zeros(()), torch.zeros(())
-        for group in batch["groups"]:
-            loss, correct = self.agent.loss(group)
-            if torch.is_grad_enabled():
-                for kept, new in zip(
-                    gradients, torch.autograd.grad(loss / tokens, trained), strict=True
-                ):
-                    kept += new
-            total, right = total + loss.detach().cpu() / tokens, right + correct.cpu() / tokens
-        values = {"loss": total, "accuracy": right, "tokens": torch.tensor(float(tokens))}
-        if torch.is_grad_enabled():  # adds 0 to the loss, and gives backward() these gradients
-            zero = sum(
-                ((p - p.detach()) * g).sum() for p, g in zip(trained, gradients, strict=True)
-            )
-            values["loss"] = total.to(self.agent.device) + zero
-        return values
+        return [{"group": group, "tokens": tokens} for group in batch["groups"]]
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        loss, correct = self.agent.loss(batch["group"])
+        own, tokens = batch["group"]["completion"].sum(), batch["tokens"]
+        return {"loss": loss / tokens, "accuracy": correct / tokens, "tokens": own.float()}
 
     def evaluate(self, step: int) -> dict[str, float]:
         """Loss and accuracy on pairs that training never draws."""
-        values = self(self._batch(range(_HELD, _HELD + 4 * self.pairs)))
-        return {name: float(values[name]) for name in ("loss", "accuracy")}
+        held = self.micro_batches(self._batch(range(_HELD, _HELD + 4 * self.pairs)))
+        values = [self(part) for part in held]
+        return {n: float(sum(part[n] for part in values)) for n in ("loss", "accuracy")}

@@ -66,7 +66,7 @@ def test_the_commands_run(code, tmp_path):
         check=False,
     )
     assert done.returncode == 0, done.stderr
-    assert (tmp_path / "hurt/2.png").is_file() and (tmp_path / "holes/depth/2.png").is_file()
+    assert (tmp_path / "corrupted/2.png").is_file() and (tmp_path / "holes/depth/2.png").is_file()
     assert "motion_blur" in done.stdout
 
 

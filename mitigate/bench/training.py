@@ -30,7 +30,7 @@ from mitigate.core.build import build, build_agent
 from mitigate.core.workers import cores
 from mitigate.training import train  # noqa: F401 (train registers config types)
 from mitigate.training.batches import Batches, Workers
-from mitigate.training.recipe import Recipe
+from mitigate.training.recipe import Recipe, accumulate
 
 RECIPES = ("da_per_episode", "ts_distill", "conv_adapter", "stacked", "base", "safeguard_lora")
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
@@ -167,10 +167,8 @@ def _update(recipe: Recipe, kind: str, device: torch.device) -> Callable[[dict],
     optimizer = torch.optim.AdamW(trained, lr=1e-6)
 
     def update(batch: dict) -> None:
-        with precision.computing(kind, device):
-            loss = recipe(batch)["loss"]
         optimizer.zero_grad(set_to_none=True)
-        loss.backward()
+        accumulate(recipe, batch, kind, device)
         optimizer.step()
 
     return update

@@ -182,7 +182,7 @@ def _files() -> list[str]:
     wanted = {"conf": "options", "recipes": "recipes", "checkpoints/base": "the shipped base agent"}
     problems = []
     for name, what in wanted.items():
-        there = (root / name).is_dir()
+        there = (root / name).is_dir() or (root / "mitigate" / name).is_dir()
         _line(name, "there" if there else "missing")
         if not there:
             problems.append(f"{name}/ ({what}) is missing: run from a checkout of the repository.")

@@ -1,4 +1,4 @@
-"""How much a corruption hurts as severity grows: SSIM and PSNR of RGB, error of depth."""
+"""How much a corruption corrupts as severity grows: SSIM and PSNR of RGB, error of depth."""
 
 from __future__ import annotations
 
@@ -36,11 +36,11 @@ def psnr(a: np.ndarray, b: np.ndarray) -> float:
     return float("inf") if error == 0 else float(10 * np.log10(255**2 / error))
 
 
-def depth_error(clean: np.ndarray, hurt: np.ndarray) -> float:
+def depth_error(clean: np.ndarray, corrupted: np.ndarray) -> float:
     """Mean absolute error in metres over the pixels that are valid in ``clean``; a lost reading
     counts as 0 m, as it is written."""
     valid = np.isfinite(clean) & (clean > 0)
-    return float(np.abs(hurt[valid].astype(np.float64) - clean[valid]).mean())
+    return float(np.abs(corrupted[valid].astype(np.float64) - clean[valid]).mean())
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ def curves(rgb: np.ndarray, depth: np.ndarray, grid: np.ndarray = GRID) -> dict[
     found = {}
     for name in NAMES:
         frame = rgb if name in RGB else depth
-        hurt = [
+        corrupted = [
             [corrupt(frame, name, s, key=Key(0, f"curve {i}")) for s in grid]
             for i in range(EPISODES)
         ]
@@ -71,12 +71,12 @@ def curves(rgb: np.ndarray, depth: np.ndarray, grid: np.ndarray = GRID) -> dict[
         if name in RGB:
             likeness = [
                 [np.mean([ssim(a, b) for a, b in zip(rgb, x, strict=True)]) for x in row]
-                for row in hurt
+                for row in corrupted
             ]
-            signal = [[psnr(rgb, x) for x in row] for row in hurt]
+            signal = [[psnr(rgb, x) for x in row] for row in corrupted]
             found[name] = Curve(np.array(likeness), np.array(signal), np.array(none))
         else:
-            error = [[depth_error(depth, x) for x in row] for row in hurt]
+            error = [[depth_error(depth, x) for x in row] for row in corrupted]
             found[name] = Curve(np.array(none), np.array(none), np.array(error))
     return found
 

@@ -80,8 +80,9 @@ def run(
     severity = check_severity(severity)
     if family == "white_box":
         raise ValueError(
-            "family=white_box is not applicable to a file: it hurts the system prompt of an agent, "
-            "which no episode holds. Evaluate an agent that has one, or use family=black_box."
+            "family=white_box is not applicable to a file: it corrupts the system prompt of an "
+            "agent, which no episode holds. Evaluate an agent that has one, or use "
+            "family=black_box."
         )
     _check_target(source, out)
     extras = read_extras(source)

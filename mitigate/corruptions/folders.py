@@ -103,13 +103,13 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
 def _corrupt_file(path: Path, target: Path, frame: Frame, settings: Settings, plan: Plan) -> None:
     key = Key(settings.seed, frame.episode, frame.number)
 
-    def hurt(pixels: np.ndarray) -> np.ndarray:
+    def change(pixels: np.ndarray) -> np.ndarray:
         return corrupt(
             pixels, settings.corruption, settings.severity, key=key, sensor=settings.sensor
         )
 
     try:
-        data = frame_files.corrupted(path, target.suffix, settings.unit, hurt)
+        data = frame_files.corrupted(path, target.suffix, settings.unit, change)
     except ValueError as error:  # LeftOutError, or a shape that the suite refuses
         plan.left_out[frame.path.as_posix()] = str(error)
         return
@@ -241,7 +241,7 @@ def _nothing(source: Path, wanted: str, settings: Settings, plan: Plan) -> str:
     )
     other += f"; other files are not read: {told(plan.other_files)}" if plan.other_files else ""
     return (
-        f"There is no {wanted} frame in {source}{other}. {settings.corruption} hurts {wanted}: "
+        f"There is no {wanted} frame in {source}{other}. {settings.corruption} corrupts {wanted}: "
         f"{takes} files, in the folder or in folders inside it."
     )
 

@@ -65,17 +65,17 @@ def corrupted(
     if path.suffix.lower() == ".npy":
         stored = _load(path)
         metres = stored.astype(np.float32)
-        hurt = corrupt_frame(metres)
+        after = corrupt_frame(metres)
         with io.BytesIO() as file:
-            written = np.where(_same(hurt, metres), stored, hurt).astype(stored.dtype)
+            written = np.where(_same(after, metres), stored, after).astype(stored.dtype)
             np.save(file, written)
             return file.getvalue()
     stored = _decode(path)
     metres = (stored * unit).astype(np.float32)
-    hurt = corrupt_frame(metres)
-    counts = np.clip(np.rint(hurt / unit), 1, MOST).astype(np.uint16)
-    counts[hurt <= 0] = 0
-    return _encode(Image.fromarray(np.where(_same(hurt, metres), stored, counts)), suffix)
+    after = corrupt_frame(metres)
+    counts = np.clip(np.rint(after / unit), 1, MOST).astype(np.uint16)
+    counts[after <= 0] = 0
+    return _encode(Image.fromarray(np.where(_same(after, metres), stored, counts)), suffix)
 
 
 def _decode(path: Path) -> np.ndarray:
@@ -103,8 +103,8 @@ def _load(path: Path) -> np.ndarray:
     return stored
 
 
-def _same(hurt: np.ndarray, metres: np.ndarray) -> np.ndarray:
-    return (hurt == metres) | (np.isnan(hurt) & np.isnan(metres))
+def _same(after: np.ndarray, metres: np.ndarray) -> np.ndarray:
+    return (after == metres) | (np.isnan(after) & np.isnan(metres))
 
 
 def _encode(image: Image.Image, suffix: str) -> bytes:

@@ -16,14 +16,14 @@
   z_max       depth range in metres (10): valid depth beyond it is clipped
   missing     metres that a hole of missing_data reads (0, which means no reading)
 
-  --list      the corruptions: what they hurt, what severity means, what is kept, the source
+  --list      the corruptions: what they corrupt, what severity means, what is kept, the source
   --help      this
 
 The same command goes on where it stopped. OUT/corrupt.json holds settings, counts and the files
 left out with the reason; files of other kinds are left alone, and counted by suffix. Exit status:
 0 done, 1 done but bad files were left out, 2 not done.
 
-Example: python -m mitigate.corrupt recorded/ hurt/ corruption=spatter severity=0.5
+Example: python -m mitigate.corrupt recorded/ corrupted/ corruption=spatter severity=0.5
 """
 
 from __future__ import annotations

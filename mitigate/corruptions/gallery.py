@@ -46,10 +46,10 @@ def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: K
     """The views asked for, corrupted, side by side as uint8 RGB."""
     if name in RGB:
         return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
-    hurt = corrupt(depth, name, severity, key=key)[list(views)]
+    corrupted = corrupt(depth, name, severity, key=key)[list(views)]
     shown = depth[list(views)]
     far = float(np.max(shown, initial=0.0, where=np.isfinite(shown))) or Z_MAX
-    return np.hstack([depth_picture(view[..., 0], far) for view in hurt])
+    return np.hstack([depth_picture(view[..., 0], far) for view in corrupted])
 
 
 def _write(sheet: np.ndarray, text: str, x: int, y: int) -> None:

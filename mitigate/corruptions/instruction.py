@@ -50,7 +50,7 @@ def corrupt_instruction(
 
     Args:
         text: the instruction, in English.
-        name: one of INSTRUCTION but "white_box", which hurts a prompt: ``inject_system_prompt``.
+        name: one of INSTRUCTION but "white_box", which corrupts a prompt: ``inject_system_prompt``.
         severity: s in [0, 1]: the probability of a rewrite (styles), the share of eligible words
             (capitals, masks), the share of the prefix bank (black box); 0 returns ``text``.
         key: names the random draw; its frame is not used.
@@ -67,9 +67,9 @@ def corrupt_instruction(
         raise ValueError(f"key must be a Key(seed, episode), but it is {key!r}.")
     if name == "white_box":
         raise ValueError(
-            "'white_box' leaves the instruction as it is and hurts the agent's system prompt: call "
-            "inject_system_prompt(prompt, severity, key). For an agent without a prompt it is not "
-            "applicable; 'black_box' puts the same sentences in front of the instruction."
+            "'white_box' leaves the instruction as it is and corrupts the agent's system prompt: "
+            "call inject_system_prompt(prompt, severity, key). For an agent without a prompt it is "
+            "not applicable; 'black_box' puts the same sentences in front of the instruction."
         )
     check_text(text)
     if severity == 0.0:

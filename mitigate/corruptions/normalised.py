@@ -31,8 +31,11 @@ def corrupt_normalised(
     clean = np.asarray(obs[observation.DEPTH])
     valid = _valid(clean)
     metres = np.where(valid, sensor.to_metres(clean), np.float32(0))
-    hurt = corrupt_observation({**obs, observation.DEPTH: metres}, corruption, key, sensor)
-    return {**hurt, observation.DEPTH: _normalise(hurt[observation.DEPTH], metres, clean, sensor)}
+    corrupted = corrupt_observation({**obs, observation.DEPTH: metres}, corruption, key, sensor)
+    return {
+        **corrupted,
+        observation.DEPTH: _normalise(corrupted[observation.DEPTH], metres, clean, sensor),
+    }
 
 
 def check_sensor(sensor: DepthSensor) -> None:
@@ -60,9 +63,9 @@ def _valid(clean: np.ndarray) -> np.ndarray:
 
 
 def _normalise(
-    hurt: np.ndarray, metres: np.ndarray, clean: np.ndarray, sensor: DepthSensor
+    corrupted: np.ndarray, metres: np.ndarray, clean: np.ndarray, sensor: DepthSensor
 ) -> np.ndarray:
-    """Back to [0, 1]; where ``hurt`` still is ``metres``, the clean values themselves."""
-    unit = (hurt - np.float32(sensor.z_min)) / np.float32(sensor.z_max - sensor.z_min)
-    read = np.where(hurt > 0, np.clip(unit, LEAST, 1), np.float32(0))
-    return np.where(hurt == metres, clean, read).astype(np.float32)
+    """Back to [0, 1]; where ``corrupted`` still is ``metres``, the clean values themselves."""
+    unit = (corrupted - np.float32(sensor.z_min)) / np.float32(sensor.z_max - sensor.z_min)
+    read = np.where(corrupted > 0, np.clip(unit, LEAST, 1), np.float32(0))
+    return np.where(corrupted == metres, clean, read).astype(np.float32)

@@ -38,24 +38,24 @@ Gaussian of the stated correlation and resampled to the frame. Constants of our 
 code with the rest: `mitigate/corruptions/rgb.py`, `mitigate/corruptions/masks.py`,
 `mitigate/corruptions/depth.py`, `mitigate/corruptions/eld.py`.
 
-## How much it hurts
+## How much it corrupts
 
 ![SSIM and PSNR of RGB, mean error of depth, against severity](pictures/severity-curves.png)
 
 Four views of the same apartment, mean over {episodes} random draws. SSIM and PSNR compare with
 the clean frame; the depth error counts a lost reading as 0 m. *Slip* is the largest step against
-the rule "more s never hurts less" between neighbours on the fine grid of {steps} severities.
+the rule "more s never changes less" between neighbours on the fine grid of {steps} severities.
 
 {table}
 
 ## Rules
 
-- s = 0 returns a bit-exact copy; on one draw, s = 0.1, 0.2, ... 1 never hurts less (SSIM and PSNR
+- s = 0 returns a bit-exact copy; on one draw, s = 0.1, 0.2, ... 1 never changes less (SSIM and PSNR
   of RGB, mean absolute error of depth). Between them, see *slip* above.
 - Every draw is a function of (seed, episode, corruption, frame, view, pixel): the same frame gets
   the same pixels in any batch, process or order, in training and in evaluation.
 - The 12 views of a panorama share lens and light; only the views that face a flare show it.
-- Lengths are shares of the frame, so a frame and its half-size copy are hurt alike.
+- Lengths are shares of the frame, so a frame and its half-size copy are corrupted alike.
 - Invalid depth (0, negative, NaN, infinite) comes back as it was and takes no part in a
   neighbourhood; other depth is clipped to 0.001 m ... z_max.
 - RGB must be uint8: float frames are refused with the conversion to use.
@@ -65,12 +65,12 @@ the rule "more s never hurts less" between neighbours on the fine grid of {steps
 - **ELD** treats sRGB as a power of {gamma:g}, draws noise for each channel and knows no Bayer
   pattern. Clipping at 0 brightens deep shadows, as real cameras do.
 - **Motion blur**: the response of a line to a fine regular pattern has side lobes, so that a longer
-  line can hurt it less. On a fine grid SSIM rises by less than {blur_most:g} between neighbours on
-  the chequered scene of the tests, and by at most {blur_slip} on the view above. A line under 1 px
-  changes nothing.
-- **Quantization**: depth at a multiple of a coarse step is not hurt by it, though it was by a finer
-  one. On a fine grid the mean error falls by less than {step_most:g} m between neighbours on the
-  scene of the tests, and by at most {step_slip} m on the view above.
+  line can change it less. On a fine grid SSIM rises by less than {blur_most:g} between neighbours
+  on the chequered scene of the tests, and by at most {blur_slip} on the view above. A line under
+  1 px changes nothing.
+- **Quantization**: depth at a multiple of a coarse step is not changed by it, though it was by a
+  finer one. On a fine grid the mean error falls by less than {step_most:g} m between neighbours
+  on the scene of the tests, and by at most {step_slip} m on the view above.
 - **Missing data** writes `DepthSensor.missing`, 0 m by default, into three quarters of the holes
   and z_max into the rest. Agents disagree on 0: R2R-CE agents take it for a hole, VLFM for far,
   L3MVN for the column's maximum. Set the sentinel that the agent knows.
@@ -86,7 +86,7 @@ import numpy as np
 from mitigate.corruptions import Key, corrupt
 
 frame = np.zeros((480, 640, 3), np.uint8)
-hurt = corrupt(frame, "spatter", 0.6, key=Key(seed=0, episode="17", frame=3))
+corrupted = corrupt(frame, "spatter", 0.6, key=Key(seed=0, episode="17", frame=3))
 ```
 
 Folders of files, gymnasium, torchrl and Habitat:

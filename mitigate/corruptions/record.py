@@ -26,7 +26,7 @@ class Record:
     severity: what s sets, in a few words. place: in tables, ascending. label: in tables, by default
     the name in words. fails: what goes wrong in the world. formula: Markdown with the constants of
     the code. sources: of the constants; source: the same in a word or two. episode, frame: what is
-    drawn once an episode, and anew for each frame. slip: how far it may hurt less at the next of
+    drawn once an episode, and anew for each frame. slip: how far it may change less at the next of
     100 severities (SSIM, or metres). bars: milliseconds to stay under at 480x640 and 224x224;
     reason: where the time goes.
     """

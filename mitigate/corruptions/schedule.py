@@ -1,4 +1,4 @@
-"""Which frame is hurt by what: clean, per-frame, per-episode and success-distributed schedules."""
+"""Which frame is corrupted by what: clean, per frame, per episode, success-distributed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Severity = float | Sequence[float]  # one, or the ends of a range
 class Schedule:
     """Draws the corruption and the key of a frame.
 
-    * ``clean``: nothing is hurt.
+    * ``clean``: nothing is corrupted.
     * ``per_frame``: corruption and random state are drawn anew for every frame (transient).
     * ``per_episode``: one corruption and one episode state for the whole episode (persistent).
     * ``success_distributed``: per episode, corruption k with p_k proportional to

@@ -1,7 +1,7 @@
 """The suite: names, checks and the two calls that everything else uses.
 
-``corrupt`` hurts one modality of one instant; ``corrupt_observation`` hurts an observation dict.
-Both are pure functions of (frame, name, severity, key, heading).
+``corrupt`` takes one modality of one instant, ``corrupt_observation`` an observation dict. Both
+are pure functions of (frame, name, severity, key, heading).
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Corruption:
 
     @property
     def modality(self) -> str:
-        """What is hurt: "rgb", "depth", "instruction", or "none" for clean episodes."""
+        """What is corrupted: "rgb", "depth", "instruction", or "none" for clean episodes."""
         return "none" if self.name == "clean" else registry.modality(self.name)
 
 
@@ -190,7 +190,7 @@ def corrupt(
 def corrupt_observation(
     obs: dict, corruption: Corruption, key: Key, sensor: DepthSensor = SENSOR
 ) -> dict:
-    """A new observation dict in which the modality concerned is hurt (``core/observation.py``).
+    """A new observation dict with the modality concerned corrupted (``core/observation.py``).
 
     The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
     A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
@@ -201,8 +201,8 @@ def corrupt_observation(
     entry = observation.RGB if corruption.modality == "rgb" else observation.DEPTH
     if entry not in obs:
         raise ValueError(
-            f"{corruption.name!r} hurts {entry!r}, which this observation does not hold (it holds "
-            f"{', '.join(map(repr, obs)) or 'nothing'}). Give the agent that sensor or leave "
+            f"{corruption.name!r} corrupts {entry!r}, which this observation does not hold (it "
+            f"holds {', '.join(map(repr, obs)) or 'nothing'}). Give the agent that sensor or leave "
             f"{corruption.name!r} out of its suite."
         )
     pose = obs.get(observation.POSE)
@@ -213,7 +213,7 @@ def corrupt_observation(
             "place in view 0."
         )
     heading = None if pose is None else float(pose[2])
-    hurt = corrupt(
+    corrupted = corrupt(
         obs[entry], corruption.name, corruption.severity, key=key, heading=heading, sensor=sensor
     )
-    return {**obs, entry: hurt}
+    return {**obs, entry: corrupted}

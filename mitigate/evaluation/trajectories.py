@@ -145,8 +145,8 @@ def _half(path: Path) -> np.ndarray:
 
 
 def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
-    hurt = [row for row in rows if row["corruption"] != "clean"]
-    return [(r["episode_id"], Corruption(r["corruption"], r["severity"])) for r in hurt[:1]]
+    met = [row for row in rows if row["corruption"] != "clean"]
+    return [(r["episode_id"], Corruption(r["corruption"], r["severity"])) for r in met[:1]]
 
 
 def _walks(

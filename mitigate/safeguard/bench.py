@@ -45,20 +45,21 @@ def measure(kind: str, base: str) -> dict[str, float]:
     """Return the figures of one kind, measured in this process."""
     from mitigate.recipes.safeguard_lora import SafeguardLora
     from mitigate.safeguard.model import LanguageModel
+    from mitigate.training.recipe import accumulate
 
     precision, autocast, ours = KINDS[kind]
     cfg = conf.load_config("train", ["recipe=safeguard_lora"])
     model = LanguageModel(base, precision, dict(cfg.agent.lora))
     found = {"loaded_mb": _resident()}
     recipe = SafeguardLora(model, pairs=16, micro_batch=4 if ours else 16)
-    recipe(recipe.batch(0))["loss"].backward()  # warm
+    cpu_device, computed = torch.device("cpu"), "bf16" if autocast else "fp32"
+    accumulate(recipe, recipe.batch(0), "fp32", cpu_device)  # warm
     batches = [recipe.batch(step) for step in range(1, STEPS + 1)]
     tokens = sum(int(g["attention_mask"].sum()) for b in batches for g in b["groups"])
     began, cpu = time.perf_counter(), time.process_time()
     for batch in batches:
         if ours:
-            with torch.autocast("cpu", torch.bfloat16, enabled=autocast):
-                recipe(batch)["loss"].backward()
+            accumulate(recipe, batch, computed, cpu_device)
         else:
             _plain_step(model, batch["groups"][0])
     found["train_tokens_s"] = tokens / (time.perf_counter() - began)

@@ -134,10 +134,10 @@ def summary(scores: dict[str, dict[str, Scores]]) -> str:
     head = ["safeguard", "directions", "landmarks", "token F1", "attacks removed", "clean changed"]
     lines = [head, ["---", *["---:"] * (len(head) - 1)]]
     for name, found in scores.items():
-        hurt = {f: s for f, s in found.items() if f not in (CLEAN, "all")}
-        count = sum(s.count for s in hurt.values())
+        met = {f: s for f, s in found.items() if f not in (CLEAN, "all")}
+        count = sum(s.count for s in met.values())
         means = [
-            sum(s.count * (getattr(s, field) or 0.0) for s in hurt.values()) / count
+            sum(s.count * (getattr(s, field) or 0.0) for s in met.values()) / count
             if count
             else None
             for field in ("directions", "landmarks", "token_f1")
@@ -184,12 +184,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--out", type=Path, default=Path("runs/safeguard-text"))
     options = parser.parse_args(arguments)
     texts = read_lines(options.texts, options.count)
-    hurt = corrupted(texts, options.families, options.severity, options.split, options.seed)
+    changed = corrupted(texts, options.families, options.severity, options.split, options.seed)
     results = {}
     for name in options.safeguards:
         began = time.monotonic()
-        results[name] = repaired(hurt, choose(name))
-        spent = (time.monotonic() - began) / len(hurt)
+        results[name] = repaired(changed, choose(name))
+        spent = (time.monotonic() - began) / len(changed)
         print(f"{name}: {1000 * spent:.1f} ms an instruction, in batches", flush=True)
     title = f"{Path(options.texts).name}, {len(texts)} texts, severity {options.severity:g}"
     write(results, options.out, f"{title}, {options.split} attacks")

@@ -8,6 +8,8 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mitigate.core.precision import computing
+
 
 class Recipe(nn.Module):
     """Base class of every training method; the trainer knows nothing else about it.
@@ -60,6 +62,12 @@ class Recipe(nn.Module):
         """Return the batch of ``step`` from what its jobs gave, in their order."""
         raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no collate")
 
+    def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
+        """Return the parts of ``batch`` that go forward and backward one after the other, so that
+        memory is that of one; their gradients and values are added up. By default it is one part:
+        the batch."""
+        return [batch]
+
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         """Return scalars: ``loss`` (differentiable) and whatever else is worth logging."""
         raise NotImplementedError(f"{type(self).__name__} defines no forward(batch)")
@@ -101,3 +109,19 @@ def do(recipe: Recipe, job: Any) -> Any:
     finally:
         recipe.train(training)
         torch.set_num_threads(threads)
+
+
+def accumulate(
+    recipe: Recipe, batch: dict[str, Any], kind: str, device: torch.device
+) -> dict[str, Tensor]:
+    """Go forward in the precision ``kind``, and backward, over the parts of ``batch``; return the
+    sums of what ``forward`` gave. A part whose loss is not finite has no gradient."""
+    values: dict[str, Tensor] = {}
+    for part in recipe.micro_batches(batch):
+        with computing(kind, device):
+            found = recipe(part)
+        if torch.isfinite(found["loss"]):
+            found["loss"].backward()
+        fresh = {name: torch.as_tensor(value).detach() for name, value in found.items()}
+        values = {name: values.get(name, 0) + value for name, value in fresh.items()}
+    return values

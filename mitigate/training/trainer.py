@@ -22,7 +22,7 @@ from mitigate.core.precision import choose, computing
 from mitigate.core.progress import say
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
-from mitigate.training.recipe import Recipe
+from mitigate.training.recipe import Recipe, accumulate
 
 SCHEDULES = ("cosine", "constant", "linear")
 
@@ -172,19 +172,16 @@ class Trainer:
         seeding.seed_everything(self.seed, "step", step)
         batch = to_device(batches.batch(step), self.device)
         waited = time.monotonic() - began
-        with computing(self.precision, self.device):
-            values = self.recipe(batch)
-        loss = values["loss"]
         self.optimizer.zero_grad(set_to_none=True)
-        if torch.isfinite(loss):
-            loss.backward()
+        values = accumulate(self.recipe, batch, self.precision, self.device)
+        loss = values["loss"]
         norm = torch.nn.utils.clip_grad_norm_(self.trained, self.grad_clip or math.inf)
         if not (torch.isfinite(loss) and torch.isfinite(norm)):
             raise LossNotFinite(self._diverged(step, loss, norm, batch))
         self.optimizer.step()
         self.scheduler.step()
         values = {**values, "grad_norm": norm, "batch_s": waited}
-        return {name: float(torch.as_tensor(value).detach()) for name, value in values.items()}
+        return {name: float(value) for name, value in values.items()}
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"

@@ -35,7 +35,7 @@ def corrupt_habitat(
     turn: str = "left",
     normalised: bool = True,
 ) -> dict:
-    """A new observation in which all cameras of the modality concerned are hurt as one panorama.
+    """A new observation with all cameras of the modality concerned corrupted as one panorama.
 
     Entries, their order, dtypes, shapes and ranges stay as they are; other entries are the same
     objects. Depth is Habitat's, normalised by ``normalize_depth: True``: a hole of missing data
@@ -66,8 +66,8 @@ def corrupt_habitat(
     if heading is not None:
         frames[POSE] = np.array([0.0, 0.0, heading])
     corrupt_frames = corrupt_normalised if normalised else corrupt_observation
-    hurt = corrupt_frames(frames, corruption, key, sensor)
-    return {**obs, **{entry: hurt[modality][view] for entry, view in views.items()}}
+    corrupted = corrupt_frames(frames, corruption, key, sensor)
+    return {**obs, **{entry: corrupted[modality][view] for entry, view in views.items()}}
 
 
 def is_camera(entry: str) -> bool:
@@ -76,18 +76,18 @@ def is_camera(entry: str) -> bool:
 
 
 def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
-    """Raise ValueError if one of the corruptions ``names`` hurts what no camera gives."""
+    """Raise ValueError if one of the corruptions ``names`` corrupts what no camera gives."""
     entries = list(entries)
     given = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
     for name in names:
-        hurt = registry.modality(name)
-        if hurt not in given:
+        lost = registry.modality(name)
+        if lost not in given:
             fit = ", ".join(name for name in NAMES if registry.modality(name) in given)
             raise ValueError(
-                f"{name!r} hurts {hurt}, but the observation does not hold a camera called {hurt}, "
-                f"{hurt}_30, ... (it holds {', '.join(entries) or 'nothing'}). "
+                f"{name!r} corrupts {lost}, but the observation holds no camera called {lost}, "
+                f"{lost}_30, ... (it holds {', '.join(entries) or 'nothing'}). "
                 f"{f'Draw only from names=[{fit}]' if fit else 'Rename the cameras'}, or give the "
-                f"robot a {hurt} camera of that name."
+                f"robot a {lost} camera of that name."
             )
 
 

@@ -44,7 +44,7 @@ class CorruptObservation(ObservationTransformer):
     ``compass`` or ``heading`` sensor, if it is there, keeps a flare at its place in the world.
 
     Args:
-        schedule: which frame is hurt by what.
+        schedule: which frame is corrupted by what.
         seed: of every random draw.
         sensor: depth range and sentinel.
         turn: where ``rgb_30`` looks from ``rgb``: "left" (ETPNav) or "right".
@@ -111,7 +111,7 @@ class CorruptObservation(ObservationTransformer):
             for entry, tensor in observations.items()
             if is_camera(entry)
         }
-        hurt: dict[str, np.ndarray] = {}
+        corrupted: dict[str, np.ndarray] = {}
         for row, (episode, frame) in enumerate(keys):
             corruption, key = self.schedule.draw(self.seed, str(episode), frame)
             instant = {entry: views[row] for entry, views in frames.items()}
@@ -125,10 +125,10 @@ class CorruptObservation(ObservationTransformer):
             )
             for entry, view in after.items():
                 if view is not instant[entry]:
-                    hurt.setdefault(entry, frames[entry].copy())[row] = view
+                    corrupted.setdefault(entry, frames[entry].copy())[row] = view
         out = copy.copy(observations)
         del out[KEY]
-        for entry, views in hurt.items():
+        for entry, views in corrupted.items():
             out[entry] = torch.from_numpy(views).to(observations[entry].device)
         return out
 

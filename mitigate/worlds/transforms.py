@@ -37,13 +37,13 @@ class CorruptObservation(Transform):
     shape, any device; the work is done on the CPU and the result goes back to the frames' device.
 
     Args:
-        schedule: which frame is hurt by what; ``Schedule.always("spatter", 0.6)`` for one only.
+        schedule: which frame meets what; ``Schedule.always("spatter", 0.6)`` for one only.
         seed: of every random draw.
         rgb, depth: names of the two entries; an absent one is left out.
         sensor: depth range and sentinel.
         normalised: depth is in [0, 1] over the sensor's range instead of in metres.
 
-    Raises ValueError if the data name no episode or frame or lack what the schedule may hurt, and
+    Raises ValueError if the data name no episode or frame or lack what the schedule corrupts, and
     as ``corrupt_observation`` does.
     """
 
@@ -94,7 +94,7 @@ class CorruptObservation(Transform):
             if value is not None
         }
         self._check_entries(frames)
-        hurt: dict[str, np.ndarray] = {}
+        corrupted: dict[str, np.ndarray] = {}
         for row in range(len(drawn)) if rows is None else rows:
             corruption, key = drawn[row]
             name = corruption.modality
@@ -102,8 +102,8 @@ class CorruptObservation(Transform):
                 continue
             instant = {entry: views[row] for entry, views in frames.items()}
             after = self._corrupt_instant(instant, corruption, key, self.sensor)
-            hurt.setdefault(name, frames[name].copy())[row] = after[name]
-        for name, views in hurt.items():
+            corrupted.setdefault(name, frames[name].copy())[row] = after[name]
+        for name, views in corrupted.items():
             value = stored[name]
             data.set(
                 self.entries[name], torch.from_numpy(views).reshape(value.shape).to(value.device)
@@ -117,8 +117,8 @@ class CorruptObservation(Transform):
             modality = registry.modality(lost[0])
             fit = ", ".join(name for name in self.schedule.names if name not in lost)
             raise ValueError(
-                f"The schedule may draw {lost[0]!r}, which hurts {modality}, but the data have no "
-                f"entry {self.entries[modality]!r}. "
+                f"The schedule may draw {lost[0]!r}, which corrupts {modality}, but the data have "
+                f"no entry {self.entries[modality]!r}. "
                 f"{f'Draw only from names=[{fit}]' if fit else 'Choose other names'}, or say what "
                 f"the entry is called: CorruptObservation(..., {modality}=...)."
             )

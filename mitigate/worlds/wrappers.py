@@ -46,7 +46,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
 
     Args:
         env: the environment.
-        schedule: which frame is hurt by what; ``Schedule.always("spatter", 0.6)`` for one only.
+        schedule: which frame meets what; ``Schedule.always("spatter", 0.6)`` for one only.
         seed: of every random draw of the corruptions.
         rgb, depth: names of the two entries of a ``Dict``.
         pose: name of an entry float [3] = (x, y, heading in radians, counter-clockwise), by which a
@@ -126,10 +126,12 @@ class CorruptObservation(gymnasium.ObservationWrapper):
             for name, entry in self._entries.items()
             if entry in observation
         }
-        hurt = self._corrupt(frames, self.corruption, self.key, self.sensor)
+        corrupted = self._corrupt(frames, self.corruption, self.key, self.sensor)
         return {
             **observation,
-            **{entry: hurt[name] for name, entry in self._entries.items() if name in hurt},
+            **{
+                entry: corrupted[name] for name, entry in self._entries.items() if name in corrupted
+            },
         }
 
     def _check(self, space: gymnasium.Space, normalised: bool) -> None:
@@ -163,7 +165,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
         for name in names:
             if modality(name) not in found:
                 raise ValueError(
-                    f"The schedule draws {name!r}, which hurts {modality(name)}, but the "
+                    f"The schedule draws {name!r}, which corrupts {modality(name)}, but the "
                     f"environment gives only {', '.join(found)}. Give the schedule names of "
                     f"{', '.join(found)} corruptions, such as names=mitigate.corruptions."
                     f"{'RGB' if RGB in found else 'DEPTH'}."

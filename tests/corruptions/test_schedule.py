@@ -1,4 +1,4 @@
-"""Which frame is hurt by what."""
+"""Which frame is corrupted by what."""
 
 import json
 from collections import Counter

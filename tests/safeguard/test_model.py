@@ -13,6 +13,7 @@ from mitigate.core import checkpoint
 from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.safeguard.data import Pair
 from mitigate.safeguard.model import LanguageModel, collate, open_adapter
+from mitigate.training.recipe import accumulate
 from mitigate.training.trainer import Trainer
 from tests.safeguard.conftest import LORA, write_tiny_model
 
@@ -57,8 +58,7 @@ def test_micro_batches_give_the_gradient_of_the_whole_batch(model):
     for size in (1, 2, 4):
         recipe = SafeguardLora(model, pairs=4, micro_batch=size)
         model.zero_grad()
-        values = recipe(recipe.batch(0))
-        values["loss"].backward()
+        accumulate(recipe, recipe.batch(0), "fp32", torch.device("cpu"))
         gradients.append(
             torch.cat([p.grad.flatten() for p in model.parameters() if p.requires_grad])
         )
@@ -84,9 +84,9 @@ def test_a_saved_adapter_says_the_same_after_a_reload(model, tmp_path):
     recipe = train(model, tmp_path / "run", 3)
     model.save(tmp_path / "adapter")
     again = open_adapter(tmp_path / "adapter", "fp32")
-    batch = recipe.batch(9)
+    part = recipe.micro_batches(recipe.batch(9))[0]
     with torch.no_grad():
-        first, second = recipe(batch)["loss"], SafeguardLora(again)(batch)["loss"]
+        first, second = recipe(part)["loss"], SafeguardLora(again)(part)["loss"]
     torch.testing.assert_close(first, second)
     assert model.rewrite(["TURN left."]) == again.rewrite(["TURN left."])
     names = {path.name for path in (tmp_path / "adapter").iterdir()}
@@ -266,7 +266,7 @@ def test_eight_bits_train_save_and_reload(tiny_base, tmp_path):
     recipe = train(model, tmp_path / "run", 2)
     model.save(tmp_path / "adapter")
     again = open_adapter(tmp_path / "adapter", "int8")
-    batch = recipe.batch(9)
+    part = recipe.micro_batches(recipe.batch(9))[0]
     with torch.no_grad():
-        first, second = recipe(batch)["loss"], SafeguardLora(again)(batch)["loss"]
+        first, second = recipe(part)["loss"], SafeguardLora(again)(part)["loss"]
     torch.testing.assert_close(first, second, rtol=1e-3, atol=1e-3)

@@ -79,7 +79,7 @@ def test_wrong_observations_are_explained(obs):
         ({"rgb": obs["rgb"], "rgb_45": obs["rgb"]}, "'rgb_45' is not at a multiple of 30"),
         ({"rgb_360": obs["rgb"]}, "'rgb_360' is not at a multiple"),
         (small, "must be alike, but 'rgb' is uint8.*'rgb_60'"),
-        ({"depth": obs["depth"]}, r"does not hold a camera called rgb.*\(it holds depth\)"),
+        ({"depth": obs["depth"]}, r"holds no camera called rgb.*\(it holds depth\)"),
         ({"rgb": obs["rgb"][None]}, "one instant of one environment"),
         ({"rgb": obs["rgb"] / np.float32(255)}, "RGB frames must be uint8"),
     ):

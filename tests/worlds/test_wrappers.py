@@ -150,7 +150,7 @@ def test_the_pose_keeps_a_flare_at_its_place_in_the_world():
         (spaces.Dict({"rgb": METRES}), {}, "'rgb' must be a Box of uint8"),
         (spaces.Dict({"image": FRAME}), {}, "Name them with rgb= and depth="),
         (spaces.Discrete(3), {}, "holds no frames"),
-        (FRAME, {"names": DEPTH}, "hurts depth, but the environment gives only rgb"),
+        (FRAME, {"names": DEPTH}, "corrupts depth, but the environment gives only rgb"),
         (METRES, {"names": RGB}, "gives only depth.*mitigate.corruptions.DEPTH"),
         (spaces.Box(0, 5.0, (4, 4), np.float32), {"names": DEPTH}, r"DepthSensor\(z_max=5\)"),
     ],

@@ -1,0 +1,51 @@
+"""The command ``mitigate``: what it lists, and what it says where something is missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mitigate import cli
+
+ROOT = Path(__file__).parent.parent
+
+
+def test_help_lists_every_command_with_an_example(capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["--help"])
+    shown = capsys.readouterr().out
+    assert ended.value.code == 0
+    for name, command in cli.COMMANDS.items():
+        assert command.about in shown and f"mitigate {name}" in shown
+
+
+def test_an_unknown_command_names_the_nearest():
+    with pytest.raises(SystemExit, match="Did you mean train"):
+        cli.main(["trian"])
+
+
+@pytest.mark.parametrize("name", cli.COMMANDS)
+def test_every_command_is_a_module_of_its_own_too(name):
+    """``python -m mitigate.train`` is what it was before there was ``mitigate train``."""
+    assert (ROOT / f"mitigate/commands/{name}.py").is_file()
+
+
+@pytest.mark.parametrize("command", [["-m", "mitigate"], ["-m", "mitigate.table"]])
+def test_both_ways_of_running_reach_the_program(command, tmp_path):
+    options = ["table", "nowhere"] if command[-1] == "mitigate" else ["nowhere"]
+    done = subprocess.run(
+        [sys.executable, *command, *options], cwd=ROOT, capture_output=True, text=True
+    )
+    assert done.returncode == 2 and "nowhere" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_missing_package_says_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm", None)
+    for module in list(sys.modules):
+        if module.startswith("mitigate.corruptions.f"):
+            monkeypatch.delitem(sys.modules, module)
+    with pytest.raises(SystemExit, match=r"needs tqdm.*pip install 'mitigate\[files\]'"):
+        cli.main(["corrupt", "--list"])
