@@ -19,6 +19,7 @@ import torch
 from mitigate.core import precision
 from mitigate.core.progress import say
 from mitigate.core.workers import WorkersDied, context, portable
+from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe, do
 
 MOST = 4  # workers worth starting: the recipes make 2 to 4 pieces of a step
@@ -84,10 +85,17 @@ class Batches:
     """
 
     def __init__(
-        self, recipe: Recipe, workers: Workers | None, steps: int, kind: str, device: torch.device
+        self,
+        recipe: Recipe,
+        workers: Workers | None,
+        steps: int,
+        kind: str,
+        device: torch.device,
+        ranks: Ranks | None = None,
     ) -> None:
         self.recipe, self.steps, self.kind, self.device = recipe, steps, kind, device
         self.workers = workers if workers is not None and len(workers) else None
+        self.ranks = ranks or Ranks()
         self._ordered: deque[tuple[int, int]] = deque()  # steps and how many jobs they have
         self._taken = False
 
@@ -95,18 +103,30 @@ class Batches:
         """Return the batch of ``step``; steps are asked for in order."""
         recipe = self.recipe
         if not self._ordered:
-            jobs = recipe.jobs(step) if self.workers is not None else []
+            jobs = self._jobs(step) if self.workers is not None else []
             if not jobs:
                 with precision.computing(self.kind, self.device):
-                    return recipe.batch(step)
+                    return self._alone(step)
             self._order(step, jobs)
         while recipe.ahead and self._ordered[-1][0] < min(step + AHEAD, self.steps - 1):
             later = self._ordered[-1][0] + 1
-            self._order(later, recipe.jobs(later))
+            self._order(later, self._jobs(later))
         ordered, count = self._ordered.popleft()
         assert ordered == step, f"step {step} was asked for, {ordered} is next"
         assert self.workers is not None
         return recipe.collate(step, self.workers.receive(count))
+
+    def _jobs(self, step: int) -> list[Any]:
+        """This rank's jobs of a step; none if the recipe makes its batches alone."""
+        jobs = self.recipe.jobs(step)
+        return self.ranks.share(jobs) if jobs else []
+
+    def _alone(self, step: int) -> dict[str, Any]:
+        """The batch of ``step``, made in this process."""
+        if self.ranks.count == 1:
+            return self.recipe.batch(step)
+        jobs = self.ranks.share(self.recipe.jobs(step))
+        return self.recipe.collate(step, [do(self.recipe, job) for job in jobs])
 
     def _order(self, step: int, jobs: list[Any]) -> None:
         assert self.workers is not None

@@ -31,6 +31,7 @@ from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
 from mitigate.evaluation.evaluate import EvaluationConfig, conditions, episodes, load
 from mitigate.training.batches import MOST, Workers
+from mitigate.training.ranks import Ranks
 from mitigate.training.trainer import Trainer
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
@@ -102,15 +103,22 @@ def run(cfg: DictConfig) -> Path:
     what the evaluation writes. Raises ValueError or FileNotFoundError for a user's mistake.
     """
     check(cfg)
-    folder = Path(cfg.folder or default_folder(cfg))
-    say(plan(cfg, folder))
+    with Ranks.of_environment() as ranks:
+        return _run(cfg, Path(cfg.folder or default_folder(cfg)), ranks)
+
+
+def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
+    if ranks.first:
+        say(plan(cfg, folder))
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
         for name, stage in cfg.stages.items():
             if stage is not None:
                 stage.trainer.precision = train_stage(
-                    cfg, name, stage, agent, folder / name, workers
+                    cfg, name, stage, agent, folder / name, workers, ranks
                 )
+    if not ranks.first:
+        return folder
     agent.cpu().eval()
     checkpoint.save_agent(agent, folder / "agent")
     with atomic_text(folder / "agent" / "config.yaml") as file:
@@ -132,6 +140,7 @@ def train_stage(
     agent: nn.Module,
     folder: Path,
     workers: Workers | None = None,
+    ranks: Ranks | None = None,
 ) -> str:
     """Train ``agent`` in place through one stage, and return the precision it was trained in; a
     finished stage is loaded from ``folder``."""
@@ -145,10 +154,11 @@ def train_stage(
         "recipe": dict(_identity(_plain(stage.recipe))),
         **recipe.identity(),
     }
-    if not checkpoint.checkpoints(folder):  # else the trainer compares first, and may refuse
+    ranks = ranks or Ranks()
+    if ranks.first and not checkpoint.checkpoints(folder):  # else the trainer compares first
         with atomic_text(folder / IDENTITY) as file:
             json.dump(identity, file, indent=2)
-    settings = {"name": name, "workers": workers, **_settings(cfg, stage)}
+    settings = {"name": name, "workers": workers, "ranks": ranks, **_settings(cfg, stage)}
     trainer = Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings)
     trainer.fit()
     return trainer.precision

@@ -22,6 +22,7 @@ from mitigate.core.precision import choose, computing
 from mitigate.core.progress import say
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
+from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe, accumulate
 
 SCHEDULES = ("cosine", "constant", "linear")
@@ -52,6 +53,7 @@ class Trainer:
         device: "auto" (CUDA if there), or any torch device.
         workers: processes that make batches (``Recipe.jobs``); None makes them in this one, to
             the same bits.
+        ranks: processes that train together; the first one logs and saves.
         name: of the stage in what is printed; None: of the recipe's class.
         config: JSON-able description of the run. A checkpoint made under another is refused.
 
@@ -79,6 +81,7 @@ class Trainer:
         precision: str = "auto",
         device: str = "auto",
         workers: Workers | None = None,
+        ranks: Ranks | None = None,
         name: str | None = None,
         config: dict[str, Any] | None = None,
     ) -> None:
@@ -99,7 +102,7 @@ class Trainer:
         found = "cuda" if torch.cuda.is_available() else "cpu"
         self.device = torch.device(found if device == "auto" else device)
         self.asked, self.precision = precision, choose(precision, self.device)
-        self.workers = workers
+        self.workers, self.ranks = workers, ranks or Ranks()
         self.recipe = recipe.to(self.device)
         self.name = name or type(recipe).__name__
         self.config = {
@@ -133,7 +136,8 @@ class Trainer:
         say(
             f"{self.name}: in {self.precision} on {self.device}, batches by {count or 'no'} workers"
         )
-        with Journal(self.folder, total=self.steps, start=start, name=self.name) as journal:
+        log = self.folder if self.ranks.first else self.folder / f"rank-{self.ranks.number}"
+        with Journal(log, total=self.steps, start=start, name=self.name) as journal:
             if start:
                 journal.say(f"resumed at step {start} from {self.folder}")
             self._train(start, journal)
@@ -145,7 +149,9 @@ class Trainer:
         with computing(self.precision, self.device):
             self.recipe.start()
         self.recipe.train()
-        batches = Batches(self.recipe, self.workers, self.steps, self.precision, self.device)
+        batches = Batches(
+            self.recipe, self.workers, self.steps, self.precision, self.device, self.ranks
+        )
         for step in range(start, self.steps):
             for name, value in self._step(step, batches).items():
                 sums[name] += value
@@ -162,18 +168,23 @@ class Trainer:
             if self._due(self.figure_every, done):
                 journal.figures(done, self.recipe.figures(done))
             if done == self.steps or (self.save_every and done % self.save_every == 0):
-                self._save(done)
+                if self.ranks.first:
+                    self._save(done)
+                self.ranks.wait()
 
     def _due(self, every: int, done: int) -> bool:
         return bool(every) and (done % every == 0 or done == self.steps)
 
     def _step(self, step: int, batches: Batches) -> dict[str, float]:
         began = time.monotonic()
-        seeding.seed_everything(self.seed, "step", step)
+        rank = (self.ranks.number,) if self.ranks.number else ()  # dropout differs between ranks
+        seeding.seed_everything(self.seed, "step", step, *rank)
         batch = to_device(batches.batch(step), self.device)
         waited = time.monotonic() - began
         self.optimizer.zero_grad(set_to_none=True)
         values = accumulate(self.recipe, batch, self.precision, self.device)
+        values = {name: value.float() for name, value in values.items()}
+        self.ranks.average(self.trained, values)
         loss = values["loss"]
         norm = torch.nn.utils.clip_grad_norm_(self.trained, self.grad_clip or math.inf)
         if not (torch.isfinite(loss) and torch.isfinite(norm)):

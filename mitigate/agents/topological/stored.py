@@ -2,26 +2,29 @@
 
 Poses lie about ``SPACING`` metres apart and look along heading 0. Headings are multiples of 30
 degrees, where a panorama is the heading-0 one with its views rolled. Built once, in order,
-resumable: each scene is one file written atomically.
+resumable: each scene is a folder of memory-mapped arrays that is there whole or not at all, and
+that worker processes share.
 """
 
 from __future__ import annotations
 
+import shutil
+import tempfile
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
 from scipy.spatial import cKDTree
+from tensordict import tensorclass
+from torch import Tensor
 
 from mitigate.agents.topological.decisions import Piece
 from mitigate.agents.topological.rollout import roll_out
 from mitigate.agents.topological.waypoints import COUNT, select
 from mitigate.core import precision
 from mitigate.core.checkpoint import weights_sha
-from mitigate.core.files import write_atomically
 from mitigate.core.observation import DEPTH, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.progress import Progress
 from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
@@ -33,13 +36,23 @@ SPACING = 0.5  # metres
 _BATCH = 16  # panoramas encoded at once
 
 
+@tensorclass
+class ScenePoses:
+    """The poses of one scene as they are stored: the entries of :class:`Features`, tensors."""
+
+    xy: Tensor
+    views: Tensor
+    waypoints: Tensor
+    seen: Tensor
+
+
 class Features:
     """Arrays of one scene: xy [n, 2], views float16 [n, 12, F], waypoints [n, 6, 2] (metres 0 =
     none), seen uint64 [n, 12] (bit i: thing i shows in the middle of the view)."""
 
-    def __init__(self, arrays: dict[str, np.ndarray]) -> None:
-        self.xy, self.views = arrays["xy"], arrays["views"]
-        self.waypoints, self.seen = arrays["waypoints"], arrays["seen"]
+    def __init__(self, poses: ScenePoses) -> None:
+        self.xy, self.views = poses.xy.numpy(), poses.views.numpy()
+        self.waypoints, self.seen = poses.waypoints.numpy(), poses.seen.numpy().view(np.uint64)
         self.tree = cKDTree(self.xy)
 
     @torch.no_grad()
@@ -48,6 +61,7 @@ class Features:
         rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
         views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
         blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
+        self.views, self.waypoints = self.views.copy(), self.waypoints.copy()
         if "rgb" in agent.blind:
             self.views[..., :-depth] = blanked[:, :-depth]
         if "depth" in agent.blind:
@@ -90,18 +104,17 @@ class Store:
         self.agent.eval()
         with Progress("stored features", len(scenes), unit="scene", start=done) as progress:
             for scene in missing:
-                write_atomically(self.path(scene), partial(_save, self._arrays(scene)))
+                _save(self._poses(scene), self.path(scene))
                 progress.advance()
 
     def path(self, scene: str) -> Path:
-        """The file of a scene."""
-        return self.folder / f"{scene.replace('/', '-')}.npz"
+        """The folder of a scene."""
+        return self.folder / scene.replace("/", "-")
 
     def features(self, scene: str) -> Features:
         """The features of a scene, as the agent sees them."""
         if scene not in self._held:
-            with np.load(self.path(scene), allow_pickle=False) as arrays:
-                self._held[scene] = Features({name: arrays[name] for name in arrays.files})
+            self._held[scene] = Features(ScenePoses.load_memmap(self.path(scene)))
             if self.agent.blind:
                 self._held[scene].blank(self.agent, self.size)
         return self._held[scene]
@@ -131,12 +144,14 @@ class Store:
             },
         )
 
-    def _arrays(self, scene: str) -> dict[str, np.ndarray]:
-        """Arrays of the :class:`Features` of ``scene``."""
+    def _poses(self, scene: str) -> ScenePoses:
+        """What is stored of ``scene``."""
         self.world.enter(scene)
         points = self.world.points()
         xy = points[lattice(points)]
-        return _features(self.agent, [_frames(self.world, p) for p in xy]) | {"xy": xy}
+        made = _features(self.agent, [_frames(self.world, p) for p in xy])
+        tensors = {name: torch.from_numpy(array) for name, array in made.items()}
+        return ScenePoses(**tensors, xy=torch.from_numpy(xy), batch_size=[len(xy)])
 
 
 class StoredWalk:
@@ -195,9 +210,16 @@ def lattice(points: np.ndarray) -> np.ndarray:
     return np.sort(order[first])
 
 
-def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
-    with open(path, "wb") as file:
-        np.savez(file, **arrays)  # type: ignore[arg-type]
+def _save(poses: ScenePoses, path: Path) -> None:
+    """Write ``poses`` aside and rename the folder: it is whole or not there."""
+    aside = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
+    try:
+        poses.memmap(aside, num_threads=0)
+        aside.rename(path)
+    except BaseException:
+        shutil.rmtree(aside, ignore_errors=True)
+        if not path.is_dir():  # else another process was quicker
+            raise
 
 
 def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -226,7 +248,7 @@ def _features(agent: TopologicalAgent, frames: list[tuple]) -> dict[str, np.ndar
     return {
         "views": np.concatenate(views),
         "waypoints": chosen,
-        "seen": np.stack([frame[2] for frame in frames]),
+        "seen": np.stack([frame[2] for frame in frames]).view(np.int64),  # torch maps no uint64
     }
 
 

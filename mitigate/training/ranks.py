@@ -1,0 +1,71 @@
+"""Processes that train one agent together: ``torchrun --nproc-per-node 2 -m mitigate.train``.
+
+Each rank makes and learns from its share of a step's pieces; gradients are averaged, so all ranks
+take the same step. One rank is the ordinary case, and costs nothing.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterable
+from typing import Any
+
+import torch
+import torch.distributed as dist
+from torch import Tensor, nn
+
+
+class Ranks:
+    """``number`` of ``count`` processes, as torchrun's variables say; use it as a context manager,
+    which opens and closes the process group (gloo on CPUs, nccl on GPUs) and silences all but the
+    first."""
+
+    def __init__(self, number: int = 0, count: int = 1) -> None:
+        self.number, self.count = number, count
+
+    @classmethod
+    def of_environment(cls) -> Ranks:
+        """Those that torchrun started, else one alone."""
+        return cls(int(os.environ.get("RANK", 0)), int(os.environ.get("WORLD_SIZE", 1)))
+
+    def __enter__(self) -> Ranks:
+        if self.count > 1:
+            if torch.cuda.is_available():
+                torch.cuda.set_device(int(os.environ.get("LOCAL_RANK", 0)))
+            dist.init_process_group("nccl" if torch.cuda.is_available() else "gloo")
+            if not self.first:
+                sys.stdout = open(os.devnull, "w", encoding="utf-8")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self.count > 1:
+            dist.destroy_process_group()
+
+    @property
+    def first(self) -> bool:
+        """Whether this one logs, saves and evaluates."""
+        return self.number == 0
+
+    def share(self, jobs: list[Any]) -> list[Any]:
+        """The jobs of this rank. Raises ValueError if there are fewer than ranks."""
+        if self.count > 1 and len(jobs) < self.count:
+            raise ValueError(
+                f"A step of this recipe has {len(jobs)} pieces, too few for {self.count} ranks: "
+                f"start torchrun with --nproc-per-node {max(1, len(jobs))} or fewer."
+            )
+        return jobs[self.number :: self.count]
+
+    def average(self, parameters: Iterable[nn.Parameter], values: dict[str, Tensor]) -> None:
+        """Replace gradients, and the figures to log, by their means over the ranks."""
+        if self.count == 1:
+            return
+        grads = [p.grad for p in parameters if p.grad is not None]
+        for tensor in (*grads, *values.values()):
+            dist.all_reduce(tensor)
+            tensor /= self.count
+
+    def wait(self) -> None:
+        """Return when all ranks are here."""
+        if self.count > 1:
+            dist.barrier()

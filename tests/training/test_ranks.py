@@ -1,0 +1,84 @@
+"""Two ranks take the steps that one process takes on all their pieces."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from mitigate.core.seeding import generator, seed_everything
+from mitigate.training.ranks import Ranks
+from mitigate.training.recipe import Recipe
+from mitigate.training.trainer import Trainer
+
+ROOT = Path(__file__).parents[2]
+PIECES = 4
+
+
+class Regression(Recipe):
+    """A batch of equal pieces, so that the mean of the ranks' losses is the loss of the whole."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        seed_everything(0, "regression")
+        self.line = torch.nn.Linear(3, 1)
+
+    def jobs(self, step):
+        return [(step, piece) for piece in range(PIECES)]
+
+    def work(self, job):
+        return generator("ranks", *job).normal(size=(8, 3)).astype(np.float32)
+
+    def collate(self, step, pieces):
+        return {"inputs": torch.from_numpy(np.concatenate(pieces))}
+
+    def forward(self, batch):
+        error = self.line(batch["inputs"]) - batch["inputs"].sum(1, keepdim=True)
+        return {"loss": error.square().mean(), "rows": torch.tensor(float(len(error)))}
+
+
+def train(folder: Path, ranks: Ranks, steps: int = 6) -> torch.Tensor:
+    made = Regression()
+    options = {"lr": 0.05, "save_every": 2, "log_every": 1, "precision": "fp32"}
+    Trainer(made, steps=steps, folder=folder, ranks=ranks, **options).fit()
+    return made.line.weight.detach()
+
+
+def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
+    script = folder / "train.py"
+    script.write_text(
+        "import sys, torch\nfrom pathlib import Path\n"
+        "from mitigate.training.ranks import Ranks\nfrom tests.training.test_ranks import train\n"
+        "folder = Path(sys.argv[1])\n"
+        "with Ranks.of_environment() as ranks:\n"
+        "    torch.save(train(folder / 'run', ranks), folder / f'rank-{ranks.number}.pt')\n"
+    )
+    command = ["-m", "torch.distributed.run", "--standalone", f"--nproc-per-node={count}"]
+    return subprocess.run(
+        [sys.executable, *command, str(script), str(folder)],
+        cwd=ROOT,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+    )
+
+
+def test_two_ranks_end_with_the_weights_of_one_and_one_of_them_speaks(tmp_path):
+    done = torchrun(tmp_path, 2)
+    assert done.returncode == 0, done.stderr
+    first, second = (torch.load(tmp_path / f"rank-{n}.pt", weights_only=True) for n in (0, 1))
+    alone = train(tmp_path / "alone", Ranks())
+    assert torch.equal(first, second) and torch.allclose(first, alone, atol=1e-6)
+    assert done.stdout.count("step 6/6  loss") == 1
+    assert len(list((tmp_path / "run").glob("step-*.pt"))) == 2
+
+
+def test_more_ranks_than_pieces_are_refused():
+    with pytest.raises(ValueError, match="4 pieces, too few for 5 ranks"):
+        Ranks(0, 5).share([1, 2, 3, 4])
+    assert [Ranks(n, 3).share([1, 2, 3, 4]) for n in range(3)] == [[1, 4], [2], [3]]
