@@ -27,7 +27,7 @@ from safetensors.numpy import load_file
 ROOT = Path(__file__).resolve().parent.parent
 KEPT = ROOT / "runs" / "compare"
 AGENTS = ("checkpoints/base", "checkpoints/teacher", "checkpoints/hardened/*")
-UNSTABLE = ("agent", "name", "rule", "world")  # what a row says of itself, not what was measured
+UNSTABLE = ("agent", "weights", "name", "rule")  # what a row says of itself, not what was measured
 EXTRA = {"safeguard_lora": ("stages.lora.recipe.pairs=2", "stages.lora.recipe.micro_batch=2")}
 
 
