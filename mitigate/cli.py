@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -66,6 +67,8 @@ COMMANDS = {
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command from the command line, and exit with its status."""
+    if os.getcwd() not in sys.path:  # as python -m does: a user's own modules lie there
+        sys.path.insert(0, os.getcwd())
     name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
     options = options[:-1]
     if name in ("", "-h", "--help", "help"):

@@ -21,7 +21,7 @@ from torch import Tensor
 
 from mitigate.core import checkpoint
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import batch_of, imitation, loss_weights
+from mitigate.recipes.imitate import batch_of, imitation, loss_weights, masked
 from mitigate.recipes.pretrain import views_to_learn
 from mitigate.training.parts import load_teacher, train_only
 from mitigate.training.poses import Poses
@@ -65,8 +65,8 @@ class Distil(Recipe):
     ) -> None:
         super().__init__()
         self.agent, self.losses = agent, loss_weights(agent, losses)
-        self.teacher = load_teacher(agent, teacher)
-        train_only(agent, agent.parts() if train_parts is None else train_parts)
+        self.teacher: Any = load_teacher(agent, teacher)
+        train_only(agent, train_parts)
         self.w_il, self.w_kl, self.w_feat = w_il, w_kl, w_feat
         self.temperature, self.match = temperature, match
         self.rollouts = Rollouts(
@@ -107,15 +107,28 @@ class Distil(Recipe):
         values = imitation(out, decisions, self.losses)
         with torch.no_grad():
             wanted = self.teacher.decide(decisions, clean=True)
-        values["kl"] = policy_kl(out.logits, wanted.logits, self.temperature)
+        student, taught = (masked(x.logits, out.mask) for x in (out, wanted))
+        values["kl"] = policy_kl(student, taught, self.temperature)
         loss = self.w_il * values["loss"]
         if self.w_kl:
             loss = loss + self.w_kl * self.temperature**2 * values["kl"]
-        for name, feature in matched(out.features, self.match).items():
+        features = {n: f for n, f in out.features.items() if n in wanted.features}
+        self._check(features)
+        for name, feature in matched(features, self.match).items():
             values[f"feat_{name}"] = feature_loss(feature, wanted.features[name])
             if self.w_feat and (feature.requires_grad or not torch.is_grad_enabled()):
                 loss = loss + self.w_feat * values[f"feat_{name}"]
         return {**values, "loss": loss}
+
+    def _check(self, features: Mapping[str, Tensor]) -> None:
+        """Raise ValueError if nothing of the loss depends on a trained weight."""
+        learned = any(feature.requires_grad for feature in features.values())
+        if torch.is_grad_enabled() and not (self.w_il or self.w_kl or (self.w_feat and learned)):
+            raise ValueError(
+                f"Nothing would be learned: decide() of {type(self.agent).__name__} returns no "
+                f"features that a trained weight makes (it has {', '.join(features) or 'none'}), "
+                "and w_il and w_kl are 0. Name them in Output.features, or set w_il."
+            )
 
     def evaluate(self, step: int) -> dict[str, float]:
         """The schedule's weights, for the log."""
@@ -169,7 +182,7 @@ class DistilViews(Recipe):
             refresh_episodes=refresh_episodes,
             **views_to_learn(agent, modality, adapters_only),
         )
-        self.teacher = load_teacher(agent, teacher)
+        self.teacher: Any = load_teacher(agent, teacher)
         self.w_labels, self.w_feat = w_labels, w_feat
 
     def identity(self) -> dict[str, str]:

@@ -28,7 +28,8 @@ class Imitate(Recipe):
     """Args:
     agent: trained in place. world, training, schedule: makes a world, where its episodes come from,
     which frame is corrupted by what.
-    train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. None: all.
+    train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. None: all but
+    the adapters.
     episodes: a step. follow_oracle: share of rollout decisions taken by the expert.
     losses: weights of the agent's auxiliary losses by name, where they are not its own.
     prior, refresh_every, refresh_episodes: of a success-distributed schedule (``Rollouts``).
@@ -52,7 +53,7 @@ class Imitate(Recipe):
         refresh_episodes: int = 8,
     ) -> None:
         super().__init__()
-        train_only(agent, agent.parts() if train_parts is None else train_parts)
+        train_only(agent, train_parts)
         self.agent, self.losses = agent, loss_weights(agent, losses)
         self.rollouts = Rollouts(
             agent,
@@ -104,17 +105,27 @@ def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -
     Returns "loss", and the parts and figures to log.
     """
     assert out.logits is not None, "decide() gave no logits"
-    mask = torch.isfinite(out.logits) if out.mask is None else out.mask
-    target = decisions.target
-    log_p = out.logits.log_softmax(-1).masked_fill(~mask, 0.0)
+    logits, target = masked(out.logits, out.mask), decisions.target
+    if logits.shape != target.shape or decisions.weight.shape != target.shape[:1]:
+        raise ValueError(
+            f"decide() gave logits {list(logits.shape)} for targets {list(target.shape)} with "
+            f"weights {list(decisions.weight.shape)}: they must be [B, n], [B, n] and [B], of all "
+            "decisions that join() put together."
+        )
+    log_p = logits.log_softmax(-1).masked_fill(~torch.isfinite(logits), 0.0)
     entropy = -(target * target.clamp(min=1e-9).log()).sum(-1)
     each = -(target * log_p).sum(-1) - entropy
     loss = imitated = (each * decisions.weight).sum() / decisions.weight.sum()
     for name, value in out.losses.items():
         loss = loss + weights.get(name, 1.0) * value
-    right = target.gather(1, out.logits.argmax(-1)[:, None])[:, 0] > 0.4 * target.max(1).values
+    right = target.gather(1, logits.argmax(-1)[:, None])[:, 0] > 0.4 * target.max(1).values
     figures = {"imitation": imitated, **out.losses, "accuracy": right.float().mean(), **out.figures}
     return {"loss": loss, **figures}
+
+
+def masked(logits: Tensor, mask: Tensor | None) -> Tensor:
+    """Logits with minus infinity for what may not be chosen."""
+    return logits if mask is None else logits.masked_fill(~mask, float("-inf"))
 
 
 def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, float]:

@@ -93,9 +93,10 @@ def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> di
         raise ValueError(
             f"modality={modality!r} is unknown; choose {' or '.join(map(repr, agent.encoders))}."
         )
-    agent.requires_grad_(False)
-    for part in (agent.parts()[name] for name in agent.encoders[modality]):
+    module: Any = agent
+    module.requires_grad_(False)
+    for part in (module.parts()[name] for name in module.encoders[modality]):
         for trained in adapter_parameters(part) if adapters_only else part.parameters():
             trained.requires_grad_(True)
-    every = 2 if modality == "rgb" and not adapted(agent) else 1
+    every = 2 if modality == "rgb" and not adapted(module) else 1
     return {"sensor": modality, "label": agent.labels[modality], "every": every}

@@ -6,9 +6,9 @@ as data, because a ``_target_`` in it could run anything.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
-from inspect import Parameter, signature
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -20,16 +20,23 @@ from torch import nn
 from mitigate.core import checkpoint, seeding, settings
 from mitigate.core.files import find
 
+PARTIAL = "_partial_"  # Hydra's mark: give a function that makes this
+
 
 def build(node: DictConfig, **given: Any) -> Any:
     """Return the object that ``node`` describes; ``given`` are further keyword arguments.
 
-    Lists and mappings inside arrive as plain lists and dicts. The ValueError or FileNotFoundError
+    Lists and mappings inside arrive as plain lists and dicts, and an entry with ``_partial_: true``
+    as a :class:`Maker`. The ValueError or FileNotFoundError
     of a constructor reaches the user as it was raised.
     """
     try:
-        make = instantiate(node, _partial_=True, _convert_="all")
-        return make(**given)  # not through instantiate, which would copy what is given
+        plain = OmegaConf.to_container(node, resolve=True)
+        assert isinstance(plain, dict)
+        makers = {k: Maker(v) for k, v in plain.items() if isinstance(v, dict) and PARTIAL in v}
+        rest = OmegaConf.create({k: v for k, v in plain.items() if k not in makers})
+        make = instantiate(rest, _partial_=True, _convert_="all")
+        return make(**makers, **given)  # not through instantiate, which would copy what is given
     except InstantiationException as error:
         cause = error.__cause__
         while isinstance(cause, InstantiationException):
@@ -39,22 +46,32 @@ def build(node: DictConfig, **given: Any) -> Any:
         raise
 
 
-def maker(node: DictConfig) -> Callable[[], Any]:
-    """Return a function that makes what ``node`` describes, one each time; it can be pickled."""
-    return instantiate(node, _partial_=True, _convert_="all")
+class Maker:
+    """Makes what a config describes, anew each time and with all that is inside it; it can be
+    pickled, so that worker processes make their own."""
+
+    def __init__(self, node: dict[str, Any]) -> None:
+        self.node = {name: value for name, value in node.items() if name != PARTIAL}
+
+    def __call__(self) -> Any:
+        return build(OmegaConf.create(self.node))
+
+
+def maker(node: DictConfig) -> Maker:
+    """Return a function that makes what ``node`` describes."""
+    plain = OmegaConf.to_container(node, resolve=True)
+    assert isinstance(plain, dict)
+    return Maker({str(name): value for name, value in plain.items()})
 
 
 def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -> DictConfig:
     """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too).
 
-    What the command line names counts more (``overrides``): ``agent.blind=[rgb]``, and of a config
-    chosen by ``agent=mine`` what is not the class's default.
+    What the command line sets counts more (``overrides``: ``agent.blind=[rgb]``); ``agent=mine``
+    names the class, and what the weights do not say.
     """
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
-    if ["agent"] in keys:
-        plain = defaults(node)
-        named |= {name for name in plain if node[name] != plain[name]}
     found = OmegaConf.merge(node, carried(node, weights))
     assert isinstance(found, DictConfig)
     for setting in named:
@@ -84,15 +101,6 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     return settings.read_agent(file, node._target_, names)
 
 
-def defaults(node: DictConfig) -> dict[str, Any]:
-    """Return the settings of ``node`` as its ``_target_`` has them by itself, None where it has
-    none of its own."""
-    own = signature(get_object(node._target_)).parameters
-    given = {str(n): own[str(n)].default for n in node if n != "_target_" and str(n) in own}
-    plain = {name: None if value is Parameter.empty else value for name, value in given.items()}
-    return {name: OmegaConf.create({"it": value}).it for name, value in plain.items()}
-
-
 def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Module:
     """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file."""
     from mitigate.shipping import hardened
@@ -102,6 +110,7 @@ def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Modul
     agent = build(node)
     if not hasattr(agent, "settings"):  # those of its config are what is known of it
         plain = OmegaConf.to_container(node, resolve=True)
+        assert isinstance(plain, dict)
         agent.settings = partial(dict, {k: v for k, v in plain.items() if k != "_target_"})
     if weights is not None and hardened.adapters_only(weights):
         hardened.check(Path(weights))

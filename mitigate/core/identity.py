@@ -10,6 +10,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
+from pathlib import PurePath
 from typing import Any
 
 from torch import nn
@@ -28,11 +29,25 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
     the agent (``front``: the safeguard that repairs its instructions).
     """
     held = {
-        "class": type(agent).__qualname__,
+        "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
         "weights": weights_sha(agent) if isinstance(agent, nn.Module) else "",
         "settings": getattr(agent, "settings", dict)(),
         "sensors": {name: asdict(sensor) for name, sensor in sorted(sensors.items())},
         "front": front,
     }
-    text = json.dumps(held, sort_keys=True, default=list)
+    text = json.dumps(held, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
+
+
+def _plain(value: Any) -> Any:
+    """A setting as JSON; ValueError for one that is no data."""
+    if isinstance(value, (set, frozenset)):
+        return sorted(value)
+    if hasattr(value, "tolist"):  # numpy
+        return value.tolist()
+    if isinstance(value, (PurePath, tuple)):
+        return str(value) if isinstance(value, PurePath) else list(value)
+    raise ValueError(
+        f"A setting of the agent is a {type(value).__name__}, which is no data: settings() returns "
+        "numbers, texts, lists and mappings."
+    )

@@ -6,6 +6,7 @@ is drawn or evaluated only where it is named.
 
 from __future__ import annotations
 
+import warnings
 from functools import lru_cache
 from importlib.metadata import entry_points
 
@@ -25,23 +26,34 @@ HEAD = ("name", "corrupts", "severity s", "kept in an episode", "drawn each fram
 
 @lru_cache(maxsize=1)
 def further() -> dict[str, Record]:
-    """Records of installed packages. Raises ValueError for one that is no :class:`Record`, or has
-    the name of another."""
+    """Records of installed packages; one that is none, or has the name of another, is left out with
+    a warning, so that a package that nobody named stops nothing."""
     found: dict[str, Record] = {}
     for point in entry_points(group=GROUP):
-        record = point.load()
-        if not isinstance(record, Record):
-            raise ValueError(
-                f"The entry point {point.name} = {point.value} of {GROUP} is a "
-                f"{type(record).__name__}, not a mitigate.corruptions.Record."
+        try:
+            record = point.load()
+            problem = _problem(record, {"clean", *SUITE, *found})
+        except Exception as error:  # of any kind: it is another package's code
+            problem = f"cannot be imported ({type(error).__name__}: {error})"
+        if problem:
+            warnings.warn(
+                f"The corruption {point.name} = {point.value} of {point.dist and point.dist.name} "
+                f"is left out: it {problem}.",
+                stacklevel=2,
             )
-        if record.name in SUITE or record.name in found:
-            raise ValueError(
-                f"The entry point {point.value} of {GROUP} brings a corruption called "
-                f"{record.name!r}, and there is one already: give it another name."
-            )
-        found[record.name] = record
+        else:
+            found[record.name] = record
     return found
+
+
+def _problem(record: object, taken: set[str]) -> str:
+    if not isinstance(record, Record):
+        return f"is a {type(record).__name__}, not a mitigate.corruptions.Record"
+    if record.name in taken:
+        return f"is called {record.name!r}, as another one is"
+    if record.modality == "instruction":
+        return "corrupts instructions, which only ours do"
+    return ""
 
 
 def names(*modalities: str) -> tuple[str, ...]:

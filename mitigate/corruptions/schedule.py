@@ -62,7 +62,9 @@ class Schedule:
                 f"names is a list of corruptions, such as [{self.names!r}], but it is the text "
                 f"{self.names!r}."
             )
-        self.names = tuple(check_name(name) for name in self.names)
+        self.names = tuple(
+            check_name(name) for name in (NAMES if self.names is None else self.names)
+        )
         if not self.names or len(set(self.names)) < len(self.names):
             raise ValueError(
                 f"A schedule needs at least one corruption and each only once, but names = "

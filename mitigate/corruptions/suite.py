@@ -184,7 +184,17 @@ def corrupt(
     if severity == 0.0:
         return frame.copy()
     assert record.apply is not None, "names of frames have a function"
-    return record.apply(views, severity, key, heading if rgb else sensor).reshape(frame.shape)
+    given = (severity, key, heading if rgb else sensor)
+    if name in registry.SUITE:
+        return record.apply(views, *given).reshape(frame.shape)
+    made = record.apply(views.copy(), *given)
+    if getattr(made, "dtype", None) != views.dtype or made.shape != views.shape:
+        raise ValueError(
+            f"The corruption {name!r} gave {getattr(made, 'dtype', type(made).__name__)} "
+            f"{getattr(made, 'shape', '')} for {views.dtype} {views.shape}: its function must keep "
+            "shape and dtype."
+        )
+    return made.reshape(frame.shape)
 
 
 def corrupt_observation(

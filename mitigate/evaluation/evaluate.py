@@ -68,8 +68,8 @@ ConfigStore.instance().store(name="evaluate_schema", node=EvaluateConfig)
 def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
 
-    ``overrides``: those of the command line; what they say of the agent (``agent.blind=[rgb]``, or
-    a config chosen by ``agent=mine``) counts more than the weights' own settings, and the table's
+    ``overrides``: those of the command line; what they say of the agent (``agent.blind=[rgb]``)
+    counts more than the weights' own settings, and the table's
     column names it.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """

@@ -22,6 +22,7 @@ import torch
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.identity import identity as identity_of
+from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.evaluation import rows
@@ -55,13 +56,16 @@ class EpisodeTask:
 
     @contextmanager
     def ready(self) -> Iterator[None]:
-        """One thread for torch: sums are then in the same order in any number of processes."""
+        """One thread for torch, and fp32 whoever calls: results are then the same in any number of
+        processes, and inside a training in bf16."""
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
         self.agent.eval()
         self.world = self.world or self.make_world()
+        device = next((p.device for p in _parameters(self.agent)), torch.device("cpu"))
         try:
-            yield
+            with computing("fp32", device):
+                yield
         finally:
             torch.set_num_threads(threads)
 
@@ -79,6 +83,10 @@ class EpisodeTask:
     def name(self, job: Job) -> str:
         """The episode and its condition."""
         return f"episode {job[0].episode_id}, {job[1].name}"
+
+
+def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
+    return agent.parameters() if isinstance(agent, torch.nn.Module) else iter(())
 
 
 def evaluate(

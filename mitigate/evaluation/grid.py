@@ -12,13 +12,13 @@ from functools import cached_property
 
 import numpy as np
 
-from mitigate.corruptions.registry import known
+from mitigate.corruptions.registry import names
 from mitigate.evaluation.rows import Row, upsert
 
-BLOCKS = {  # the paper's, in its order; those of installed packages behind
-    "RGB": known("rgb"),
-    "Depth": known("depth"),
-    "Instruction": known("instruction"),
+BLOCKS = {  # the suite's; a corruption of another package is no part of them
+    "RGB": names("rgb"),
+    "Depth": names("depth"),
+    "Instruction": names("instruction"),
 }
 PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt: these have no row
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
 from mitigate.worlds.episodes import Episode, from_vlnce
-from mitigate.worlds.world import World
+from mitigate.worlds.world import World, depth_sensor
 
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
 CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
@@ -67,7 +68,8 @@ def draw_trajectories(
     """
     walks = list(_walks(agents, world, episode, corruption, seed))
     start = dict(world.reset(episode))
-    met = corrupt_observation(start, corruption, Key(seed, episode.episode_id, 0))
+    key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
+    met = corrupt_observation(start, corruption, key, sensor)
     figure = Figure(figsize=INCHES, layout="constrained")
     above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
     entry = DEPTH if corruption.modality == "depth" else RGB
@@ -123,7 +125,8 @@ def write_pictures(
     chosen = list(won_back(rows, before, after))[:count] or _first_corrupted(rows)
     written = []
     for episode_id, corruption in chosen:
-        out = Path(folder) / f"{episode_id}-{corruption.name}.png"
+        safe = re.sub(r"[^\w.-]+", "_", episode_id)  # an id may hold what no file name should
+        out = Path(folder) / f"{safe}-{corruption.name}.png"
         written.append(draw_trajectories(agents, world, known[episode_id], corruption, out, seed))
     return [*written, contact_sheet(written, Path(folder) / "sheet.png")] if written else []
 

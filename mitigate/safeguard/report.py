@@ -17,7 +17,7 @@ from typing import Any
 
 from torch import nn
 
-from mitigate.core.files import atomic_text, open_text
+from mitigate.core.files import atomic_text, find, open_text
 from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
@@ -94,7 +94,7 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
     the model before fine-tuning is the trained one without its adapter, and prompted.
     """
     quick = cfg.evaluation
-    listed = islice(read_episodes(cfg.env.episodes[quick.split]), quick.episodes)
+    listed = islice(read_episodes(find(cfg.env.episodes[quick.split])), quick.episodes)
     texts = [episode.instruction.text for episode in listed]
     every = corrupted(texts, FAMILIES, cfg.severity, "test", cfg.seed)
     chosen = [

@@ -15,7 +15,7 @@ import re
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,9 +27,10 @@ from torch import Tensor
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import build, checkpoint, conf, settings
-from mitigate.core.files import sha256
+from mitigate.core.files import find, sha256
 from mitigate.evaluation import evaluate
 from mitigate.evaluation import rows as result_rows
+from mitigate.evaluation.rows import Row
 from mitigate.shipping import hardened, others, programs
 from mitigate.shipping.card import facts, metrics, readme, weights_of
 from mitigate.shipping.others import Walks
@@ -141,7 +142,8 @@ def _write(
         shipped = copy.deepcopy(agent)
         checkpoint.load_weights(shipped, draft)
     found = _metrics(run, rows, {checkpoint.weights_sha(a) for a in (agent, shipped)})
-    made, wanted = {"program": False, "checked": {"walks": others.WALKS}, "latency_ms": {}}, {}
+    made: dict[str, Any] = {"program": False, "latency_ms": {}}
+    made["checked"], wanted = {"walks": others.WALKS}, {}
     if walks is None:
         made, wanted = _programs(draft, agent, shipped, onnx)
     card = {
@@ -203,8 +205,8 @@ def _programs(
 
 def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
     """Whether all but the adapters of ``agent`` is, bit for bit, what the run started from."""
-    init = cfg.get("init")
-    if not adapters.adapted(agent) or not init or hardened.adapters_only(init):
+    init = find(cfg.get("init") or "")
+    if not adapters.adapted(agent) or not cfg.get("init") or hardened.adapters_only(init):
         return False
     base = copy.deepcopy(agent)
     adapters.remove_adapters(base)
@@ -227,7 +229,25 @@ def _metrics(run: Path, rows: list[Path | str], agents: set[str]) -> list[dict[s
             f"of this agent ({', '.join(sorted(agents))}). Evaluate it: `make evaluate "
             f'ARGS="checkpoint={run}/agent"`.'
         )
-    return metrics(result_rows.upsert(own, given), agents)
+    return metrics([*_of_one_agent(own, given, agents)], agents)
+
+
+def _of_one_agent(own: list[Row], given: list[Row], weights: set[str]) -> Iterator[Row]:
+    """The rows of ``weights``, of one agent: with a sensor blanked, or behind a safeguard, the same
+    weights are another. Where there are several, the run's own rows say which it is; raises
+    ValueError if they do not."""
+    rows = [row for row in result_rows.upsert(own, given) if weights_of(row) in weights]
+    for sha in weights:
+        mine = [row for row in rows if weights_of(row) == sha]
+        agents = {row["agent"] for row in mine}
+        known = {row["agent"] for row in own if weights_of(row) == sha} or agents
+        if len(known) > 1:
+            names = sorted({f"{row['name']} ({row['agent']})" for row in mine})
+            raise ValueError(
+                f"The rows given are of several agents with these weights: {', '.join(names)}. "
+                "Name the files of one (--rows ...)."
+            )
+        yield from (row for row in mine if row["agent"] in known)
 
 
 def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:

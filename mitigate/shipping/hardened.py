@@ -45,6 +45,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     card = check(folder)
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
         if agent is not None:
+            _check_same(agent, folder / CONFIG)
             return fill(agent, folder, base=base).eval()
         agent = build(folder / CONFIG)
         if card["vocabulary"] != vocabulary_sha(agent):
@@ -54,6 +55,20 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
                 f"{card['commit']})."
             )
         return fill(agent, folder, base=base).eval()
+
+
+def _check_same(agent: Any, config: Path) -> None:
+    """Raise ValueError if ``agent`` says of itself other settings than those in ``config``."""
+    held = settings.read(config).get("agent")
+    own = getattr(agent, "settings", dict)()
+    if not isinstance(held, dict):
+        raise ValueError(f"{config} has no settings of an agent. {_AGAIN}")
+    wrong = [name for name, value in own.items() if name in held and held[name] != value]
+    if wrong:
+        raise ValueError(
+            f"{config} is of an agent with {wrong[0]}={held[wrong[0]]!r:.60}, but the one given "
+            f"has {own[wrong[0]]!r:.60}. Build it with the settings in that file."
+        )
 
 
 def build(config: Path) -> TopologicalAgent:

@@ -42,7 +42,7 @@ class Walks:
         self.make_agent, self.make_world = make_agent, make_world
         self.episodes = list(episodes)[:WALKS]
 
-    def measures(self, agent: nn.Module) -> list[dict[str, Any]]:
+    def measures(self, agent: Any) -> list[dict[str, Any]]:
         """How ``agent`` walks, the hash of its weights first."""
         world = self.make_world()
         walked = [run_episode(agent.eval(), world, e, CLEAN, 0) for e in self.episodes]

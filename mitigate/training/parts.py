@@ -10,28 +10,43 @@ from torch import nn
 
 from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
 from mitigate.agents.adapters import adapter_parameters, remove_adapters
+from mitigate.agents.agent import Trainable
 from mitigate.core import checkpoint
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 
-ADAPTERS = "adapters"  # in a list of parts: those in frozen modules
+ADAPTERS = "adapters"  # in a list of parts: all of them, wherever they are
 START = "start"  # as a teacher: the agent as it is when the stage begins
 
 
-def train_only(agent: Any, parts: Iterable[str]) -> None:
-    """Freeze all of ``agent`` but ``parts``, names of its ``parts()``.
+def train_only(agent: Any, parts: Iterable[str] | None) -> None:
+    """Freeze all of ``agent`` but ``parts``, names of its ``parts()``; None: all train.
 
-    A module's adapters train with it; "adapters" trains those in frozen modules as well. Raises
-    ValueError for an unknown part.
+    Adapters train only if "adapters" is named, wherever they are. Raises ValueError for an unknown
+    part, for parameters that are in no part, and for an agent that is not trainable.
     """
-    own, parts = agent.parts(), tuple(parts)
+    if not isinstance(agent, Trainable):
+        lacking = [n for n in ("parts", "collect", "join", "decide") if not hasattr(agent, n)]
+        raise ValueError(
+            f"{type(agent).__name__} cannot be trained on episodes: it has no "
+            f"{', '.join(lacking)} (mitigate/agents/agent.py, docs/bring-your-own.md)."
+        )
+    own = agent.parts()
+    parts = tuple(own if parts is None else parts)
     for part in parts:
         if part not in (*own, ADAPTERS):
             raise ValueError(unknown("part of the agent", part, (*own, ADAPTERS)))
+    held = {id(p) for module in own.values() for p in module.parameters()}
+    stray = [name for name, p in agent.named_parameters() if id(p) not in held]
+    if stray:
+        raise ValueError(
+            f"parts() of {type(agent).__name__} leaves out {', '.join(stray[:4])}: every parameter "
+            "belongs to a part, or nobody could say whether it trains."
+        )
     for name, module in own.items():
         module.requires_grad_(name in parts)
-    for parameter in adapter_parameters(agent) if ADAPTERS in parts else ():
-        parameter.requires_grad_(True)
+    for parameter in adapter_parameters(agent):
+        parameter.requires_grad_(ADAPTERS in parts)
 
 
 def load_teacher(agent: nn.Module, weights: str) -> nn.Module:

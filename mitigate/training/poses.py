@@ -14,7 +14,7 @@ from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.training.success import measure
-from mitigate.worlds.world import Placeable, TrainingEpisodes
+from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
 PIECE = 6  # panoramas that one job renders (ours)
 
@@ -117,11 +117,11 @@ class Poses:
         self.world.enter(scenes[int(rng.integers(len(scenes)))])
         xy = self.world.point(rng)
         heading = float(rng.uniform(-np.pi, np.pi))
-        views = np.arange(VIEWS)
-        if self.every > 1:
-            views = np.arange(int(rng.integers(self.every)), VIEWS, self.every)
+        first = int(rng.integers(self.every)) if self.every > 1 else 0
+        views = list(range(first, VIEWS, self.every))
         clean, truth = self.world.put(xy, heading, views=views, rgb=self.sensor == RGB)
-        frames = corrupt_observation(clean, *self.schedule.draw(self.seed, name, 0))
+        drawn = self.schedule.draw(self.seed, name, 0)
+        frames = corrupt_observation(clean, *drawn, depth_sensor(self.world.sensors))
         target = truth[self.label]
         target = target[views] if len(target) == VIEWS else target
         return frames[self.sensor][views], clean[self.sensor][views], target

@@ -64,8 +64,9 @@ class Rollouts:
             schedule.refresh(prior_rates(prior))
 
     def identity(self) -> dict[str, str]:
-        """The hash of the prior's file."""
-        return {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
+        """Hashes of the files that the batches are made of."""
+        prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
+        return {**getattr(self.training, "identity", dict)(), **prior}
 
     def jobs(self, step: int) -> list[tuple]:
         """(step, piece, of how many, episodes, the schedule's state) of each piece."""

@@ -13,6 +13,7 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -20,15 +21,16 @@ import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
-from hydra.utils import get_method
+from hydra.utils import get_method, get_object
 from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate.core import checkpoint, conf, precision, seeding
-from mitigate.core.build import build, build_agent
+from mitigate.core.build import build, build_agent, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
+from mitigate.corruptions import Corruption
 from mitigate.evaluation.evaluate import EvaluationConfig, conditions, episodes, load
 from mitigate.training.batches import MOST, Workers
 from mitigate.training.ranks import Ranks
@@ -111,6 +113,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     if ranks.first:
         say(plan(cfg, folder))
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
+    _check_settings(cfg.agent, agent)
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
         for name, stage in cfg.stages.items():
             if stage is not None:
@@ -122,7 +125,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     agent.cpu().eval()
     checkpoint.save_agent(agent, folder / "agent")
     with atomic_text(folder / "agent" / "config.yaml") as file:
-        file.write(OmegaConf.to_yaml({"agent": _plain(cfg.agent) | _settings_of(agent)}))
+        file.write(OmegaConf.to_yaml({"agent": _written(cfg.agent, agent)}))
     OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
     if cfg.evaluation.enabled:
         base = None
@@ -205,6 +208,11 @@ def check(cfg: DictConfig) -> None:
         )
     if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
+    if OmegaConf.select(cfg, "env.training") is None and cfg.report == TrainConfig.report:
+        raise ValueError(
+            f"The world {cfg.env.name} has no training episodes: give its config an entry "
+            "training, such as {_target_: mitigate.worlds.episodes.ListedEpisodes, path: x.json}."
+        )
     for name, stage in cfg.stages.items():
         if stage is not None and not OmegaConf.select(stage, "recipe._target_", default=None):
             own = [n for n, s in cfg.stages.items() if s and OmegaConf.select(s, "recipe._target_")]
@@ -215,7 +223,19 @@ def check(cfg: DictConfig) -> None:
     if cfg.evaluation.enabled:  # a mistake there must not show only after hours of training
         count = cfg.evaluation.episodes
         episodes(cfg.env, cfg.evaluation.split, count if count is None else min(count, 1))
-        conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+        met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+        if cfg.report == TrainConfig.report:
+            _check_sensors(cfg, met)
+
+
+def _check_sensors(cfg: DictConfig, met: list[Corruption]) -> None:
+    sensors = maker(cfg.env.world)().sensors
+    lost = [c.name for c in met if c.modality in ("rgb", "depth") and c.modality not in sensors]
+    if lost:
+        raise ValueError(
+            f"The suite has {', '.join(lost)}, but the world {cfg.env.name} shows only "
+            f"{', '.join(sensors)}. Choose another, such as suite=rgb or suite=depth."
+        )
 
 
 def default_folder(cfg: DictConfig, variant: str = "") -> str:
@@ -229,9 +249,30 @@ def default_folder(cfg: DictConfig, variant: str = "") -> str:
     return f"{cfg.runs}/{cfg.name}-s{cfg.severity:g}{depth}-seed{cfg.seed}{end}"
 
 
-def _settings_of(agent: nn.Module) -> dict[str, Any]:
-    """What an agent says that its config must hold, such as its vocabulary."""
-    return getattr(agent, "settings", dict)()
+def _written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
+    """What lies beside the weights of ``agent``: its config, with what it says itself
+    (``settings()``, such as its vocabulary). Which classes are inside it is for the reader's own
+    config to say."""
+
+    def data(value: Any) -> Any:
+        if isinstance(value, dict):
+            return {k: data(v) for k, v in value.items() if not str(k).startswith("_")}
+        return value
+
+    own = getattr(agent, "settings", dict)()
+    return {"_target_": node._target_, **data(_plain(node)), **data(own)}
+
+
+def _check_settings(node: DictConfig, agent: nn.Module) -> None:
+    """Raise ValueError for settings of an agent that could not be given back to its class."""
+    known = {*signature(get_object(node._target_)).parameters, *map(str, node)}
+    own = getattr(agent, "settings", dict)()
+    wrong = sorted(name for name in own if name not in known)
+    if wrong:
+        raise ValueError(
+            f"settings() of {type(agent).__name__} names {', '.join(wrong)}, which its constructor "
+            "does not take: return its arguments, so that the agent can be built again."
+        )
 
 
 def _set(node: DictConfig) -> dict[str, Any]:

@@ -96,9 +96,8 @@ class Trainer:
                 f"trainer.grad_clip ({grad_clip}) must be a norm above 0, or 0 to clip nothing."
             )
         self.folder, self.steps, self.seed, self.keep = Path(folder), steps, seed, keep
-        self.log_every, self.save_every = log_every, save_every
+        self.log_every, self.save_every, self.grad_clip = log_every, save_every, grad_clip
         self.eval_every, self.figure_every = eval_every, figure_every
-        self.grad_clip = grad_clip
         found = "cuda" if torch.cuda.is_available() else "cpu"
         self.device = torch.device(found if device == "auto" else device)
         self.asked, self.precision = precision, choose(precision, self.device)

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from mitigate.core.files import atomic_text, json_members
+from mitigate.core.files import atomic_text, json_members, sha256
 
 Vector = tuple[float, ...]
 IDS = ("episode_id", "trajectory_id")
@@ -126,6 +126,10 @@ class ListedEpisodes:
         """A function of the generator's state and of ``share``: (piece, of how many)."""
         mine = self._listed[share[0] % len(self._listed) :: share[1]]
         return mine[int(rng.integers(len(mine)))]
+
+    def identity(self) -> dict[str, str]:
+        """The hash of the file: a training is not continued on another."""
+        return {"training_sha256": sha256(self.path)}
 
 
 def read_extras(path: Path | str) -> dict[str, Any]:

@@ -22,7 +22,7 @@ class GymWorld:
             those that are called so.
         success: the entry of ``info`` that says at the end whether it went well; None: a reward
             above 0 in the last step. unit: metres of one unit of depth. rule: what success means,
-            in words, for the rows.
+            in words, for the rows. limit: steps after which an episode is over at the latest.
 
     Raises ValueError for an environment without frames or with actions that are not discrete.
     """
@@ -34,13 +34,14 @@ class GymWorld:
         *,
         success: str | None = None,
         unit: float = 1.0,
+        limit: int = 500,
         rule: str = "reward > 0 at the end",
     ) -> None:
         if not hasattr(env.action_space, "n"):
             raise ValueError(
                 f"The actions {env.action_space} are not discrete: wrap the environment."
             )
-        self.env, self.rule, self.unit, self.success = env, rule, unit, success
+        self.env, self.rule, self.unit, self.success, self.limit = env, rule, unit, success, limit
         space = env.observation_space
         boxes = dict(space.spaces) if hasattr(space, "spaces") else {"": space}
         whole = {RGB: ""} if "" in boxes else {n: n for n in (RGB, DEPTH, POSE) if n in boxes}
@@ -52,8 +53,7 @@ class GymWorld:
                 f"{', '.join(boxes)}. Name its frames: entries={{'rgb': 'image'}}."
             )
         self.sensors = {
-            name: Sensor(name, tuple(boxes[e].shape), str(boxes[e].dtype), "m" * (name == DEPTH))
-            for name, e in self.entries.items()
+            name: _sensor_of(name, boxes[entry], unit) for name, entry in self.entries.items()
         }
         if RGB in self.sensors and self.sensors[RGB].dtype != "uint8":
             raise ValueError(
@@ -74,9 +74,11 @@ class GymWorld:
             raise ValueError(
                 f"Unknown action {action}: the environment has {self.env.action_space.n}."
             )
-        seen, reward, terminated, truncated, self._info = self.env.step(action)
-        self.done, self._reward = bool(terminated or truncated), float(reward)
+        first = int(getattr(self.env.action_space, "start", 0))
+        seen, reward, terminated, truncated, self._info = self.env.step(action + first)
         self._steps += 1
+        self.done = bool(terminated or truncated) or self._steps >= self.limit
+        self._reward = float(reward)
         return self._observation(seen)
 
     def measures(self) -> dict[str, float]:
@@ -96,8 +98,15 @@ class GymWorld:
 
     def _observation(self, seen: Any) -> Observation:
         held = seen if isinstance(seen, Mapping) else {"": seen}
-        frames = {name: np.asarray(held[entry]) for name, entry in self.entries.items()}
+        frames = {name: np.array(held[entry]) for name, entry in self.entries.items()}
         if DEPTH in frames:
             frames[DEPTH] = frames[DEPTH].astype(np.float32) * np.float32(self.unit)
         pose = {POSE: frames.pop(POSE)} if POSE in frames else {}
         return Observation(pose, lambda: frames, tuple(frames))
+
+
+def _sensor_of(name: str, box: Any, unit: float) -> Sensor:
+    shape, dtype = tuple(box.shape), str(box.dtype)
+    if name == DEPTH:
+        return Sensor(name, shape, dtype, "m", high=float(np.max(box.high)) * unit)
+    return Sensor(name, shape, dtype)

@@ -137,7 +137,8 @@ class EnvWorld:
     ``success`` says at the end: the name of an entry, or None: a reward above 0 in the last step.
 
     Args: env: not batched. entries: names of its frames by ours ("rgb", "depth", "pose"). unit:
-    metres of one unit of depth. rule: what success means, in words, for the rows.
+    metres of one unit of depth. limit: steps after which an episode is over at the latest. rule:
+    what success means, in words, for the rows.
 
     Raises ValueError for an environment that is batched or lacks an entry.
     """
@@ -149,6 +150,7 @@ class EnvWorld:
         *,
         success: str | None = None,
         unit: float = 1.0,
+        limit: int = 500,
         rule: str = "reward > 0 at the end",
     ) -> None:
         if env.batch_size.numel() != 1:
@@ -156,7 +158,7 @@ class EnvWorld:
                 f"The environment has the batch size {list(env.batch_size)}: give one."
             )
         found = dict(env.observation_spec.items())
-        self.env, self.rule, self.unit, self.success = env, rule, unit, success
+        self.env, self.rule, self.unit, self.success, self.limit = env, rule, unit, success, limit
         self.entries = dict(entries or {name: name for name in (RGB, DEPTH, POSE) if name in found})
         lacking = [entry for entry in self.entries.values() if entry not in found]
         if lacking or not self.entries:
@@ -165,10 +167,15 @@ class EnvWorld:
                 f"{', '.join(map(str, found))}. Name its frames: entries={{'rgb': 'pixels'}}."
             )
         self.sensors = {name: _sensor_of(name, found[e]) for name, e in self.entries.items()}
+        if RGB in self.sensors and self.sensors[RGB].dtype != "uint8":
+            raise ValueError(
+                f"RGB must be uint8 in 0-255, but it is {self.sensors[RGB].dtype}: "
+                "take transforms that scale frames off."
+            )
 
     @property
     def done(self) -> bool:
-        return bool(self._now["done"].any())
+        return bool(self._now["done"].any()) or self._steps >= self.limit
 
     def reset(self, episode: Episode) -> Observation:
         seed = episode.info.get("seed", digest("episode", episode.episode_id))
@@ -206,7 +213,7 @@ class EnvWorld:
         return {}
 
     def _seen(self) -> Observation:
-        frames = {name: self._now[entry].numpy() for name, entry in self.entries.items()}
+        frames = {name: self._now[entry].numpy().copy() for name, entry in self.entries.items()}
         if DEPTH in frames:
             frames[DEPTH] = frames[DEPTH].astype(np.float32) * np.float32(self.unit)
         pose = {POSE: frames.pop(POSE)} if POSE in frames else {}

@@ -6,14 +6,16 @@ one: ``docs/bring-your-own.md``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from mitigate.core.observation import Observation, Sensor
-from mitigate.corruptions import Corruption, Key, Schedule, corrupt_observation
+from mitigate.core.observation import DEPTH, Observation, Sensor
+from mitigate.corruptions import Corruption, DepthSensor, Key, Schedule, corrupt_observation
 from mitigate.worlds.episodes import Episode
 
 
@@ -30,8 +32,9 @@ class Expert(Protocol):
 class World(Protocol):
     """One agent in one place, an episode at a time.
 
-    sensors: what each entry of an observation is. rule: what its ``measures`` count as success, in
-    words, such as "STOP and geodesic < 3 m"; it is part of every row. done: no step may follow.
+    sensors: what each entry of an observation is; the frames that are corrupted are called "rgb"
+    and "depth", and the place is "pose". rule: what its ``measures`` count as success, in words,
+    such as "STOP and geodesic < 3 m"; it is part of every row. done: no step may follow.
     """
 
     sensors: Mapping[str, Sensor]
@@ -54,7 +57,7 @@ class World(Protocol):
         evaluated there, not trained by imitation."""
 
     def truth(self) -> Mapping[str, np.ndarray]:
-        """Labels of what is seen from here, by name; empty in a world that has none."""
+        """Labels of what is seen from here, by name; a world that has none needs no such method."""
 
 
 @runtime_checkable
@@ -65,6 +68,7 @@ class Placeable(Protocol):
     """
 
     scenes: Sequence[str]
+    sensors: Mapping[str, Sensor]
 
     def enter(self, scene: str) -> None: ...
 
@@ -130,13 +134,14 @@ class Corrupted:
         return self.world.expert()
 
     def truth(self) -> Mapping[str, np.ndarray]:
-        return self.world.truth()
+        return getattr(self.world, "truth", dict)()
 
     def _seen(self, clean: Observation) -> Observation:
         def corrupted() -> dict[str, np.ndarray]:
             corruption, key = self._draw()
             self.looks += 1
-            self.last = corrupt_observation(dict(clean), corruption, key)
+            sensor = depth_sensor(self.world.sensors)
+            self.last = corrupt_observation(dict(clean), corruption, key, sensor)
             return self.last
 
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
@@ -146,6 +151,18 @@ class Corrupted:
         if isinstance(self.by, Schedule):
             return self.by.draw(self.seed, name, self.looks)
         return self.by, Key(self.seed, name, self.looks)
+
+
+def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
+    """What the corruptions must know of a world's depth: its range, and what stands for no
+    reading. A range without an end is R2R-CE's."""
+    depth, usual = sensors.get(DEPTH), DepthSensor()
+    if depth is None:
+        return usual
+    far = depth.high if math.isfinite(depth.high) else usual.z_max
+    return replace(
+        usual, z_max=far, missing=usual.missing if depth.missing is None else depth.missing
+    )
 
 
 def remembering(thing: Any) -> AbstractContextManager:

@@ -78,7 +78,7 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
 def test_a_corruption_of_another_package_joins_a_suite_a_schedule_and_the_list(installed, tmp_path):
     options = ["episodes=2", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
     said = run(installed, ROOT, "-m", "mitigate.evaluate", *options, f"out={tmp_path}/out")
-    assert "| Rain |" in said and "PRS-SR (RGB)" in said
+    assert "| Rain |" in said and "PRS-SR (Other)" in said
     rows = [json.loads(x) for x in (tmp_path / "out/rows.jsonl").read_text().splitlines()]
     assert {row["corruption"] for row in rows} == {"clean", "rain", "flare"}
     assert "rain" in run(installed, tmp_path, "-m", "mitigate.corrupt", "--list")

@@ -153,7 +153,6 @@ AMBIGUOUS: dict[str, tuple[str, str]] = {
 }
 TAGS = {word: name for name, text in reversed(_CLASSES.items()) for word in text.split()}
 VERBS = bag(_CLASSES["VERB"])
-PARTICLES = bag(_TWO["ADP ADV"])
 AMBIGUOUS_NOUNS = frozenset(word for word, pair in AMBIGUOUS.items() if "NOUN" in pair)
 POSSESSORS = bag("the your a an this that my his her its their our first second next")
 # what general taggers misread in instructions (turn, exit, left ...): our tag is kept there

@@ -53,12 +53,6 @@ class FreeSpace:
         j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
         return int(self.nearest[i, j])
 
-    def cells_of(self, xy: np.ndarray) -> np.ndarray:
-        """``cell_of`` for float ``[n, 2]`` positions."""
-        i = np.clip((xy[:, 1] / CELL).astype(int), 0, self.free.shape[0] - 1)
-        j = np.clip((xy[:, 0] / CELL).astype(int), 0, self.free.shape[1] - 1)
-        return self.nearest[i, j]
-
     def centre(self, cell: int) -> np.ndarray:
         """Plan position (metres) of the middle of a free cell."""
         return (self.cells[cell][::-1] + 0.5) * CELL
@@ -75,11 +69,6 @@ class FreeSpace:
             cost = self.graph.data[self.graph.indptr[path[-1]] : self.graph.indptr[path[-1] + 1]]
             path.append(int(row[np.argmin(field[row] + cost)]))
         return (self.cells[path][:, ::-1] + 0.5) * CELL
-
-    def line_free(self, a: np.ndarray, b: np.ndarray) -> bool:
-        """Whether the straight segment between two plan positions stays in free cells."""
-        length = float(np.hypot(b[0] - a[0], b[1] - a[1]))
-        return length - _march(self.free, a[0], a[1], (b[0] - a[0]), (b[1] - a[1]), length) < 1e-6
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
         """One straight move, sliding along walls (as VLN-CE's R2R agents): (new xy, collided)."""

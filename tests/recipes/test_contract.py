@@ -1,0 +1,62 @@
+"""What recipes say to an agent that keeps the contract by halves."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+from torch import nn
+
+from mitigate.agents.agent import Output
+from mitigate.agents.stepwise import StepDecisions, StepwiseAgent
+from mitigate.recipes.distil import policy_kl
+from mitigate.recipes.imitate import imitation, masked
+from mitigate.training.parts import load_teacher, train_only
+
+
+class Policy(StepwiseAgent):
+    def __init__(self) -> None:
+        super().__init__()
+        self.eyes, self.head = nn.Linear(3, 4), nn.Linear(4, 4)
+
+
+class Forgetful(Policy):
+    def parts(self):
+        return {"head": self.head}
+
+
+def decisions(target: torch.Tensor) -> StepDecisions:
+    return StepDecisions({}, {}, [], target, torch.ones(len(target)), [])
+
+
+def test_what_may_not_be_chosen_takes_no_part_in_the_loss():
+    mask = torch.tensor([[True, True, False, False]])
+    target = torch.tensor([[1.0, 0.0, 0.0, 0.0]])
+    values = imitation(Output(torch.zeros(1, 4), mask), decisions(target), {})
+    assert values["loss"] == pytest.approx(torch.log(torch.tensor(2.0)).item())
+    other = torch.tensor([[0.0, 0.0, 5.0, -5.0]])
+    assert policy_kl(masked(other, mask), masked(torch.zeros(1, 4), mask), 1.0) == 0
+
+
+def test_logits_of_another_shape_than_the_targets_name_the_contract():
+    with pytest.raises(ValueError, match=r"logits \[2, 4\] for targets \[3, 4\]"):
+        imitation(Output(torch.zeros(2, 4)), decisions(torch.zeros(3, 4)), {})
+
+
+def test_parts_must_hold_every_parameter():
+    with pytest.raises(ValueError, match=r"leaves out eyes.weight"):
+        train_only(Forgetful(), ["head"])
+
+
+def test_an_agent_that_is_not_trainable_says_what_it_lacks():
+    with pytest.raises(ValueError, match="parts, collect, join, decide"):
+        train_only(nn.Linear(2, 2), None)
+
+
+def test_only_what_is_named_trains_and_a_teacher_is_frozen():
+    agent = Policy()
+    train_only(agent, ["head"])
+    assert [n for n, p in agent.named_parameters() if p.requires_grad] == [
+        "head.weight",
+        "head.bias",
+    ]
+    assert not any(p.requires_grad for p in load_teacher(agent, "start").parameters())
