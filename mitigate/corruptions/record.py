@@ -28,7 +28,8 @@ class Record:
     the code. sources: of the constants; source: the same in a word or two. episode, frame: what is
     drawn once an episode, and anew for each frame. slip: how far it may change less at the next of
     100 severities (SSIM, or metres). bars: milliseconds to stay under at 480x640 and 224x224;
-    reason: where the time goes.
+    reason: where the time goes. version: of a further one, whose rows are measured anew when it
+    changes; ours have the suite's.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Record:
     slip: float = 0.0
     bars: tuple[float, float] | None = None
     reason: str = ""
+    version: str = ""
 
     def __post_init__(self) -> None:
         if self.modality not in MODALITIES:

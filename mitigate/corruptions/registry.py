@@ -79,6 +79,11 @@ def title(name: str) -> str:
     return name.replace("_", " ").capitalize()
 
 
+def version(name: str) -> dict[str, str]:
+    """What a row says of a corruption that is not the suite's."""
+    return {"version": further()[name].version} if name in further() else {}
+
+
 def modality(name: str) -> str:
     """What the corruption ``name`` corrupts."""
     return record(name).modality

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
-from omegaconf import MISSING, DictConfig
+from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find, sha256
@@ -29,6 +29,16 @@ ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 LIST = "episodes.sha256"  # of the file that the episodes came from
 GOLDEN = (5**0.5 - 1) / 2
+
+
+def suite_of(*modalities: str) -> list[str]:
+    """What ``${suite:rgb,depth}`` is in a config: clean, and the suite's corruptions of these."""
+    from mitigate.corruptions.registry import names
+
+    return ["clean", *names(*modalities)]
+
+
+OmegaConf.register_new_resolver("suite", suite_of, replace=True)
 
 
 @dataclass

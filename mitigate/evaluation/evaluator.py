@@ -25,6 +25,7 @@ from mitigate.core.identity import identity as identity_of
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
+from mitigate.corruptions.registry import version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.safeguard.guard import Safeguard
@@ -149,6 +150,7 @@ def _jobs(
                 "corruption": condition.name,
                 "severity": condition.severity,
                 "episode_id": episode.episode_id,
+                **version(condition.name),
             },
         )
         for episode in episodes

@@ -38,7 +38,8 @@ SUFFIXES = (".jsonl", ".jsonl.gz")
 
 def identity(row: Row) -> tuple:
     """Return what makes ``row`` itself: two rows with one identity are the same measurement."""
-    return tuple(float(row[key]) if key == "severity" else row[key] for key in IDENTITY)
+    own = tuple(float(row[key]) if key == "severity" else row[key] for key in IDENTITY)
+    return (*own, row.get("version", ""))  # of a corruption that another package brings
 
 
 def read(path: Path | str) -> list[Row]:

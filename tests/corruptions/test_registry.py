@@ -10,8 +10,9 @@ import sys
 from pathlib import Path
 
 import pytest
-import yaml
 
+import mitigate.evaluation.evaluate  # noqa: F401 - the schema and the resolver of its config
+from mitigate.core import conf
 from mitigate.corruptions import INSTRUCTION, NAMES, Record, registry
 
 ROOT = Path(__file__).parents[2]
@@ -21,7 +22,7 @@ POINT = re.search(r"```toml\n(.*?)```", PAGE, re.DOTALL)[1]
 
 
 def suite(name: str) -> list[str]:
-    return yaml.safe_load((ROOT / f"conf/suite/{name}.yaml").read_text())["conditions"]
+    return list(conf.load_config("evaluate", [f"suite={name}"]).suite.conditions)
 
 
 def test_the_suites_hold_what_the_records_say():
@@ -81,6 +82,11 @@ def test_a_corruption_of_another_package_joins_a_suite_a_schedule_and_the_list(i
     assert "| Rain |" in said and "PRS-SR (Other)" in said
     rows = [json.loads(x) for x in (tmp_path / "out/rows.jsonl").read_text().splitlines()]
     assert {row["corruption"] for row in rows} == {"clean", "rain", "flare"}
+    assert {row.get("version") for row in rows if row["corruption"] == "rain"} == {"1"}
+    changed = (tmp_path / "rain.py").read_text().replace('version="1"', 'version="2"')
+    (tmp_path / "rain.py").write_text(changed)
+    said = run(installed, ROOT, "-m", "mitigate.evaluate", *options, f"out={tmp_path}/out")
+    assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 8
     assert "rain" in run(installed, tmp_path, "-m", "mitigate.corrupt", "--list")
     code = (
         "from mitigate.corruptions import *\n"
