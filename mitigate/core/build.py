@@ -27,8 +27,8 @@ def build(node: DictConfig, **given: Any) -> Any:
     """Return the object that ``node`` describes; ``given`` are further keyword arguments.
 
     Lists and mappings inside arrive as plain lists and dicts, and an entry with ``_partial_: true``
-    as a :class:`Maker`. The ValueError or FileNotFoundError
-    of a constructor reaches the user as it was raised.
+    as a :class:`Maker`. The ValueError or FileNotFoundError of a constructor reaches the user as
+    it was raised.
     """
     try:
         plain = OmegaConf.to_container(node, resolve=True)
