@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import pickle
 
+import pytest
+import torch
+import yaml
 from omegaconf import OmegaConf
 
-from mitigate.core import build
+from mitigate.core import build, checkpoint
 
 
 class Engine:
@@ -43,3 +46,28 @@ def test_an_entry_marked_partial_arrives_as_such_a_function():
     cfg = OmegaConf.create({"doors": 3, "garage": {"_target_": f"{__name__}.Garage", "car": CAR}})
     made = build.build(cfg.garage, size=2)
     assert made.cars[0].engine is not made.cars[1].engine and made.cars[1].doors == 3
+
+
+class Gained(torch.nn.Module):
+    """Settings that no weight shows, one of them without a default."""
+
+    def __init__(self, gain: float, width: int = 2) -> None:
+        super().__init__()
+        self.gain, self.line = gain, torch.nn.Linear(width, 1)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "gain"), [([], -1.0), (["agent=mine"], -1.0), (["agent.gain=2.0"], 2.0)]
+)
+def test_settings_that_lie_beside_the_weights_count_unless_the_command_sets_them(
+    overrides, gain, tmp_path
+):
+    """A config chosen by ``agent=mine`` names the class: its own values are of another agent."""
+    target = f"{__name__}.Gained"
+    checkpoint.save_weights(Gained(-1.0), tmp_path)
+    own = {"agent": {"_target_": target, "gain": -1.0, "width": 2}}
+    (tmp_path / "config.yaml").write_text(yaml.safe_dump(own))
+    here = 2.0 if "agent.gain=2.0" in overrides else 1.0
+    node = OmegaConf.create({"_target_": target, "gain": here, "width": 2})
+    found = build.settings_of(node, str(tmp_path), overrides)
+    assert build.build_agent(found, weights=str(tmp_path), seed=0).gain == gain

@@ -111,3 +111,14 @@ def test_a_name_that_is_not_installed_is_unknown_here():
     with pytest.raises(KeyError):
         registry.record("rain")
     assert registry.title("rain_drops") == "Rain drops"
+
+
+def test_a_broken_package_is_left_out_with_a_warning_and_stops_nothing(installed, tmp_path):
+    (tmp_path / "rain.py").write_text("raise ImportError('no cloud')")
+    code = (
+        "import warnings\nfrom mitigate.corruptions import registry\n"
+        "with warnings.catch_warnings(record=True) as said:\n    known = registry.known('rgb')\n"
+        "assert known == registry.names('rgb'), known\nprint(said[0].message)"
+    )
+    said = run(installed, tmp_path, "-c", code)
+    assert "rain = rain:RAIN of rain is left out" in said and "no cloud" in said

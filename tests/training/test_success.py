@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
+import torch
+
+from mitigate.core.precision import computing
 from mitigate.corruptions import Schedule
+from mitigate.evaluation.evaluator import EpisodeTask
 from mitigate.training.success import measure
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -20,3 +24,12 @@ def test_rates_do_not_depend_on_the_number_of_processes(capsys):
     )
     assert alone == two and set(alone) == {"flare", "missing_data"} and not agent.training
     assert "success at step 60: 6 episodes" in capsys.readouterr().out
+
+
+def test_episodes_are_walked_in_fp32_inside_a_training_in_bf16():
+    """Or rates would depend on who measures: this process, or workers of its own."""
+    cpu = torch.device("cpu")
+    with computing("bf16", cpu), EpisodeTask(wanderer(), partial(ApartmentsWorld, 16)).ready():
+        assert not torch.is_autocast_enabled("cpu")
+    with computing("bf16", cpu):
+        assert torch.is_autocast_enabled("cpu")

@@ -1,0 +1,43 @@
+"""Rows of one agent alone enter a card, and a folder fills only an agent like the exported one."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+
+from mitigate.shipping.export import _of_one_agent
+from mitigate.shipping.hardened import _check_same
+from tests.evaluation.made_rows import row
+
+
+def rows(agent: str, wins: bool) -> list[dict]:
+    return [{**row(f"e{n}", wins), "agent": agent, "weights": "w" * 12} for n in range(3)]
+
+
+def test_the_runs_own_rows_say_which_agent_of_equal_weights_it_is():
+    own, blind = rows("a" * 12, True), rows("b" * 12, False)
+    found = list(_of_one_agent(own[:1], own + blind, {"w" * 12}))
+    assert {r["agent"] for r in found} == {"a" * 12} and len(found) == 3
+    with pytest.raises(ValueError, match="several agents with these weights"):
+        list(_of_one_agent([], own + blind, {"w" * 12}))
+
+
+def test_rows_of_before_are_known_by_their_weights():
+    old = [{**row("e0", True), "agent": "w" * 12}]
+    assert list(_of_one_agent([], old, {"w" * 12})) == old
+
+
+class Mine:
+    def __init__(self, gain: float) -> None:
+        self.gain = gain
+
+    def settings(self) -> dict:
+        return {"gain": self.gain}
+
+
+def test_an_agent_with_other_settings_than_the_folders_is_refused(tmp_path):
+    config = tmp_path / "config.yaml"
+    config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Mine", "gain": -1.0}}))
+    _check_same(Mine(-1.0), config)
+    with pytest.raises(ValueError, match=r"with gain=-1.0, but the one given has 5.0"):
+        _check_same(Mine(5.0), config)
