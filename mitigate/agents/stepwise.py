@@ -17,7 +17,7 @@ from torch import Tensor, nn
 from mitigate.agents.agent import Output
 from mitigate.core.observation import RGB, STOP, Observation
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.world import World
+from mitigate.worlds.world import World, expert_of
 
 Frames = dict[str, Tensor]
 
@@ -88,7 +88,7 @@ class StepwiseAgent(nn.Module):
         """One dict a step. The agent's own STOP is not taken, so that what follows a wrong one is
         learned, too. Raises ValueError for a world without an expert."""
         seen = [world.reset(episode) for world, episode in zip(worlds, episodes, strict=True)]
-        experts = [_expert(world) for world in worlds]
+        experts = [expert_of(world) for world in worlds]
         steps: list[dict[str, Any]] = []
         running = list(range(len(worlds)))
         for _ in range(self.limit):
@@ -141,16 +141,6 @@ class StepwiseAgent(nn.Module):
 
     def _tensors(self, frames: Mapping[str, np.ndarray]) -> Frames:
         return {n: torch.from_numpy(np.array(f)).to(self.device) for n, f in frames.items()}
-
-
-def _expert(world: World) -> Any:
-    expert = world.expert()
-    if expert is None:
-        raise ValueError(
-            f"{type(world).__name__} has no expert, so there is nobody to imitate there: give it "
-            "an expert() with the actions to take (docs/bring-your-own.md)."
-        )
-    return expert
 
 
 def _stacked(frames: Sequence[Mapping[str, np.ndarray]]) -> Frames:

@@ -23,7 +23,7 @@ from mitigate.corruptions import CLEAN, SUITE_VERSION
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluate import episodes
-from mitigate.worlds.world import World
+from mitigate.worlds.world import World, expert_of
 
 _STOP_SHARE = 0.01  # of random actions; about 100 actions an episode
 
@@ -35,10 +35,7 @@ class OracleAgent:
         self.world = world
 
     def reset(self, instruction: str) -> None:
-        expert = self.world.expert()
-        if expert is None:
-            raise ValueError(f"{type(self.world).__name__} has no expert, so it has no oracle.")
-        self.expert = expert
+        self.expert = expert_of(self.world)
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         return self.expert.action()

@@ -5,6 +5,7 @@ Only this file, ``transforms.py`` and ``apartments/env.py`` import torchrl (4 s)
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -26,8 +27,9 @@ from mitigate.core.observation import (
     Observation,
     Sensor,
 )
-from mitigate.core.seeding import digest, generator
+from mitigate.core.seeding import generator
 from mitigate.worlds.episodes import Episode, read_episodes
+from mitigate.worlds.seeded import SeededWorld
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
@@ -130,17 +132,13 @@ class WorldEnv(EnvBase):
         )
 
 
-class EnvWorld:
+class EnvWorld(SeededWorld):
     """Any torchrl environment that shows frames as a world, to evaluate in under the suite.
 
-    An episode is a seed: ``info["seed"]`` of it, or else a number made of its id. Success is what
-    ``success`` says at the end: the name of an entry, or None: a reward above 0 in the last step.
+    Args: env: not batched. entries: by default those that are called "rgb", "depth" and "pose".
+    success: an entry of its tensordict. The others: as ``SeededWorld``.
 
-    Args: env: not batched. entries: names of its frames by ours ("rgb", "depth", "pose"). unit:
-    metres of one unit of depth. limit: steps after which an episode is over at the latest. rule:
-    what success means, in words, for the rows.
-
-    Raises ValueError for an environment that is batched or lacks an entry.
+    Raises ValueError as ``SeededWorld`` does, and for an environment that is batched.
     """
 
     def __init__(
@@ -157,30 +155,15 @@ class EnvWorld:
             raise ValueError(
                 f"The environment has the batch size {list(env.batch_size)}: give one."
             )
-        found = dict(env.observation_spec.items())
-        self.env, self.rule, self.unit, self.success, self.limit = env, rule, unit, success, limit
-        self.entries = dict(entries or {name: name for name in (RGB, DEPTH, POSE) if name in found})
-        lacking = [entry for entry in self.entries.values() if entry not in found]
-        if lacking or not self.entries:
-            raise ValueError(
-                f"The environment has no entry {', '.join(lacking) or 'rgb or depth'}; it has "
-                f"{', '.join(map(str, found))}. Name its frames: entries={{'rgb': 'pixels'}}."
-            )
-        self.sensors = {name: _sensor_of(name, found[e]) for name, e in self.entries.items()}
-        if RGB in self.sensors and self.sensors[RGB].dtype != "uint8":
-            raise ValueError(
-                f"RGB must be uint8 in 0-255, but it is {self.sensors[RGB].dtype}: "
-                "take transforms that scale frames off."
-            )
-
-    @property
-    def done(self) -> bool:
-        return bool(self._now["done"].any()) or self._steps >= self.limit
+        specs = dict(env.observation_spec.items())
+        known = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
+        found = {name: _measured(spec) for name, spec in specs.items()}
+        super().__init__(found, entries or known, success, unit, limit, rule)
+        self.env = env
 
     def reset(self, episode: Episode) -> Observation:
-        seed = episode.info.get("seed", digest("episode", episode.episode_id))
-        self.env.set_seed(int(seed) % 2**31)
-        self._now, self._steps, self._reward = self.env.reset(), 0, 0.0
+        self.env.set_seed(self._begin(episode))
+        self._now = self.env.reset()
         return self._seen()
 
     def step(self, action: int) -> Observation:
@@ -193,31 +176,15 @@ class EnvWorld:
             chosen = torch.nn.functional.one_hot(chosen, spec.space.n).to(spec.dtype)
         self._now.set(self.env.action_key, chosen.reshape(spec.shape))
         self._now = self.env.step(self._now)["next"]
-        self._reward = float(self._now.get(self.env.reward_key).sum())
-        self._steps += 1
+        reward = float(self._now.get(self.env.reward_key).sum())
+        self._end_step(reward, bool(self._now["done"].any()))
         return self._seen()
 
-    def measures(self) -> dict[str, float]:
-        """success, spl (the same: no shortest path is known) and steps."""
-        won = self._reward > 0 if self.success is None else bool(self._now[self.success].any())
-        return {
-            "success": int(won and self.done),
-            "spl": float(won and self.done),
-            "steps": self._steps,
-        }
-
-    def expert(self) -> None:
-        return None
-
-    def truth(self) -> dict[str, np.ndarray]:
-        return {}
+    def _flag(self) -> bool:
+        return bool(self._now[self.success].any())
 
     def _seen(self) -> Observation:
-        frames = {name: self._now[entry].numpy().copy() for name, entry in self.entries.items()}
-        if DEPTH in frames:
-            frames[DEPTH] = frames[DEPTH].astype(np.float32) * np.float32(self.unit)
-        pose = {POSE: frames.pop(POSE)} if POSE in frames else {}
-        return Observation(pose, lambda: frames, tuple(frames))
+        return self._observation({e: self._now[e].numpy() for e in self.entries.values()})
 
 
 def _listed(episodes: Any) -> list[Episode]:
@@ -239,6 +206,8 @@ def _spec_of(sensor: Sensor) -> Any:
     return Unbounded(shape=sensor.shape, dtype=dtype)
 
 
-def _sensor_of(name: str, spec: Any) -> Sensor:
-    dtype = str(spec.dtype).removeprefix("torch.")
-    return Sensor(name, tuple(spec.shape), dtype, "m" if name == DEPTH else "")
+def _measured(spec: Any) -> tuple[tuple[int, ...], str, float]:
+    """Shape, dtype and greatest value of an entry."""
+    most = getattr(getattr(spec, "space", None), "high", None)
+    shape, dtype = tuple(spec.shape), str(spec.dtype).removeprefix("torch.")
+    return shape, dtype, math.inf if most is None else float(torch.as_tensor(most).max())

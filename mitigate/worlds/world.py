@@ -165,6 +165,18 @@ def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
     )
 
 
+def expert_of(world: World) -> Expert:
+    """The expert of a world that is on; ValueError, naming the world, if it has none."""
+    expert = world.expert()
+    if expert is None:
+        own = getattr(world, "world", world)  # of a corrupted one
+        raise ValueError(
+            f"{type(own).__name__} has no expert, so there is nobody to imitate there: give it an "
+            "expert() with the actions to take or distances to the goal (docs/bring-your-own.md)."
+        )
+    return expert
+
+
 def remembering(thing: Any) -> AbstractContextManager:
     """``thing.remembering()``, within which an agent or a world keeps what it computed for equal
     input, where it has that; its results do not depend on it."""

@@ -19,7 +19,7 @@ from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.world import Expert, World
+from mitigate.worlds.world import World, expert_of
 
 STOP_WITHIN = 1.0  # metres: the oracle stops here ...
 STOP_BEST = 1.75  # ... or here, if no ghost is nearer to the goal
@@ -89,13 +89,7 @@ class LiveWalk:
     ) -> None:
         self.world, self.episode, self.labels, self.clean = world, episode, labels, clean
         self.observation = world.reset(episode)
-        expert = world.expert()
-        if expert is None:
-            raise ValueError(
-                f"{type(world).__name__} has no expert, so there is nobody to imitate there: give "
-                "it an expert() with distances to the goal (docs/bring-your-own.md)."
-            )
-        self.expert: Expert = expert
+        self.expert = expert_of(world)
         self.looks: list[dict[str, np.ndarray]] = []
 
     def look(self) -> None:

@@ -13,10 +13,12 @@ from mitigate.agents.topological.stored import SPACING, Store, StoredWalk
 from mitigate.agents.topological.text import Vocabulary, pad
 from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import VIEWS
+from mitigate.corruptions import CLEAN
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.tasks import load_episodes, make_episode
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.world import Corrupted
 from tests.agents.rooms import room, sure, wanderer
 
 SIZE, SCENE = 16, "apartments/train/000000"
@@ -160,4 +162,5 @@ class Unguided(ApartmentsWorld):
 
 def test_a_world_without_an_expert_says_so():
     with pytest.raises(ValueError, match="Unguided has no expert"):
-        LiveWalk(Unguided(SIZE), load_episodes("val_seen")[0])
+        world = Corrupted(Unguided(SIZE), CLEAN, 0)  # the message names the user's own world
+        LiveWalk(world, load_episodes("val_seen")[0])

@@ -1,0 +1,88 @@
+"""What worlds made of other libraries' environments share: an episode is a seed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
+from mitigate.core.seeding import digest
+from mitigate.worlds.episodes import Episode
+
+
+class SeededWorld:
+    """A subclass sets ``_steps``, ``_reward`` and ``done`` as it goes, and says what it saw.
+
+    Args: found: shape, dtype and greatest value of each entry of the environment's observations.
+    entries: names of its frames by ours ("rgb", "depth", "pose"). success: the entry that says at
+    the end whether it went well; None: a reward above 0 in the last step. unit: metres of one unit
+    of depth. limit: steps after which an episode is over at the latest. rule: what success means,
+    in words, for the rows.
+
+    Raises ValueError if an entry is not there, or RGB is not uint8.
+    """
+
+    done = True
+
+    def __init__(
+        self,
+        found: Mapping[str, tuple[tuple[int, ...], str, float]],
+        entries: Mapping[str, str],
+        success: str | None,
+        unit: float,
+        limit: int,
+        rule: str,
+    ) -> None:
+        self.entries, self.success, self.unit = dict(entries), success, unit
+        self.limit, self.rule = limit, rule
+        lacking = [entry for entry in self.entries.values() if entry not in found]
+        if lacking or not self.entries:
+            raise ValueError(
+                f"The observation has no entry {', '.join(lacking) or 'rgb or depth'}; it has "
+                f"{', '.join(map(str, found))}. Name its frames: entries={{'rgb': 'image'}}."
+            )
+        self.sensors: dict[str, Sensor] = {}
+        for name, entry in self.entries.items():
+            shape, dtype, most = found[entry]
+            of_depth = {"unit": "m", "high": most * unit} if name == DEPTH else {}
+            self.sensors[name] = Sensor(name, tuple(shape), dtype, **of_depth)  # type: ignore[arg-type]
+        if RGB in self.sensors and self.sensors[RGB].dtype != "uint8":
+            raise ValueError(
+                f"RGB must be uint8 in 0-255, but it is {self.sensors[RGB].dtype}: take off what "
+                "scales or transposes frames."
+            )
+
+    def measures(self) -> dict[str, float]:
+        """success, spl (the same: no shortest path is known) and steps."""
+        won = int(self._won() and self.done)
+        return {"success": won, "spl": float(won), "steps": self._steps}
+
+    def expert(self) -> None:
+        """Nobody: a subclass that knows what to do next returns somebody with ``action()``."""
+
+    def _begin(self, episode: Episode) -> int:
+        """Count from 0 again; the seed of an episode, ``info["seed"]`` or else made of its id."""
+        self.done, self._reward, self._steps = False, 0.0, 0
+        seed = episode.info.get("seed", digest("episode", episode.episode_id))
+        return int(seed) % 2**31
+
+    def _end_step(self, reward: float, over: bool) -> None:
+        self._reward, self._steps = reward, self._steps + 1
+        self.done = over or self._steps >= self.limit
+
+    def _flag(self) -> bool:
+        """What the entry ``success`` says."""
+        raise NotImplementedError(f"{type(self).__name__} defines no _flag()")
+
+    def _won(self) -> bool:
+        return self._reward > 0 if self.success is None else self._flag()
+
+    def _observation(self, seen: Mapping[str, Any]) -> Observation:
+        """Copies: an environment may use its buffers again."""
+        frames = {name: np.array(seen[entry]) for name, entry in self.entries.items()}
+        if DEPTH in frames:
+            frames[DEPTH] = frames[DEPTH].astype(np.float32) * np.float32(self.unit)
+        pose = {POSE: frames.pop(POSE)} if POSE in frames else {}
+        return Observation(pose, lambda: frames, tuple(frames))
