@@ -49,7 +49,7 @@ class Distil(Recipe):
         training: TrainingEpisodes,
         schedule: Schedule,
         teacher: str,
-        train_parts: Sequence[str] | None = None,
+        train_parts: Sequence[str] | str | None = None,
         episodes: int = 3,
         follow_oracle: float = 0.5,
         seed: int = 0,

@@ -28,8 +28,8 @@ class Imitate(Recipe):
     """Args:
     agent: trained in place. world, training, schedule: makes a world, where its episodes come from,
     which frame is corrupted by what.
-    train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. None: all but
-    the adapters.
+    train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. "policy": all
+    but the encoders. None: all but the adapters.
     episodes: a step. follow_oracle: share of rollout decisions taken by the expert.
     losses: weights of the agent's auxiliary losses by name, where they are not its own.
     prior, refresh_every, refresh_episodes: of a success-distributed schedule (``Rollouts``).
@@ -43,7 +43,7 @@ class Imitate(Recipe):
         world: Callable[[], World],
         training: TrainingEpisodes,
         schedule: Schedule,
-        train_parts: Sequence[str] | None = None,
+        train_parts: Sequence[str] | str | None = None,
         episodes: int = 3,
         follow_oracle: float = 0.5,
         seed: int = 0,

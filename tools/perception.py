@@ -20,7 +20,7 @@ import torch
 from hydra import compose, initialize_config_dir
 from tqdm import tqdm
 
-from mitigate.agents.topological.concepts import THINGS
+from mitigate.agents.concepts import THINGS
 from mitigate.core import conf
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.seeding import generator

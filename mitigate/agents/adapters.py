@@ -81,7 +81,8 @@ def insert_adapters(
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
             ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
-            views), with ``ring_reduction`` as reduction. A module found by both gets this one.
+            views), with ``ring_reduction`` as reduction; of 1 view, a plain one. A module found by both gets this
+            one.
     Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
     trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.
@@ -97,7 +98,9 @@ def insert_adapters(
     plain, ringed = _find(model, target_modules), _find(model, ring)
     made: dict[str, nn.Module] = {}
     for name, module in model.named_modules():
-        if name in ringed:
+        if name in ringed and views == 1:  # no neighbours
+            made[name] = ConvAdapter(_channels(name, module), ring_reduction, kernel)
+        elif name in ringed:
             made[name] = RingAdapter(_channels(name, module), ring_reduction, kernel, views, hfov)
         elif name in plain:
             made[name] = ConvAdapter(_channels(name, module), reduction, kernel)

@@ -60,10 +60,13 @@ class Sensor:
     missing: float | None = None
 
 
-def panorama(size: int) -> dict[str, Sensor]:
-    """The sensors of the module's docstring, with views of ``size`` pixels."""
-    yaws = tuple(VIEW_STEP_DEGREES * k for k in range(VIEWS))
-    shape = (VIEWS, size, size)
+def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
+    """The sensors of the module's docstring, with views of ``size`` pixels.
+
+    ``views`` 1: one camera that looks ahead; its frames have no first axis, ``[H, W, c]``.
+    """
+    yaws = tuple(VIEW_STEP_DEGREES * k for k in range(views))
+    shape = (views, size, size) if views > 1 else (size, size)
     return {
         RGB: Sensor(RGB, (*shape, 3), "uint8", "", HFOV_DEGREES, yaws, 0, 255),
         DEPTH: Sensor(DEPTH, (*shape, 1), "float32", "m", HFOV_DEGREES, yaws, 0, missing=0.0),

@@ -21,6 +21,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import unknown
+from mitigate.core.observation import VIEWS
 
 if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
     from torch import nn
@@ -52,11 +53,19 @@ class EvaluationConfig:
 
 
 @dataclass
+class WeightsConfig:
+    """The weights that are shipped for the chosen kind of agent, if any."""
+
+    base: str | None = None
+    teacher: str | None = None
+
+
+@dataclass
 class EvaluateConfig:
     """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
 
     runs: str = "runs"
-    checkpoint: str = "checkpoints/base"
+    checkpoint: str | None = None
     safeguard: str = "none"
     name: str | None = None
     split: str = "val_unseen"
@@ -68,6 +77,8 @@ class EvaluateConfig:
     workers: int | None = None
     out: str | None = None
     agent: Any = MISSING
+    weights: WeightsConfig = field(default_factory=WeightsConfig)
+    views: int = VIEWS
     env: Any = MISSING
     suite: Any = field(default=MISSING)
 

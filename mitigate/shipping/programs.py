@@ -20,10 +20,10 @@ from torch.export import Dim, ExportedProgram
 from torch.export.pt2_archive._package import load_pt2, package_pt2  # several programs in one file
 from torch.func import functional_call
 
+from mitigate.agents.text import MAX_WORDS
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS
 from mitigate.agents.topological.planner import DecisionBatch
-from mitigate.agents.topological.text import MAX_WORDS
 from mitigate.core.observation import VIEWS
 from mitigate.core.seeding import torch_generator
 

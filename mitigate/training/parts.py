@@ -16,11 +16,19 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 
 ADAPTERS = "adapters"  # in a list of parts: all of them, wherever they are
+POLICY = "policy"  # in place of a list of parts: all but the encoders
 START = "start"  # as a teacher: the agent as it is when the stage begins
 
 
-def train_only(agent: Any, parts: Iterable[str] | None) -> None:
-    """Freeze all of ``agent`` but ``parts``, names of its ``parts()``; None: all train.
+def policy_parts(agent: Any) -> list[str]:
+    """The names of an agent's parts that are not its encoders (``agents/agent.py``: Seeing)."""
+    encoders = {name for names in getattr(agent, "encoders", {}).values() for name in names}
+    return [name for name in agent.parts() if name not in encoders]
+
+
+def train_only(agent: Any, parts: Iterable[str] | str | None) -> None:
+    """Freeze all of ``agent`` but ``parts``, names of its ``parts()``; "policy": all but the
+    encoders; None: all train.
 
     Adapters train only if "adapters" is named, wherever they are. Raises ValueError for an unknown
     part, for parameters that are in no part, and for an agent that is not trainable.
@@ -32,7 +40,7 @@ def train_only(agent: Any, parts: Iterable[str] | None) -> None:
             f"{', '.join(lacking)} (mitigate/agents/agent.py, docs/bring-your-own.md)."
         )
     own = agent.parts()
-    parts = tuple(own if parts is None else parts)
+    parts = policy_parts(agent) if parts == POLICY else tuple(own if parts is None else parts)
     for part in parts:
         if part not in (*own, ADAPTERS):
             raise ValueError(unknown("part of the agent", part, (*own, ADAPTERS)))
@@ -49,13 +57,19 @@ def train_only(agent: Any, parts: Iterable[str] | None) -> None:
         parameter.requires_grad_(ADAPTERS in parts)
 
 
-def load_teacher(agent: nn.Module, weights: str) -> nn.Module:
+def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
     """A frozen copy of ``agent`` without its adapters, with ``weights``: a file or folder, or
     "start" for those that ``agent`` has now.
 
     Raises ValueError for weights that are adapters alone or do not fit, FileNotFoundError for
     weights that are not there.
     """
+    if weights is None:
+        raise ValueError(
+            f"No teacher is shipped for {type(agent).__name__}: train one, such as by `make train "
+            "RECIPE=da_per_episode`, and name its folder (stages.views_rgb.recipe.teacher=runs/..."
+            "/agent), or name the agent as it is now: start."
+        )
     if (find(weights) / ADAPTERS_FILE).is_file():
         raise ValueError(
             f"{weights} holds adapters alone, and a teacher needs whole weights: name a folder "

@@ -116,6 +116,9 @@ class Poses:
         """Frames, the same before the corruption, and labels of one random pose."""
         self.world.enter(scenes[int(rng.integers(len(scenes)))])
         xy = self.world.point(rng)
+        if len(self.world.sensors[self.sensor].yaws) == 1:
+            looks = [self._look(xy, rng, name, i) for i in range(VIEWS // self.every)]
+            return tuple(np.stack(part) for part in zip(*looks, strict=True))
         heading = float(rng.uniform(-np.pi, np.pi))
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
@@ -125,6 +128,16 @@ class Poses:
         target = truth[self.label]
         target = target[views] if len(target) == VIEWS else target
         return frames[self.sensor][views], clean[self.sensor][views], target
+
+    def _look(
+        self, xy: np.ndarray, rng: np.random.Generator, name: str, number: int
+    ) -> tuple[np.ndarray, ...]:
+        """As :meth:`_panorama`, of one view of one camera."""
+        heading = float(rng.uniform(-np.pi, np.pi))
+        clean, truth = self.world.put(xy, heading, views=None, rgb=self.sensor == RGB)
+        drawn = self.schedule.draw(self.seed, name, number)
+        frames = corrupt_observation(clean, *drawn, depth_sensor(self.world.sensors))
+        return frames[self.sensor], clean[self.sensor], truth[self.label]
 
 
 def share_of(scenes: Any, piece: int, pieces: int) -> Any:

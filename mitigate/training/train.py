@@ -7,11 +7,9 @@ on where the last one stopped. Afterwards the agent is evaluated before and afte
 
 from __future__ import annotations
 
-import json
 import math
 import re
 import sys
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from inspect import signature
 from pathlib import Path
@@ -26,21 +24,20 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate.core import checkpoint, conf, precision, seeding
-from mitigate.core.build import build, build_agent, maker
+from mitigate.core.build import build_agent, maker
 from mitigate.core.files import atomic_text
+from mitigate.core.observation import VIEWS
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
 from mitigate.corruptions import Corruption
-from mitigate.evaluation.evaluate import EvaluationConfig, conditions, episodes, load
+from mitigate.evaluation.evaluate import EvaluationConfig, WeightsConfig, conditions, episodes, load
 from mitigate.training.batches import MOST, Workers
 from mitigate.training.ranks import Ranks
-from mitigate.training.trainer import Trainer
+from mitigate.training.stages import nothing_to_do, plain, train_stage, trainer_settings
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
 EPISODE_COST = 0.12  # seconds of one core for an episode, on the machine of precision.REFERENCE
 EPISODES = 300  # of a list, where the estimate need not open it
-IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
-NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
 
 
 @dataclass
@@ -87,6 +84,8 @@ class TrainConfig:
     workers: int | None = None
     report: str = "mitigate.evaluation.evaluate.report_before_after"
     agent: Any = MISSING
+    weights: WeightsConfig = field(default_factory=WeightsConfig)
+    views: int = VIEWS
     env: Any = MISSING
     schedule: Any = MISSING
     suite: Any = MISSING
@@ -116,7 +115,12 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     _check_settings(cfg.agent, agent)
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
         for name, stage in cfg.stages.items():
-            if stage is not None:
+            if stage is None:
+                continue
+            idle = nothing_to_do(stage, agent)
+            if idle:
+                say(f"{name}: left out, {idle}")
+            else:
                 stage.trainer.precision = train_stage(
                     cfg, name, stage, agent, folder / name, workers, ranks
                 )
@@ -136,41 +140,10 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     return folder
 
 
-def train_stage(
-    cfg: DictConfig,
-    name: str,
-    stage: DictConfig,
-    agent: nn.Module,
-    folder: Path,
-    workers: Workers | None = None,
-    ranks: Ranks | None = None,
-) -> str:
-    """Train ``agent`` in place through one stage, and return the precision it was trained in; a
-    finished stage is loaded from ``folder``."""
-    seeding.seed_everything(cfg.seed, "stage", name)
-    start = checkpoint.weights_sha(agent)
-    agent.requires_grad_(True)
-    recipe = build(stage.recipe, agent=agent)
-    identity = {
-        "agent": _plain(cfg.agent),
-        "start": start,
-        "recipe": dict(_identity(_plain(stage.recipe))),
-        **recipe.identity(),
-    }
-    ranks = ranks or Ranks()
-    if ranks.first and not checkpoint.checkpoints(folder):  # else the trainer compares first
-        with atomic_text(folder / IDENTITY) as file:
-            json.dump(identity, file, indent=2)
-    settings = {"name": name, "workers": workers, "ranks": ranks, **_settings(cfg, stage)}
-    trainer = Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings)
-    trainer.fit()
-    return trainer.precision
-
-
 def plan(cfg: DictConfig, folder: Path) -> str:
     """Return what a run is going to do and how long that will take here, for all of it."""
     stages = {str(name): stage for name, stage in cfg.stages.items() if stage is not None}
-    steps = {name: _settings(cfg, stage).get("steps", 0) for name, stage in stages.items()}
+    steps = {name: trainer_settings(cfg, stage).get("steps", 0) for name, stage in stages.items()}
     seconds: list[float] = []
     for name, stage in stages.items():
         done = checkpoint.checkpoints(folder / name)
@@ -186,10 +159,6 @@ def plan(cfg: DictConfig, folder: Path) -> str:
     total = sum(seconds) * precision.probe().fp32 / precision.REFERENCE
     about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
     return f"{cfg.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"
-
-
-def _settings(cfg: DictConfig, stage: DictConfig) -> dict[str, Any]:
-    return {**_set(stage.trainer), **_set(cfg.trainer)}
 
 
 def check(cfg: DictConfig) -> None:
@@ -260,7 +229,7 @@ def _written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
         return value
 
     own = getattr(agent, "settings", dict)()
-    return {"_target_": node._target_, **data(_plain(node)), **data(own)}
+    return {"_target_": node._target_, **data(plain(node)), **data(own)}
 
 
 def _check_settings(node: DictConfig, agent: nn.Module) -> None:
@@ -273,22 +242,6 @@ def _check_settings(node: DictConfig, agent: nn.Module) -> None:
             f"settings() of {type(agent).__name__} names {', '.join(wrong)}, which its constructor "
             "does not take: return its arguments, so that the agent can be built again."
         )
-
-
-def _set(node: DictConfig) -> dict[str, Any]:
-    return {str(name): value for name, value in node.items() if value is not None}
-
-
-def _plain(node: DictConfig) -> dict[str, Any]:
-    plain = OmegaConf.to_container(node, resolve=True)
-    assert isinstance(plain, dict)
-    return {str(name): value for name, value in plain.items()}
-
-
-def _identity(node: dict[str, Any]) -> Iterator[tuple[str, Any]]:
-    for name, value in node.items():
-        if name not in NOT_IDENTITY:
-            yield name, dict(_identity(value)) if isinstance(value, dict) else value
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="train")

@@ -6,11 +6,11 @@ import copy
 
 import torch
 
+from mitigate.agents.text import WORDS
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.agents.topological.text import WORDS
 from mitigate.core import seeding
 from mitigate.core.identity import identity
-from mitigate.core.observation import panorama
+from mitigate.core.observation import cameras
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 
@@ -21,7 +21,7 @@ def agent(**settings) -> TopologicalAgent:
 
 
 def test_equal_agents_have_one_identity_and_every_difference_another():
-    plain, views = agent(), panorama(64)
+    plain, views = agent(), cameras(64)
     moved = copy.deepcopy(plain)
     with torch.no_grad():
         next(moved.parameters()).view(-1)[0] += 1e-3
@@ -31,7 +31,7 @@ def test_equal_agents_have_one_identity_and_every_difference_another():
         identity(agent(size=32), views),
         identity(agent(planner={**SMALL, "fusion": {"rate": 4, "cap": 3}}), views),
         identity(agent(vocabulary=[*WORDS[1:], WORDS[0]]), views),  # equally many, other ids
-        identity(plain, panorama(32)),
+        identity(plain, cameras(32)),
         identity(plain, views, "rules"),
     ]
     assert identity(plain, views) == identity(agent(), views)

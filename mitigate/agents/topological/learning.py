@@ -11,10 +11,11 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mitigate.agents.agent import Output
-from mitigate.agents.topological.concepts import THINGS
+from mitigate.agents.concepts import THINGS
+from mitigate.agents.losses import agreement, f1, free_loss, presence_loss
 from mitigate.agents.topological.decisions import MapDecisions, Piece
 from mitigate.agents.topological.rollout import LiveWalk, roll_out
-from mitigate.agents.topological.waypoints import agreement, select, waypoint_loss
+from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 # of the planner (metres to the goal, which views show what the instruction ends at) and of the
 # perception (what views show, where one can go); chosen for the shipped agents
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
-POSITIVE = 2.0  # weight of what is there against what is not: most concepts are not
 _PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
 _SCALE = 5.0  # metres: the planner's distance is in units of it
 
@@ -84,7 +84,7 @@ def decide(agent: TopologicalAgent, decisions: MapDecisions, *, clean: bool = Fa
     distance = F.smooth_l1_loss(out["distance"], decisions.metres / _SCALE, reduction="none")
     own = {"distance": (distance * choices.valid).sum() / choices.valid.sum()}
     if decisions.goal is not None:
-        own["grounding"] = _present(out["grounding"], decisions.goal)
+        own["grounding"] = presence_loss(out["grounding"], decisions.goal)
     features = {"views": views, "nodes": out["nodes"][choices.valid]}
     figures |= _stops(out["logits"], decisions.target[:, 0])
     return Output(out["logits"], choices.allowed, features, {**own, **losses}, figures)
@@ -105,10 +105,10 @@ def see(
         features = torch.cat([features, logits.sigmoid()], -1)
     out = Output(features={"views": features})
     if truth is not None and sensor == DEPTH:
-        out.losses = {"labels": waypoint_loss(logits, truth)}
+        out.losses = {"labels": free_loss(logits, truth)}
         out.figures = {"iou": agreement(logits, truth)}
     elif truth is not None:
-        out.losses = {"labels": _present(logits.float(), truth)}
+        out.losses = {"labels": presence_loss(logits, truth)}
         out.figures = {
             "f1": f1(logits[..., THINGS], truth[..., THINGS]),
             "f1_all": f1(logits, truth),
@@ -120,12 +120,6 @@ def trains_perception(agent: TopologicalAgent) -> bool:
     """Whether any weight that makes view features is trained."""
     parts = agent.parts()
     return any(p.requires_grad for name in _PERCEPTION for p in parts[name].parameters())
-
-
-def f1(logits: Tensor, targets: Tensor) -> Tensor:
-    """Micro F1 at probability 0.5."""
-    predicted, true = logits > 0, targets > 0.5
-    return 2 * (predicted & true).sum() / torch.clamp(predicted.sum() + true.sum(), min=1)
 
 
 def _perceived(
@@ -154,16 +148,12 @@ def _perception(
     views, concepts, waypoints = agent.perceive(seen.rgb, seen.depth)
     losses, figures = {}, {}
     if seen.concepts is not None:
-        losses["concepts"] = _present(concepts.float(), seen.concepts)
+        losses["concepts"] = presence_loss(concepts, seen.concepts)
         figures["f1"] = f1(concepts[..., THINGS], seen.concepts[..., THINGS])
     if seen.free is not None:
-        losses["waypoints"] = waypoint_loss(waypoints, seen.free)
+        losses["waypoints"] = free_loss(waypoints, seen.free)
         figures["iou"] = agreement(waypoints, seen.free)
     return views, losses, figures
-
-
-def _present(logits: Tensor, truth: Tensor) -> Tensor:
-    return F.binary_cross_entropy_with_logits(logits, truth, pos_weight=torch.tensor(POSITIVE))
 
 
 def _stops(logits: Tensor, stop: Tensor) -> dict[str, Tensor]:

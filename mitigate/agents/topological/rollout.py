@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 import torch
 
-from mitigate.agents.topological import observation as checked
+from mitigate.agents import observation as checked
 from mitigate.agents.topological.controller import Controller
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate

@@ -9,7 +9,6 @@ predictor; the target here is the free space itself.
 from __future__ import annotations
 
 import numpy as np
-import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
@@ -56,14 +55,3 @@ def select(logits: np.ndarray) -> np.ndarray:
         chosen.append((YAWS[best], min(float(length[best]) - _MARGIN, LONGEST)))
         left[(best + np.arange(-SEPARATION, SEPARATION + 1)) % ANGLES] = -1.0
     return np.array(chosen, np.float32).reshape(-1, 2)
-
-
-def waypoint_loss(logits: Tensor, target: Tensor) -> Tensor:
-    """Mean binary cross-entropy of ``[n, 120, 12]`` logits."""
-    return F.binary_cross_entropy_with_logits(logits.float(), target)
-
-
-def agreement(logits: Tensor, target: Tensor) -> Tensor:
-    """Intersection over union of predicted and true free cells."""
-    predicted, true = logits > 0, target > 0.5
-    return (predicted & true).sum() / torch.clamp((predicted | true).sum(), min=1)

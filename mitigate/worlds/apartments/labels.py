@@ -1,17 +1,18 @@
 """What a panorama shows, by the semantic ids that the renderer gives for free.
 
-Labels are of the central 36 degrees of each view, so that those of neighbouring views, 30 degrees
-apart, hardly overlap.
+Labels of a panorama are of the central 36 degrees of each view, so that those of neighbouring
+views, 30 degrees apart, hardly overlap; those of one camera are of ``COLUMNS`` columns of its view.
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
 
-from mitigate.core.observation import VIEWS
+from mitigate.core.observation import HFOV_DEGREES, VIEWS
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.furniture import CATEGORIES, ROOM_KINDS
 from mitigate.worlds.apartments.navigation import FreeSpace
@@ -26,6 +27,7 @@ CONCEPTS = (
 )
 _HALF_ANGLE = np.radians(18.0)
 ANGLES, DISTANCES, STEP = 120, 12, 0.25  # of the free directions: bins, bins, metres a bin
+COLUMNS = 4  # of a view, of equal width in pixels
 YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)  # to the right
 
 
@@ -36,6 +38,13 @@ def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndar
     fine = space.rays(xy, 4 * ANGLES, STEP * DISTANCES)
     world = (np.round((heading - YAWS) / (2 * np.pi) * 4 * ANGLES).astype(int)) % (4 * ANGLES)
     return (fine[world][:, None] >= STEP * (np.arange(DISTANCES) + 1) - 1e-3).astype(np.float32)
+
+
+def ahead(free: np.ndarray) -> np.ndarray:
+    """Of :func:`free_directions` those in a view of 90 degrees ahead: [30, 12], left to right."""
+    half = round(ANGLES * HFOV_DEGREES / 720)
+    middle = round(ANGLES / VIEWS / 2)  # bin 0 is half a view's step to the left
+    return np.roll(free, half - middle, 0)[: 2 * half]
 
 
 def band(size: int) -> tuple[int, int]:
@@ -52,7 +61,24 @@ def view_labels(
     Returns concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1} and seen bool ``[12, furniture]``:
     which pieces of furniture show in the central band of each view.
     """
-    low, high = band(ids.shape[2])
+    return _within(apartment, ids, depth, *band(ids.shape[2]))
+
+
+def column_labels(
+    apartment: Apartment, ids: np.ndarray, depth: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """As :func:`view_labels`, of each of the ``COLUMNS`` columns of each view: concepts float32
+    [views, 4, len(CONCEPTS)] and seen bool [views, 4, furniture]."""
+    edges = np.linspace(0, ids.shape[2], COLUMNS + 1).round().astype(int)
+    parts = [_within(apartment, ids, depth, a, b) for a, b in pairwise(edges.tolist())]
+    concepts, seen = (np.stack(part, 1) for part in zip(*parts, strict=True))
+    return concepts, seen
+
+
+def _within(
+    apartment: Apartment, ids: np.ndarray, depth: np.ndarray, low: int, high: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Labels of the columns of pixels from ``low`` to ``high``."""
     instance, room, category, colour, kind = _tables(apartment.scene_id, apartment)
     return _label(
         ids,

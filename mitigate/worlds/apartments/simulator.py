@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -17,6 +18,7 @@ from mitigate.core.observation import (
     RIGHT,
     STOP,
     TURN_DEGREES,
+    VIEWS,
 )
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.renderer import Renderer
@@ -89,10 +91,13 @@ class Simulator:
         rgb, depth, _ = self.observe_faces()
         return {RGB: rgb, DEPTH: depth, **self.odometry()}
 
-    def observe_faces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """RGB, depth and face ids of the panorama at the current pose."""
+    def observe_faces(
+        self, views: Iterable[int] = range(VIEWS)
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """RGB, depth and face ids of the panorama at the current pose; only ``views`` are drawn."""
         self.renderer.load(self.apartment)
-        return self.renderer.render(float(self.xy[0]), float(self.xy[1]), float(self.heading))
+        place = float(self.xy[0]), float(self.xy[1]), float(self.heading)
+        return self.renderer.render(*place, views=views)
 
     def step(self, action: int) -> None:
         """One low-level action. Raises ``ValueError`` for an action that does not exist."""

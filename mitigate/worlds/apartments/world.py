@@ -23,12 +23,17 @@ from mitigate.core.observation import (
     VIEWS,
     Observation,
     Sensor,
-    panorama,
+    cameras,
 )
 from mitigate.evaluation import metrics
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
-from mitigate.worlds.apartments.labels import free_directions, view_labels
+from mitigate.worlds.apartments.labels import (
+    ahead,
+    column_labels,
+    free_directions,
+    view_labels,
+)
 from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import shared_renderer
 from mitigate.worlds.apartments.simulator import Simulator
@@ -43,19 +48,22 @@ class ApartmentsWorld:
     """One agent in one apartment; all of a process draw through one renderer.
 
     Args: size: pixels of a square view. layouts: how many training layouts ``scenes`` names.
+    views: 12, a panorama, or 1, a camera that looks ahead. Raises ValueError for another number.
     """
 
     rule = metrics.rule(SUCCESS_METRES)
 
-    def __init__(self, size: int = 64, layouts: int = 400) -> None:
-        self.size, self.layouts = size, layouts
-        self.sensors: dict[str, Sensor] = panorama(size)
+    def __init__(self, size: int = 64, layouts: int = 400, views: int = VIEWS) -> None:
+        if views not in (1, VIEWS):
+            raise ValueError(f"views={views}: an agent sees {VIEWS} views, or 1 ahead.")
+        self.size, self.layouts, self.views = size, layouts, views
+        self.sensors: dict[str, Sensor] = cameras(size, views)
         self._memory = Memory(0)
         self._simulator: Simulator | None = None
         self._rendered: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"size": self.size, "layouts": self.layouts}
+        return {"size": self.size, "layouts": self.layouts, "views": self.views}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
@@ -116,11 +124,17 @@ class ApartmentsWorld:
     def truth(self) -> Mapping[str, np.ndarray]:
         """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),
         seen bool [12, things] (which pieces of furniture do), free float32 [120, 12] (where one can
-        go straight), goal float32 [12] (which views show what the instruction ends at)."""
+        go straight), goal float32 [12] (which views show what the instruction ends at).
+
+        Of one camera: the same of the four columns of its view, concepts [4, C], seen [4, things]
+        and goal [4], and free [30, 12] of the directions in it, left to right."""
         simulator = self.simulator
         _, depth, ids = self._frames()
         place = (simulator.xy, simulator.heading)
-        return Labels(simulator.apartment, *place, ids, depth, landmarks(simulator.episode))
+        return self._labels(simulator.apartment, *place, ids, depth, landmarks(simulator.episode))
+
+    def _labels(self, *seen: Any) -> Labels:
+        return Labels(*seen) if self.views == VIEWS else CameraLabels(*seen)
 
     def landmarks(self, episode: Episode) -> list[int]:
         """Which things, of the truth's "seen", mark the goal of an episode."""
@@ -137,15 +151,24 @@ class ApartmentsWorld:
     def _given(self) -> dict[str, np.ndarray]:
         """Copies of what is kept: an agent may write into what it gets."""
         rgb, depth, _ = self._frames()
-        return {RGB: rgb.copy(), DEPTH: depth.copy()}
+        return self._shaped(rgb.copy(), depth.copy())
+
+    def _shaped(self, rgb: np.ndarray, depth: np.ndarray) -> dict[str, np.ndarray]:
+        """Frames as ``sensors`` says: those of one camera without the axis of views."""
+        return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
 
     def _frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         if self._rendered is None:
             simulator = self.simulator
             pose = (float(simulator.xy[0]), float(simulator.xy[1]), float(simulator.heading))
             key = (simulator.episode.scene_id, *pose)
-            self._rendered = self._memory.recall(key, simulator.observe_faces)
+            self._rendered = self._memory.recall(key, self._observe)
         return self._rendered
+
+    def _observe(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """RGB, depth and face ids of what the cameras see."""
+        rgb, depth, ids = self.simulator.observe_faces(range(self.views))
+        return rgb[: self.views], depth[: self.views], ids[: self.views]
 
     # poses ------------------------------------------------------------------------------------
 
@@ -173,16 +196,17 @@ class ApartmentsWorld:
         views: Sequence[int] | None = None,
         rgb: bool = True,
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Frames with the pose, and the truth without "goal"."""
+        """Frames with the pose, and the truth without "goal". Of one camera ``views`` means
+        nothing."""
         apartment = self._entered
         renderer = shared_renderer(self.size)
         renderer.load(apartment)
-        wanted = range(VIEWS) if views is None else views
-        frames, depth, ids = renderer.render(
-            float(xy[0]), float(xy[1]), heading, views=wanted, rgb=rgb
-        )
+        wanted = range(self.views) if views is None or self.views == 1 else views
+        drawn = renderer.render(float(xy[0]), float(xy[1]), heading, views=wanted, rgb=rgb)
+        frames, depth, ids = (part[: self.views] for part in drawn)
         pose = np.array([*xy, heading], np.float32)
-        return {RGB: frames, DEPTH: depth, POSE: pose}, Labels(apartment, xy, heading, ids, depth)
+        truth = self._labels(apartment, xy, heading, ids, depth)
+        return {**self._shaped(frames, depth), POSE: pose}, truth
 
 
 class Labels(Mapping[str, np.ndarray]):
@@ -197,14 +221,20 @@ class Labels(Mapping[str, np.ndarray]):
         depth: np.ndarray,
         marks: Sequence[int] | None = None,
     ) -> None:
-        shown = lru_cache(maxsize=1)(lambda: view_labels(apartment, ids, depth))
+        shown = lru_cache(maxsize=1)(lambda: self.shown(apartment, ids, depth))
         self._make: dict[str, Callable[[], np.ndarray]] = {
             "concepts": lambda: shown()[0],
             "seen": lambda: shown()[1],
-            "free": lambda: free_directions(apartment.space, xy, heading),
+            "free": lambda: self.free(free_directions(apartment.space, xy, heading)),
         }
         if marks is not None:
             self._make["goal"] = lambda: np.asarray(shown()[1][:, marks].any(1), np.float32)
+
+    shown = staticmethod(view_labels)
+
+    @staticmethod
+    def free(directions: np.ndarray) -> np.ndarray:
+        return directions
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self._make[name]()
@@ -214,6 +244,19 @@ class Labels(Mapping[str, np.ndarray]):
 
     def __len__(self) -> int:
         return len(self._make)
+
+
+class CameraLabels(Labels):
+    """The truth of one camera's view: of its columns."""
+
+    free = staticmethod(ahead)
+
+    @staticmethod
+    def shown(
+        apartment: Apartment, ids: np.ndarray, depth: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        concepts, seen = column_labels(apartment, ids, depth)
+        return concepts[0], seen[0]
 
 
 class GeodesicExpert:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import torch
 
+from mitigate.agents.text import PAD, Vocabulary, pad
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
-from mitigate.agents.topological.text import PAD, Vocabulary, pad
 from mitigate.core.observation import VIEWS
 
 TEXT = ["Walk past the red sofa, then stop at the plant.", "Find a bed."]

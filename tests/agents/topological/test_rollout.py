@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 import torch
 
+from mitigate.agents.text import Vocabulary, pad
 from mitigate.agents.topological.rollout import STOP_BEST, LiveWalk, roll_out
 from mitigate.agents.topological.stored import SPACING, Store, StoredWalk
-from mitigate.agents.topological.text import Vocabulary, pad
 from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import VIEWS
 from mitigate.corruptions import CLEAN

@@ -7,9 +7,9 @@ import pytest
 import torch
 import torch.nn.functional as F
 
+from mitigate.agents.encoders import halved
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.topological import agent as topological
-from mitigate.agents.topological.encoders import halved
 from mitigate.core.observation import DEPTH, MAX_STEPS, RGB, STOP, Observation
 from mitigate.worlds.apartments.simulator import Simulator
 from mitigate.worlds.apartments.tasks import load_episodes

@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from mitigate.agents.topological.text import UNKNOWN, Vocabulary
+from mitigate.agents.text import UNKNOWN, Vocabulary
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.instructions import TEMPLATES
 from mitigate.worlds.apartments.palette import SEED_RANGES, SPLITS, palette, split_of

@@ -11,11 +11,11 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.agents.topological.concepts import CONCEPTS
+from mitigate.agents.concepts import CONCEPTS
 
 SIZE = 64  # pixels of a view that the shipped agents are trained on
 DEPTH_RANGE = 5.0  # metres; beyond it nothing matters for steps of at most 3 m
-_GRID = 4  # rows and columns of the last feature map at 64 pixels
+GRID = 4  # rows and columns of the last feature map at 64 pixels
 
 
 class Block(nn.Module):
@@ -76,7 +76,15 @@ class Encoder(nn.Module):
         x = self.stem(x)
         for stage in self.stages:
             x = stage(x)
-        return x if x.shape[-1] == _GRID else F.adaptive_avg_pool2d(x, _GRID)
+        return x if x.shape[-1] == GRID else F.adaptive_avg_pool2d(x, GRID)
+
+
+def depth_channels(z: Tensor) -> Tensor:
+    """Metres ``[n, 1, H, W]`` to the input ``[n, 2, H, W]`` of a depth encoder: invalid depth (0,
+    NaN, infinite) enters as 0 with its own mask channel."""
+    valid = torch.isfinite(z) & (z > 0)
+    z = torch.where(valid, z.clamp(max=DEPTH_RANGE) / DEPTH_RANGE, torch.zeros_like(z))
+    return torch.cat([z * 2 - valid.float(), 1 - valid.float()], 1)
 
 
 class RGBEncoder(Encoder):
@@ -90,7 +98,7 @@ class RGBEncoder(Encoder):
         size: int = SIZE,
     ) -> None:
         super().__init__(3, stem, tuple(widths), size, "area")
-        self.gather = nn.Conv2d(widths[-1], 2 * widths[-1], _GRID, groups=widths[-1])
+        self.gather = nn.Conv2d(widths[-1], 2 * widths[-1], GRID, groups=widths[-1])
         self.embed = nn.Linear(2 * widths[-1], width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
@@ -104,8 +112,8 @@ class RGBEncoder(Encoder):
 class DepthEncoder(Encoder):
     """float32 metres ``[n, H, W, 1]`` to features ``[n, width]`` of each view.
 
-    Invalid depth (0, NaN, infinite) enters as 0 with its own mask channel. Resizing takes the
-    nearest pixel: a mean across an edge or a hole would be a surface that is not there.
+    Resizing takes the nearest pixel: a mean across an edge or a hole would be a surface that is not
+    there.
     """
 
     def __init__(
@@ -116,12 +124,9 @@ class DepthEncoder(Encoder):
         size: int = SIZE,
     ) -> None:
         super().__init__(2, stem, tuple(widths), size, "nearest-exact")
-        self.rows = nn.Conv2d(widths[-1], widths[-1], (_GRID, 1))
-        self.embed = nn.Linear(_GRID * widths[-1], width)
+        self.rows = nn.Conv2d(widths[-1], widths[-1], (GRID, 1))
+        self.embed = nn.Linear(GRID * widths[-1], width)
 
     def forward(self, depth: Tensor) -> Tensor:
-        z = self.sized(depth)
-        valid = torch.isfinite(z) & (z > 0)
-        z = torch.where(valid, z.clamp(max=DEPTH_RANGE) / DEPTH_RANGE, torch.zeros_like(z))
-        x = self.maps(torch.cat([z * 2 - valid.float(), 1 - valid.float()], 1))
+        x = self.maps(depth_channels(self.sized(depth)))
         return F.gelu(self.embed(F.relu(self.rows(x)).flatten(1)))

@@ -12,40 +12,52 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.agents.topological.text import UNKNOWN, Vocabulary
+from mitigate.agents.text import UNKNOWN, Vocabulary
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
 
 FARTHEST = 50.0  # metres (ours): indoors some pixel of twelve views is nearer, if only the floor
 NEAREST = 1.0  # metres (ours): a room of which nothing lies farther away is rare
 
 
+CHANNELS = {RGB: 3, DEPTH: 1}
+
+
 def frames(observation: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Return RGB uint8 [12, H, H, 3] and depth float32 [12, H, H, 1], as torch takes them.
+    """Return RGB uint8 [12, H, H, 3] and depth float32 [12, H, H, 1]; see :func:`frame`."""
+    return frame(observation, RGB, VIEWS), frame(observation, DEPTH, VIEWS)
+
+
+def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
+    """Return the entry "rgb" (uint8) or "depth" (float32 metres) as torch takes it: of 12 views
+    [12, H, H, c], of one [H, H, c].
 
     Raises KeyError for a missing entry; TypeError for anything but uint8 RGB and floating depth;
     ValueError for another shape and for depth in millimetres. Warns of depth that looks normalised.
     """
-    rgb, depth = _entry(observation, RGB), _entry(observation, DEPTH)
-    if rgb.dtype != np.uint8:
+    found = _entry(observation, name)
+    if name == RGB and found.dtype != np.uint8:
         raise TypeError(
-            f"rgb must be uint8 with values 0 to 255, not {rgb.dtype}: for values 0 to 1, give "
+            f"rgb must be uint8 with values 0 to 255, not {found.dtype}: for values 0 to 1, give "
             "(rgb * 255).round().astype(np.uint8)."
         )
-    if not np.issubdtype(depth.dtype, np.floating):
+    if name == DEPTH and not np.issubdtype(found.dtype, np.floating):
         raise TypeError(
-            f"depth must be float32 metres, not {depth.dtype}: for millimetres, give "
+            f"depth must be float32 metres, not {found.dtype}: for millimetres, give "
             "depth.astype(np.float32) / 1000."
         )
-    for name, frame, channels in ((RGB, rgb, 3), (DEPTH, depth, 1)):
-        wanted = frame.ndim == 4 and frame.shape[::3] == (VIEWS, channels)
-        if not wanted or frame.shape[1] != frame.shape[2]:
-            raise ValueError(
-                f"{name} has the shape {list(frame.shape)}, but the agent sees {VIEWS} square "
-                f"views at once: [{VIEWS}, H, H, {channels}], view k at 30 k degrees to the right."
-            )
-    _check_unit(depth)
+    channels, first = CHANNELS[name], () if views == 1 else (views,)
+    size = found.shape[-2] if found.ndim > 1 else 0
+    if found.shape != (*first, size, size, channels):
+        wanted = f"square views at once: [{views}, H, H, {channels}], view k at 30 k degrees to "
+        one = f"square view ahead: [H, H, {channels}]. Set views=1 in the world's config."
+        raise ValueError(
+            f"{name} has the shape {list(found.shape)}, but the agent sees {views} "
+            + (one if views == 1 else f"{wanted}the right.")
+        )
+    if name == DEPTH:
+        _check_unit(found, views)
     # C and writeable is what torch takes as it is; what has it already is not copied
-    return np.require(rgb, np.uint8, ["C", "W"]), np.require(depth, np.float32, ["C", "W"])
+    return np.require(found, np.uint8 if name == RGB else np.float32, ["C", "W"])
 
 
 def pose(observation: Mapping[str, Any]) -> np.ndarray:
@@ -84,7 +96,7 @@ def _entry(observation: Mapping[str, Any], name: str) -> np.ndarray:
         ) from None
 
 
-def _check_unit(depth: np.ndarray) -> None:
+def _check_unit(depth: np.ndarray, views: int) -> None:
     if ((depth > NEAREST) & (depth <= FARTHEST)).any():
         return  # metres; the rest says what else they may be
     valid = depth[np.isfinite(depth) & (depth > 0)]
@@ -95,7 +107,7 @@ def _check_unit(depth: np.ndarray) -> None:
             f"Nothing in depth is nearer than {valid.min():g}: that is not metres. If these are "
             "millimetres, divide by 1000."
         )
-    if valid.max() <= NEAREST:
+    if valid.max() <= NEAREST and views > 1:  # one camera may well face a wall
         warnings.warn(
             f"Nothing in depth is farther than {valid.max():g} m. If it is normalised to 0..1 (as "
             "Habitat's is by default), multiply it by the sensor's range first.",

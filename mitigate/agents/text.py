@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import torch
 
-from mitigate.agents.topological.concepts import CONCEPTS
+from mitigate.agents.concepts import CONCEPTS
 
 SPECIAL = ("[PAD]", "[UNK]", "[MASK]")
 PAD, UNKNOWN, MASK = range(3)

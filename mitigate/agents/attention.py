@@ -1,0 +1,57 @@
+"""Attention and transformer layers of the planner and of what reads instructions."""
+
+from __future__ import annotations
+
+from torch import Tensor, nn
+
+
+class Attention(nn.Module):
+    """Multi-head attention; ``mask`` is bool, True = may look. Written out: for these short rows
+    PyTorch's fused CPU kernel took four times as long (torch 2.13)."""
+
+    def __init__(self, width: int, heads: int) -> None:
+        super().__init__()
+        self.heads, self.scale = heads, (width // heads) ** -0.5
+        self.q, self.kv, self.out = (
+            nn.Linear(width, width),
+            nn.Linear(width, 2 * width),
+            nn.Linear(width, width),
+        )
+
+    def forward(
+        self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
+    ) -> Tensor:
+        """x [B, n, width] looks at memory [B, m, width], or at ``memory[rows]`` projected once."""
+
+        def split(t: Tensor) -> Tensor:
+            return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
+
+        pairs = self.kv(memory) if rows is None else self.kv(memory)[rows]
+        k, v = pairs.chunk(2, -1)
+        scores = split(self.q(x)) @ split(k).transpose(-1, -2) * self.scale
+        if mask is not None:
+            scores = scores.masked_fill(~mask[:, None, None, :], -1e4)
+        return self.out((scores.softmax(-1).to(v.dtype) @ split(v)).transpose(-2, -3).flatten(-2))
+
+
+class Layer(nn.Module):
+    """Pre-norm transformer layer: [cross-attention], self-attention, feed-forward."""
+
+    def __init__(self, width: int, heads: int, cross: bool, dropout: float) -> None:
+        super().__init__()
+        self.cross = Attention(width, heads) if cross else None
+        self.cross_norm = nn.LayerNorm(width) if cross else None
+        self.self_norm, self.ff_norm = nn.LayerNorm(width), nn.LayerNorm(width)
+        self.attention = Attention(width, heads)
+        self.ff = nn.Sequential(nn.Linear(width, 3 * width), nn.GELU(), nn.Linear(3 * width, width))
+        self.dropout = nn.Dropout(dropout)
+
+    def forward(
+        self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None
+    ) -> Tensor:
+        """``text``: features [E, L, width], mask [B, L] and the row of each x: int [B]."""
+        if self.cross is not None and self.cross_norm is not None and text is not None:
+            x = x + self.cross(self.cross_norm(x), *text)
+        y = self.self_norm(x)
+        x = x + self.attention(y, y, mask)
+        return x + self.dropout(self.ff(self.ff_norm(x)))

@@ -1,0 +1,101 @@
+"""DAgger: imitation on fresh walks and on walks kept from earlier steps.
+
+Walking and looking cost more than learning. So each step walks a few episodes with the current
+policy, keeps them on disk, and learns from them together with some drawn from all that were kept
+before (Ross et al. 2011 aggregate so; here the data grow at every step). The oracle's share of the
+decisions falls over the training. For agents whose walks are plain data (tensors, lists, text);
+otherwise as ``recipes/imitate.py``, whose loss it uses.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from mitigate.core.files import write_bytes
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule
+from mitigate.recipes.imitate import Imitate, batch_of
+from mitigate.worlds.world import TrainingEpisodes, World
+
+_DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions
+
+
+class Dagger(Imitate):
+    """Args: as ``Imitate``; episodes: walked anew each step. kept: earlier walks that a step learns
+    from again. folder: of the kept walks, a file a piece. steps: over 0.6 of them the oracle's
+    share of the decisions falls from 1 to ``follow_oracle``.
+
+    A step's walks depend on its weights alone and are written before they are learned from, so a
+    resumed run draws the same ones. Raises ValueError for an agent whose walks are no plain data.
+    """
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], World],
+        training: TrainingEpisodes,
+        folder: str,
+        steps: int,
+        schedule: Schedule | None = None,
+        train_parts: Sequence[str] | str | None = None,
+        episodes: int = 8,
+        kept: int = 24,
+        follow_oracle: float = 0.25,
+        seed: int = 0,
+        losses: Mapping[str, float] | None = None,
+    ) -> None:
+        schedule = schedule or Schedule("clean", 0.0)
+        super().__init__(
+            agent, world, training, schedule, train_parts, episodes, follow_oracle, seed, losses
+        )
+        self.folder, self.steps, self.kept, self.least = Path(folder), steps, kept, follow_oracle
+
+    def jobs(self, step: int) -> list[tuple]:
+        """As ``Rollouts.jobs``, each with the oracle's share."""
+        share = max(0.0, 1 - step / (_DECAY * self.steps))
+        expert = self.least + share * (1 - self.least)
+        return [(*job, expert) for job in self.rollouts.jobs(step)]
+
+    def work(self, job: tuple) -> Any:
+        *own, self.rollouts.expert_share = job
+        return self.rollouts.work(tuple(own))
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        for number, (piece, _) in enumerate(pieces):
+            self._keep(step, number, piece)
+        again = self._drawn(step, len(pieces), -(-self.episodes // len(pieces)))
+        return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
+
+    @property
+    def episodes(self) -> int:
+        return self.rollouts.episodes
+
+    def _drawn(self, step: int, pieces: int, size: int) -> list[Any]:
+        """Kept pieces of ``size`` walks each, drawn from those of earlier steps."""
+        count = min(-(-self.kept // size), step * pieces)
+        rng = generator(self.rollouts.seed, "kept walks", step)
+        chosen = rng.choice(step * pieces, count, replace=False) if count else []
+        files = [self._file(*divmod(int(index), pieces)) for index in chosen]
+        return [torch.load(file, weights_only=True) for file in files]
+
+    def _file(self, step: int, number: int) -> Path:
+        return self.folder / f"{step:06d}-{number}.pt"
+
+    def _keep(self, step: int, number: int, piece: Any) -> None:
+        """Write a piece; floating tensors are kept as float16."""
+        written = io.BytesIO()
+        torch.save(_half(piece), written)
+        write_bytes(self._file(step, number), written.getvalue())
+
+
+def _half(data: Any) -> Any:
+    if isinstance(data, torch.Tensor):
+        return data.half() if data.is_floating_point() else data
+    if isinstance(data, dict):
+        return {name: _half(value) for name, value in data.items()}
+    return data
