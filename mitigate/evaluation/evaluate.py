@@ -21,7 +21,6 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import unknown
-from mitigate.core.observation import VIEWS
 
 if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
     from torch import nn
@@ -78,7 +77,6 @@ class EvaluateConfig:
     out: str | None = None
     agent: Any = MISSING
     weights: WeightsConfig = field(default_factory=WeightsConfig)
-    views: int = VIEWS
     env: Any = MISSING
     suite: Any = field(default=MISSING)
 

@@ -26,7 +26,6 @@ from torch import nn
 from mitigate.core import checkpoint, conf, precision, seeding
 from mitigate.core.build import build_agent, maker
 from mitigate.core.files import atomic_text
-from mitigate.core.observation import VIEWS
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
 from mitigate.corruptions import Corruption
@@ -85,7 +84,6 @@ class TrainConfig:
     report: str = "mitigate.evaluation.evaluate.report_before_after"
     agent: Any = MISSING
     weights: WeightsConfig = field(default_factory=WeightsConfig)
-    views: int = VIEWS
     env: Any = MISSING
     schedule: Any = MISSING
     suite: Any = MISSING

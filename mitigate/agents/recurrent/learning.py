@@ -61,6 +61,7 @@ class WalkDecisions:
         return flat.new_zeros(*size, *flat.shape[1:]).index_put((self.walk, self.time), flat)
 
 
+@torch.no_grad()
 def collect(
     agent: RecurrentAgent,
     worlds: Sequence[World],

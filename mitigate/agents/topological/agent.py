@@ -20,11 +20,11 @@ from torch import Tensor, nn
 from mitigate.agents import observation as checked
 from mitigate.agents.adapters import insert_adapters, remove_adapters
 from mitigate.agents.agent import Output
+from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import SIZE, DepthEncoder, RGBEncoder
 from mitigate.agents.text import Vocabulary, pad
 from mitigate.agents.topological import decisions as joining
 from mitigate.agents.topological import learning
-from mitigate.agents.topological.controller import Controller
 from mitigate.agents.topological.decisions import MapDecisions, Piece
 from mitigate.agents.topological.mapping import TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate

@@ -14,7 +14,7 @@ import numpy as np
 import torch
 
 from mitigate.agents import observation as checked
-from mitigate.agents.topological.controller import Controller
+from mitigate.agents.controller import Controller
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mitigate.agents.topological.controller import Controller
+from mitigate.agents.controller import Controller
 from mitigate.agents.topological.waypoints import (
     ANGLES,
     COUNT,

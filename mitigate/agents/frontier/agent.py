@@ -1,0 +1,233 @@
+"""The frontier agent: look around, map, go to the most promising frontier, walk up to the object.
+
+It stands where VLFM, L3MVN and WMNav do: nothing of it is learned but what recognises objects, its
+RGB encoder. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level
+action.
+"""
+
+from __future__ import annotations
+
+import copy
+import warnings
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from mitigate.agents import camera
+from mitigate.agents import observation as checked
+from mitigate.agents.adapters import insert_adapters
+from mitigate.agents.agent import Output
+from mitigate.agents.camera import CameraRGB
+from mitigate.agents.controller import Controller
+from mitigate.agents.encoders import SIZE
+from mitigate.agents.frontier import search
+from mitigate.agents.frontier.grid import CELL, Grid
+from mitigate.agents.frontier.planning import (
+    Routes,
+    clear_ahead,
+    frontiers,
+    object_cells,
+    routes,
+)
+from mitigate.core.names import unknown
+from mitigate.core.observation import (
+    DEPTH,
+    FORWARD,
+    FORWARD_METRES,
+    LEFT,
+    POSE,
+    RGB,
+    RIGHT,
+    STOP,
+    TURN_DEGREES,
+)
+
+SENSORS = (RGB, DEPTH, "instruction")
+TURNS = 18  # at the start: 270 degrees, with a view of 90 all around
+AGAIN = 8  # actions until it plans anew
+LEG = 1.5  # metres that it goes straight before it looks at its route again
+STUCK = 0.05  # metres of a step forward below which something is in the way
+LAST = 400  # actions until it goes to the likeliest place that it knows and stops
+WORTH = 6.0  # metres of way that a frontier of value 1 is worth (chosen on val_seen_ogn)
+FOUND, MAYBE = 4.0, 1.0  # evidence for the object to go there, and to go there in the end
+TRIES = 12  # plans in one instant
+NEAR_ENOUGH = 0.4  # probability that the object is near, at which it stops in front of it
+ARRIVED = 0.9  # metres from the object's cells at which it stops
+
+
+class FrontierAgent(nn.Module):
+    """Args: width: of the features of a column of the view. adapters: keyword arguments of
+    ``insert_adapters``, for an encoder with adapters. blind: of "rgb", "depth" and "instruction",
+    what is blanked before it enters (the ablations). size: pixels of a square view that it works
+    on. eye: metres of the camera above the floor.
+
+    Raises ValueError for an unknown name in ``blind``.
+    """
+
+    encoders: ClassVar = {RGB: camera.ENCODERS[RGB]}
+    labels: ClassVar = {RGB: camera.LABELS[RGB]}
+    needs = (RGB, DEPTH, POSE)
+
+    def __init__(
+        self,
+        width: int = 96,
+        adapters: dict[str, Any] | None = None,
+        blind: tuple[str, ...] = (),
+        size: int = SIZE,
+        eye: float = 1.25,
+    ) -> None:
+        super().__init__()
+        for name in blind:
+            if name not in SENSORS:
+                raise ValueError(unknown("sensor in blind", name, SENSORS))
+        self._settings = copy.deepcopy(
+            {"width": width, "adapters": adapters, "blind": list(blind), "size": size, "eye": eye}
+        )
+        self.blind, self.eye = tuple(blind), eye
+        self.rgb_encoder = CameraRGB(width=width, size=size)
+        if adapters:
+            insert_adapters(self, **adapters, views=1)
+
+    def settings(self) -> dict[str, Any]:
+        """All that makes it besides weights: what its config must say."""
+        return copy.deepcopy(self._settings)
+
+    def parts(self) -> dict[str, nn.Module]:
+        """Its encoder by name."""
+        return {"rgb_encoder": self.rgb_encoder}
+
+    def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
+        """View features of RGB frames; see :func:`camera.see`."""
+        return camera.see(self.rgb_encoder, sensor, frames, truth)
+
+    # closed loop ------------------------------------------------------------------------------
+
+    def reset(self, instruction: str) -> None:
+        """Start an episode. Raises TypeError if ``instruction`` is no string; warns if it names
+        nothing that the agent knows."""
+        if not isinstance(instruction, str):
+            raise TypeError(f"An instruction is a string, not {type(instruction).__name__}.")
+        self.thing = None if "instruction" in self.blind else search.named(instruction)
+        if self.thing is None and "instruction" not in self.blind:
+            warnings.warn(
+                f"The instruction {instruction[:60]!r} names no object that the agent knows, so it "
+                "explores until nothing is left.",
+                stacklevel=2,
+            )
+        self.grid: Grid | None = None
+        self.controller = Controller()
+        self.actions = self._planned = 0
+        self._before: np.ndarray | None = None  # where the last step forward began
+
+    def act(self, observation: Mapping[str, np.ndarray]) -> int:
+        """One low-level action. Raises RuntimeError before the first ``reset``, and what
+        ``agents/observation.py`` refuses."""
+        if not hasattr(self, "controller"):
+            raise RuntimeError("Start the episode first: agent.reset(instruction).")
+        pose = checked.pose(observation).astype(np.float64)
+        self._look(observation, pose)
+        self.actions += 1
+        action = LEFT if self.actions <= TURNS else self._walk(pose)
+        self._before = pose[:2] if action == FORWARD else None
+        return action
+
+    def _look(self, observation: Mapping[str, np.ndarray], pose: np.ndarray) -> None:
+        """Lay what is seen over the map."""
+        if self.grid is None:
+            self.grid = Grid(pose, self.eye)
+        if self._before is not None and np.hypot(*(pose[:2] - self._before)) < STUCK:
+            ahead = np.array([-np.sin(pose[2]), np.cos(pose[2])])
+            self.grid.block(pose[:2] + FORWARD_METRES * ahead)
+            self._planned = 0
+        concepts = self._recognise(checked.frame(observation, RGB, 1))
+        depth = checked.frame(observation, DEPTH, 1)[..., 0]
+        thing = np.zeros((len(concepts), 2), np.float32)
+        if self.thing is not None:
+            thing = search.seen(concepts, self.thing)
+        depth = np.zeros_like(depth) if DEPTH in self.blind else depth
+        self._near = float(thing[:, 1].max())
+        self.grid.add(depth, pose, thing, search.worth(concepts, self.thing))
+
+    @torch.inference_mode()
+    def _recognise(self, rgb: np.ndarray) -> np.ndarray:
+        """Probabilities [4, C] of what the columns of a frame show."""
+        rgb = np.zeros_like(rgb) if RGB in self.blind else rgb
+        device = self.rgb_encoder.embed.weight.device
+        _, logits = self.rgb_encoder(torch.from_numpy(rgb)[None].to(device))
+        return logits[0].float().sigmoid().cpu().numpy()
+
+    def _walk(self, pose: np.ndarray) -> int:
+        """The next action towards where it is worth going."""
+        action = self.controller.action(pose) if self._planned > 0 else None
+        self._planned -= 1
+        for _ in range(TRIES):  # a leg may end where the agent stands
+            if action is not None:
+                return action
+            action = self._plan(pose)
+        return LEFT
+
+    def _plan(self, pose: np.ndarray) -> int | None:
+        """Choose where to go, and return an action, or None if there is nothing to do there."""
+        assert self.grid is not None
+        ways, late = routes(self.grid, pose[:2]), self.actions > LAST
+        thing = object_cells(self.grid, MAYBE if late else FOUND)
+        target = self._beside(ways, thing)
+        if target is not None and self._at(thing, target, pose):
+            return STOP if late else self._check(thing, pose)
+        if target is None and not late:
+            target = self._frontier(ways)
+        if target is None and not late:
+            self.actions = LAST
+            return None
+        if target is None:
+            return STOP
+        step = clear_ahead(self.grid, ways.to(target), LEG)
+        self.controller.follow([self.grid.place(step[None])[0]])
+        self._planned = AGAIN
+        return self.controller.action(pose)
+
+    def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
+        """Standing at the object's cells: face them, and stop if it is seen near there; if not,
+        they are forgotten."""
+        assert self.grid is not None
+        dx, dy = self.grid.place(thing).mean(0) - pose[:2]
+        error = np.arctan2(-dx, dy) - pose[2]
+        error = np.degrees((error + np.pi) % (2 * np.pi) - np.pi)
+        if abs(error) > TURN_DEGREES / 2 + 0.1:
+            return LEFT if error > 0 else RIGHT
+        if self._near > NEAR_ENOUGH:
+            return STOP
+        self.grid.doubt(thing)
+        return None
+
+    def _at(self, thing: np.ndarray, target: np.ndarray, pose: np.ndarray) -> bool:
+        """Whether the agent stands at the object's cells, or at ``target``, as near as it comes."""
+        assert self.grid is not None
+        gaps = self.grid.place(np.concatenate([thing, target[None]])) - pose[:2]
+        away = np.hypot(gaps[:, 0], gaps[:, 1])
+        return bool(away[:-1].min() < ARRIVED or away[-1] < FORWARD_METRES)
+
+    def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
+        """The cell [2] cheapest to reach within ``ARRIVED`` of the object; None if there is none."""
+        reach = int(ARRIVED / CELL)
+        steps = np.arange(-reach, reach + 1)
+        around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
+        around = around[np.hypot(around[:, 0], around[:, 1]) < reach]
+        cells = (thing[:, None] + around[None]).reshape(-1, 2)
+        cost = ways.at(cells) if len(cells) else np.array([np.inf])
+        return cells[int(cost.argmin())] if np.isfinite(cost.min()) else None
+
+    def _frontier(self, ways: Routes) -> np.ndarray | None:
+        """The cell [2] of the frontier that is worth most, less the way there."""
+        assert self.grid is not None
+        best, found = -np.inf, None
+        for group in frontiers(self.grid):
+            cost = ways.at(group)
+            nearest = int(cost.argmin())
+            value = float(self.grid.value[group[:, 0], group[:, 1]].max())
+            if np.isfinite(cost[nearest]) and WORTH * value - cost[nearest] > best:
+                best, found = WORTH * value - cost[nearest], group[nearest]
+        return found

@@ -1,0 +1,168 @@
+"""The map of one episode: where it is free, what it is worth looking at, where the object may be.
+
+Square cells around the start, in the world's own axes. Depth says what is free and occupied, by
+log-odds (Moravec and Elfes 1985); what the RGB encoder recognises is laid over the cells that each
+column of the view shows.
+"""
+
+from __future__ import annotations
+
+import math
+
+import cv2
+import numpy as np
+from numba import njit
+
+CELL = 0.1  # metres
+SIDE = 320  # cells: 32 m
+REACH = 5.0  # metres to which depth is used (VLFM: 5)
+LOW, HIGH = 0.15, 1.5  # metres above the floor of what an agent bumps into
+THINGS_LOW, THINGS_HIGH = 0.05, 2.3  # metres above the floor at which objects show
+HIT, MISS, MOST = 0.9, 0.4, 3.5  # log-odds of a cell that is met, seen through; their bound
+NEAR = 2.0  # metres up to which the encoder calls things near (agents/concepts.py)
+SLACK = 0.3  # metres by which that may be wrong (ours)
+SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
+
+
+class Grid:
+    """Args: start: pose [3] of the first look. eye: metres of the camera above the floor.
+
+    Arrays [SIDE, SIDE], row by y: occupied (log-odds), known (bool), value (0 to 1, how likely the
+    object is over there), evidence (sum of log-odds that the object is here).
+    """
+
+    def __init__(self, start: np.ndarray, eye: float) -> None:
+        self.origin = np.asarray(start[:2], np.float64) - SIDE * CELL / 2
+        self.eye = eye
+        self.occupied, self.value, self.evidence = (
+            np.zeros((SIDE, SIDE), np.float32) for _ in range(3)
+        )
+        self.known = np.zeros((SIDE, SIDE), np.bool_)
+        self.trust = np.zeros((SIDE, SIDE), np.float32)  # of the value: how well it was seen
+        self._stamp = np.zeros((SIDE, SIDE), np.int32)
+        self._looks = 0
+
+    def cell(self, xy: np.ndarray) -> tuple[int, int]:
+        """Row and column of a position, the nearest one of those outside."""
+        j, i = np.clip((np.asarray(xy) - self.origin) / CELL, 0, SIDE - 1).astype(int)
+        return int(i), int(j)
+
+    def place(self, cells: np.ndarray) -> np.ndarray:
+        """Positions [n, 2] of the middles of cells [n, 2]."""
+        return self.origin + (np.asarray(cells)[:, ::-1] + 0.5) * CELL
+
+    def add(self, depth: np.ndarray, pose: np.ndarray, seen: np.ndarray, worth: np.ndarray) -> None:
+        """Enter one look: depth float32 [H, W] metres of 90 degrees ahead, pose [3].
+
+        Of each column of the view, left to right: seen [n, 2], the probabilities that the object
+        shows there, and that it does within 2 m; worth [n], how likely it is over there.
+        """
+        self._looks += 1
+        _scan(
+            np.ascontiguousarray(depth, np.float32),
+            *(float(v) for v in (*pose[:2] - self.origin, pose[2], self.eye)),
+            np.clip(_logit(seen), -3, 3).astype(np.float32),
+            seen.astype(np.float32),
+            worth.astype(np.float32),
+            self.occupied,
+            self.known,
+            self.value,
+            self.trust,
+            self.evidence,
+            self._stamp,
+            self._looks,
+        )
+
+    def block(self, xy: np.ndarray) -> None:
+        """Something was bumped into at ``xy``."""
+        i, j = self.cell(xy)
+        self.occupied[i, j], self.known[i, j] = MOST, True
+
+    def doubt(self, cells: np.ndarray) -> None:
+        """The object is not at ``cells`` [n, 2] or right around them, whatever was seen."""
+        here = np.zeros(self.evidence.shape, np.uint8)
+        here[cells[:, 0], cells[:, 1]] = 1
+        self.evidence[cv2.dilate(here, np.ones((5, 5), np.uint8)) > 0] = -SURE
+
+
+def _logit(p: np.ndarray) -> np.ndarray:
+    p = np.clip(p, 1e-3, 1 - 1e-3)
+    return np.log(p / (1 - p))
+
+
+@njit(cache=True)
+def _scan(
+    depth,
+    x,
+    y,
+    heading,
+    eye,
+    odds,
+    seen,
+    worth,
+    occupied,
+    known,
+    value,
+    trust,
+    evidence,
+    stamp,
+    look,
+):
+    height, width = depth.shape
+    for j in range(width):
+        right = (2 * j + 1) / width - 1
+        column = min(int(j * len(worth) / width), len(worth) - 1)
+        stretch = math.hypot(1.0, right)
+        angle = heading - math.atan(right)
+        dx, dy = -math.sin(angle), math.cos(angle)
+        first = second = REACH + 1
+        floor = 0.0
+        for i in range(height):
+            z = depth[i, j]
+            if not z > 0 or not z < 100:
+                continue
+            up = eye + (1 - (2 * i + 1) / height) * z
+            r = z * stretch
+            if LOW < up < HIGH:
+                if r < first:
+                    first, second = r, first
+                elif r < second:
+                    second = r
+            elif up <= LOW:
+                floor = max(floor, r)
+            if THINGS_LOW < up < THINGS_HIGH and r < REACH:
+                _witness(
+                    x + dx * r, y + dy * r, r, odds[column], seen[column], evidence, stamp, look
+                )
+        met = second <= REACH  # one reading alone may be noise
+        end = second if met else min(floor, REACH)
+        conf = 1 / stretch**2  # VLFM: cos^2 of the angle from the middle of the view
+        for k in range(int(end / CELL)):
+            i, c = int((y + dy * k * CELL) / CELL), int((x + dx * k * CELL) / CELL)
+            if i < 0 or c < 0 or i >= occupied.shape[0] or c >= occupied.shape[1]:
+                break
+            known[i, c] = True
+            occupied[i, c] = max(occupied[i, c] - MISS, -MOST)
+            total = trust[i, c] + conf
+            value[i, c] = (value[i, c] * trust[i, c] + worth[column] * conf) / total
+            trust[i, c] = min(total, 8.0)
+        if met:
+            i, c = int((y + dy * end) / CELL), int((x + dx * end) / CELL)
+            if 0 <= i < occupied.shape[0] and 0 <= c < occupied.shape[1]:
+                known[i, c] = True
+                occupied[i, c] = min(occupied[i, c] + HIT + MISS, MOST)
+
+
+@njit(cache=True)
+def _witness(x, y, r, odds, seen, evidence, stamp, look):
+    """Evidence of one look for the cell of a surface at (x, y), ``r`` metres away."""
+    i, j = int(y / CELL), int(x / CELL)
+    if i < 0 or j < 0 or i >= evidence.shape[0] or j >= evidence.shape[1] or stamp[i, j] == look:
+        return
+    stamp[i, j] = look
+    weight = odds[0]
+    if seen[0] > 0.5 and (
+        (seen[1] > 0.6 and r > NEAR + SLACK) or (seen[1] < 0.3 and r < NEAR - SLACK)
+    ):
+        weight = -0.5  # it shows, but nearer or farther than this
+    evidence[i, j] = min(max(evidence[i, j] + weight, -SURE), SURE)

@@ -1,0 +1,141 @@
+"""The frontier agent: its map, its search, and that it finds what it is told to."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+from mitigate.agents.agent import Seeing, Trainable
+from mitigate.agents.concepts import CONCEPTS, THING_NAMES
+from mitigate.agents.frontier import FrontierAgent, planning, search
+from mitigate.agents.frontier.grid import CELL, Grid
+from mitigate.core.observation import LEFT, MAX_STEPS, RGB
+from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+
+NOTHING = np.full((4, 2), 0.01, np.float32)
+
+
+def wall(metres: float, size: int = 32) -> np.ndarray:
+    """Depth [H, W] of a wall ahead, with the floor and the ceiling before it."""
+    up = np.abs(1 - (2 * np.arange(size) + 1) / size)[:, None] + np.zeros(size)
+    return np.minimum(metres, 1.25 / up).astype(np.float32)
+
+
+def looked(*looks: tuple[np.ndarray, np.ndarray]) -> Grid:
+    grid = Grid(np.zeros(3), 1.25)
+    for depth, pose in looks:
+        grid.add(depth, pose, NOTHING, np.zeros(4))
+    return grid
+
+
+def test_a_wall_is_occupied_and_the_way_to_it_free():
+    grid = looked(*[(wall(2.0), np.zeros(3))] * 3)
+    at = {metres: grid.cell(np.array([0.0, metres])) for metres in (1.0, 2.0, 3.0)}
+    assert grid.known[at[1.0]] and grid.occupied[at[1.0]] < 0
+    assert max(grid.occupied[grid.cell(np.array([0.0, y]))] for y in (1.9, 2.0, 2.1)) > 0
+    assert not grid.known[at[3.0]]
+
+
+def test_depth_that_is_missing_says_nothing():
+    assert not looked((np.zeros((32, 32)), np.zeros(3))).known.any()
+
+
+def test_routes_go_around_what_is_occupied():
+    grid = looked()
+    grid.known[:] = True
+    row, column = grid.cell(np.zeros(2))
+    grid.occupied[row + 10, column - 20 : column + 5] = 3.0
+    ways = planning.routes(grid, np.zeros(2))
+    goal = np.array([row + 20, column])
+    path = ways.to(goal)
+    assert tuple(path[0]) == (row, column) and tuple(path[-1]) == tuple(goal)
+    assert (grid.occupied[path[:, 0], path[:, 1]] <= 0).all()
+    assert ways.at(goal[None])[0] > 2.0 + 0.3
+
+
+def test_a_frontier_lies_between_known_and_unknown():
+    grid = looked(*[(wall(3.0), np.zeros(3))] * 3)
+    for group in planning.frontiers(grid):
+        assert grid.known[group[:, 0], group[:, 1]].all()
+        around = [grid.known[i - 1 : i + 2, j - 1 : j + 2].all() for i, j in group]
+        assert not any(around)
+
+
+def test_looks_from_two_sides_place_the_object():
+    """One look leaves a whole direction; the second, from the side, leaves where they meet."""
+    grid = Grid(np.zeros(3), 1.25)
+    ahead = np.array([[0.02, 0.02], [0.95, 0.3], [0.02, 0.02], [0.02, 0.02]], np.float32)
+    for _ in range(3):
+        grid.add(wall(3.0), np.zeros(3), ahead, np.zeros(4))
+    spread = len(planning.object_cells(grid, 1.0))
+    side = np.array([-1.5, 1.5, 0.0])
+    for _ in range(3):
+        grid.add(wall(1.5), side, np.roll(ahead, 1, 0), np.zeros(4))
+    assert 0 < len(planning.object_cells(grid, 1.0)) < spread
+
+
+def test_the_thing_named_last_is_searched():
+    assert THING_NAMES[search.named("Find a washing machine.")] == "washing machine"
+    assert THING_NAMES[search.named("Go past the sofa and stop at the blue chairs!")] == "chair"
+    assert THING_NAMES[search.named("an armchair")] == "armchair"
+    assert search.named("walk to the piano") is None
+
+
+def test_every_likely_thing_and_room_is_known():
+    assert set(search.LIKELY) <= set(CONCEPTS)
+    assert {name for names in search.LIKELY.values() for name in names} <= set(THING_NAMES)
+
+
+def test_it_finds_what_it_recognises():
+    world, agent, won = ApartmentsWorld(views=1), FrontierAgent().eval(), 0
+    agent._recognise = lambda rgb: 0.01 + 0.98 * world.truth()["concepts"]
+    for episode in load_episodes("val_seen", "ogn")[:4]:
+        seen = world.reset(episode)
+        agent.reset(episode.instruction.text)
+        while not world.done:
+            seen = world.step(agent.act(seen))
+        won += world.measures()["success"]
+        assert world.measures()["steps"] < MAX_STEPS
+    assert won >= 3
+
+
+def test_it_looks_around_first_and_needs_its_sensors():
+    world, agent = ApartmentsWorld(views=1), FrontierAgent().eval()
+    seen = world.reset(load_episodes("val_seen", "ogn")[0])
+    with pytest.raises(RuntimeError, match="reset"):
+        agent.act(seen)
+    agent.reset("Find a bed.")
+    assert [agent.act(seen) for _ in range(3)] == [LEFT] * 3
+    with pytest.raises(KeyError, match="pose"):
+        agent.act({RGB: seen[RGB]})
+    with pytest.raises(ValueError, match="smell"):
+        FrontierAgent(blind=("smell",))
+    with pytest.warns(UserWarning, match="names no object"):
+        agent.reset("hello")
+
+
+def test_only_its_encoder_is_learned():
+    agent = FrontierAgent()
+    assert isinstance(agent, Seeing) and not isinstance(agent, Trainable)
+    assert {id(p) for m in agent.parts().values() for p in m.parameters()} == {
+        id(p) for p in agent.parameters()
+    }
+
+
+def test_a_blind_agent_hears_nothing():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        agent = FrontierAgent(blind=("instruction",))
+        agent.reset("Find a bed.")
+    assert agent.thing is None
+
+
+def test_the_map_is_as_large_as_the_agent_can_walk():
+    grid = looked()
+    assert grid.cell(np.array([1e3, -1e3])) == (0, len(grid.known) - 1)
+    assert np.allclose(
+        grid.place(np.array([grid.cell(np.array([1.0, -2.0]))])), [[1, -2]], atol=CELL
+    )

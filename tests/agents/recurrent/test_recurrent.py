@@ -1,0 +1,150 @@
+"""The recurrent agent: what it decides in a batch is what it does step by step."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+import torch
+
+from mitigate.agents.agent import Seeing, Trainable
+from mitigate.agents.recurrent import RecurrentAgent, learning
+from mitigate.core.observation import DEPTH, FORWARD, RGB, STOP
+from mitigate.core.seeding import generator, seed_everything
+from mitigate.corruptions import Corruption
+from mitigate.evaluation.episode import run_episode
+from mitigate.worlds.apartments.tasks import DrawnEpisodes, load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.world import Corrupted
+
+SMALL = {"width": 32, "heads": 2, "text_layers": 1, "dropout": 0.0}
+SIZE = 16
+World = partial(ApartmentsWorld, SIZE, 2, 1)
+
+
+def agent(*sensors: str, **settings) -> RecurrentAgent:
+    seed_everything(0, "recurrent")
+    made = RecurrentAgent(sensors or (RGB, DEPTH), 8, 8, SMALL, size=SIZE, **settings).eval()
+    with torch.no_grad():
+        made.policy.act[-1].bias[STOP] = -4.0  # untrained, it would stop at once
+    return made
+
+
+def walked(by: RecurrentAgent, count: int = 2, *, share: float = 0.5, clean: bool = False):
+    rngs = [generator(0, "test", i) for i in range(count)]
+    episodes = [DrawnEpisodes(2).draw(rng) for rng in rngs]
+    worlds = [Corrupted(World(), Corruption("low_light", 0.8), 0, str(i)) for i in range(count)]
+    with torch.no_grad():
+        how = {"expert_share": share, "rngs": rngs, "clean": clean}
+        return by.collect(worlds, episodes, **how)
+
+
+def test_it_is_trainable_and_sees():
+    assert isinstance(agent(), Trainable) and isinstance(agent(), Seeing)
+    assert set(agent().parts()) == {"rgb_encoder", "depth_encoder", "policy"}
+    assert set(agent(RGB).parts()) == {"rgb_encoder", "policy"}
+
+
+def test_a_batch_answers_as_the_agent_does_step_by_step():
+    made, episode = agent(), load_episodes("val_seen")[0]
+    with torch.no_grad():
+        made.policy.act[-1].bias[FORWARD] = 50.0  # whatever it sees, so both take the same way
+    how = {"expert_share": 0.0, "rngs": [generator(0, "same")]}
+    piece = made.collect([World()], [episode], **how)
+    with torch.no_grad():
+        batch = made.decide(made.join([piece])).features["state"]
+    world = World()
+    seen = world.reset(episode)
+    made.reset(episode.instruction.text)
+    for state in batch:
+        assert made.act(seen) == FORWARD
+        assert torch.allclose(made._state.hidden[0], state, atol=1e-4)
+        seen = world.step(FORWARD)
+
+
+def test_walks_of_a_batch_do_not_depend_on_each_other():
+    made = agent()
+    together = made.join([walked(made, 2, share=1.0)])
+    alone = made.join([walked(made, 1, share=1.0)])
+    with torch.no_grad():
+        both, one = made.decide(together).logits, made.decide(alone).logits
+    assert torch.allclose(both[: len(one)], one, atol=1e-4)
+
+
+def test_its_own_stop_is_not_taken_in_training():
+    made = agent()
+    with torch.no_grad():
+        made.policy.act[-1].bias[STOP] = 50.0
+    piece = walked(made, 1, share=0.0)
+    assert piece["lengths"][0] > 1  # with its own STOP the walk would end at once
+    assert piece["answer"][-1] == STOP  # the expert's ends it
+
+
+def test_frozen_encoders_give_features_and_training_ones_frames():
+    made = agent()
+    made.requires_grad_(False)
+    made.policy.requires_grad_(True)
+    assert set(walked(made)["seen"]) == {"views", "goal"}
+    made.rgb_encoder.requires_grad_(True)
+    piece = walked(made, clean=True)
+    assert {RGB, DEPTH, "concepts", "free", "clean_rgb", "clean_depth"} <= set(piece["seen"])
+    out = made.decide(made.join([piece]))
+    assert {"concepts", "free", "distance", "grounding"} == set(out.losses)
+    out.losses["concepts"].backward()
+    assert made.rgb_encoder.stem[0].weight.grad.abs().sum() > 0
+
+
+def test_clean_frames_and_their_features_give_the_same_answer():
+    made = agent()
+    made.requires_grad_(False)
+    piece = walked(made, clean=True)
+    frames = made.decide(made.join([piece]), clean=True).logits
+    known = made.decide(made.join([made.precompute(piece, clean=True)]), clean=True).logits
+    assert torch.allclose(frames, known, atol=1e-5)
+    corrupted = made.decide(made.join([piece])).logits
+    assert not torch.allclose(frames, corrupted, atol=1e-5)
+
+
+def test_steps_at_which_the_expert_turns_count_more():
+    piece = walked(agent(), 1, share=1.0)
+    changes = np.flatnonzero(np.diff(piece["answer"].numpy())) + 1
+    heavy = np.flatnonzero(piece["weight"].numpy() > 1)
+    assert np.array_equal(heavy, [0, *changes])
+    assert piece["weight"][0] == pytest.approx(learning.INFLECTION)
+
+
+def test_with_rgb_alone_depth_does_not_matter():
+    made, episode = agent(RGB), load_episodes("val_seen")[1]
+    clean = run_episode(made, World(), episode, Corruption("clean", 0.0), 0)
+    gone = run_episode(made, World(), episode, Corruption("missing_data", 1.0), 0)
+    assert clean == gone
+
+
+@pytest.mark.parametrize("sense", [RGB, DEPTH, "instruction"])
+def test_what_it_is_blind_to_changes_nothing(sense):
+    made = agent(blind=[sense])
+    made.reset("turn left" if sense == "instruction" else "go to the bed")
+    world = World()
+    seen = dict(world.reset(load_episodes("val_seen")[0]))
+    made.act(seen)
+    first = made._state.hidden
+    made.reset("go to the bed")
+    if sense != "instruction":
+        seen[sense] = (seen[sense] * 0.5).astype(seen[sense].dtype)
+    made.act(seen)
+    assert torch.equal(first, made._state.hidden)
+
+
+def test_mistakes_say_what_is_wrong():
+    with pytest.raises(ValueError, match="rgbd"):
+        agent("rgbd")
+    with pytest.raises(ValueError, match="depth"):
+        agent(RGB, blind=["depth"])
+    with pytest.raises(RuntimeError, match="reset"):
+        agent().act({})
+    panorama = ApartmentsWorld(SIZE).reset(load_episodes("val_seen")[0])
+    made = agent()
+    made.reset("go to the bed")
+    with pytest.raises(ValueError, match="views=1"):
+        made.act(panorama)
