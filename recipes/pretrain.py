@@ -16,6 +16,7 @@ from torch import Tensor
 from mitigate.agents.adapters import adapted, adapter_parameters
 from mitigate.agents.agent import Seeing
 from mitigate.corruptions import Schedule
+from mitigate.training.parts import freeze
 from mitigate.training.poses import Poses
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes, World
@@ -98,5 +99,6 @@ def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> di
     for part in (module.parts()[name] for name in module.encoders[modality]):
         for trained in adapter_parameters(part) if adapters_only else part.parameters():
             trained.requires_grad_(True)
+    freeze(module)
     every = 2 if modality == "rgb" and not adapted(module) else 1
     return {"sensor": modality, "label": agent.labels[modality], "every": every}

@@ -81,8 +81,8 @@ def insert_adapters(
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
             ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
-            views), with ``ring_reduction`` as reduction; of 1 view, a plain one. A module found by both gets this
-            one.
+            views), with ``ring_reduction`` as reduction; of 1 view, a plain one. A module found
+            by both gets this one.
     Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
     trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.

@@ -64,6 +64,8 @@ class Trainable(Protocol):
     """An ``nn.Module`` that the recipes train, beside :class:`Agent`.
 
     ``loss_weights`` (attribute, optional): of its auxiliary losses by name; 1 where it names none.
+    ``frozen`` (attribute, optional): names of modules that never train, such as a borrowed
+    backbone; adapters in them do.
     ``precompute(piece, *, clean)`` (optional): the piece with what no trained weight changes
     computed, called on worker processes; ``clean`` asks for what ``decide(clean=True)`` needs.
     ``as_teacher()`` (optional): a copy without what was added to make it robust; by default a copy

@@ -53,8 +53,19 @@ def train_only(agent: Any, parts: Iterable[str] | str | None) -> None:
         )
     for name, module in own.items():
         module.requires_grad_(name in parts)
+    freeze(agent)
     for parameter in adapter_parameters(agent):
         parameter.requires_grad_(ADAPTERS in parts)
+
+
+def freeze(agent: nn.Module) -> None:
+    """Freeze what an agent calls ``frozen``, but for adapters."""
+    for name in getattr(agent, "frozen", ()):
+        module = agent.get_submodule(name)
+        adapters = {id(p) for p in adapter_parameters(module)}
+        for parameter in module.parameters():
+            if id(parameter) not in adapters:
+                parameter.requires_grad_(False)
 
 
 def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:

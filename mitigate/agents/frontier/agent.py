@@ -211,7 +211,7 @@ class FrontierAgent(nn.Module):
         return bool(away[:-1].min() < ARRIVED or away[-1] < FORWARD_METRES)
 
     def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
-        """The cell [2] cheapest to reach within ``ARRIVED`` of the object; None if there is none."""
+        """The cell [2] cheapest to reach within ``ARRIVED`` of the object; None: there is none."""
         reach = int(ARRIVED / CELL)
         steps = np.arange(-reach, reach + 1)
         around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)

@@ -39,7 +39,7 @@ def _finds(name: str, text: str) -> list[re.Match]:
 
 
 def seen(concepts: np.ndarray, thing: int) -> np.ndarray:
-    """Of the probabilities [n, C] of what columns show, those of ``thing``, and of it near: [n, 2]."""
+    """Of the probabilities [n, C] of what columns show, those of ``thing`` and of it near."""
     return concepts[:, [thing, NEAR.start + thing]]
 
 

@@ -26,10 +26,12 @@ from mitigate.agents.text import Vocabulary, pad
 from mitigate.agents.topological import decisions as joining
 from mitigate.agents.topological import learning
 from mitigate.agents.topological.decisions import MapDecisions, Piece
+from mitigate.agents.topological.imagenet import ImageNetEncoder
 from mitigate.agents.topological.mapping import TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.agents.topological.stored import Store
 from mitigate.agents.topological.waypoints import WaypointHead, select
+from mitigate.core import names
 from mitigate.core.memory import Memory
 from mitigate.core.observation import STOP, VIEWS
 from mitigate.worlds.episodes import Episode
@@ -38,6 +40,8 @@ from mitigate.worlds.world import World
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 SENSORS = ("rgb", "depth", "instruction")
 PARTS = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
+OWN, IMAGENET = "own", "efficientnet_lite0"
+BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")  # what does not train of an encoder not ours
 FEATURES = 1 << 25  # bytes of features kept while remembering (ours): about 900 panoramas
 
 
@@ -49,6 +53,8 @@ class TopologicalAgent(nn.Module):
         adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
         blind: sensors that are blanked before they enter (the ablations): of ``SENSORS``.
         size: pixels of a square view that it works on; frames of another size are resized.
+        encoder: of RGB: "own", or "efficientnet_lite0" (``imagenet.py``), which stays as it is
+        but for adapters and what reads its map.
         vocabulary: the words it knows; None: those of the shipped agents.
     Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
     """
@@ -61,8 +67,11 @@ class TopologicalAgent(nn.Module):
         adapters: dict[str, Any] | None = None,
         size: int = SIZE,
         vocabulary: list[str] | None = None,
+        encoder: str = OWN,
     ) -> None:
         super().__init__()
+        if encoder not in (OWN, IMAGENET):
+            raise ValueError(names.unknown("encoder", encoder, (OWN, IMAGENET)))
         unknown = set(blind) - set(SENSORS)
         if unknown:
             raise ValueError(
@@ -78,8 +87,13 @@ class TopologicalAgent(nn.Module):
                 "size": size,
             }
         )
+        if encoder != OWN:
+            self._settings["encoder"] = encoder
         self._memory: Memory | None = None
-        self.rgb_encoder = RGBEncoder(width=width, size=size)
+        if encoder == IMAGENET:
+            self.rgb_encoder, self.frozen = ImageNetEncoder(width, size), BORROWED
+        else:
+            self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
         self.waypoint_head = WaypointHead(width)
         self.vocabulary = Vocabulary(vocabulary)

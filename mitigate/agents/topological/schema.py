@@ -12,7 +12,7 @@ from inspect import signature
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mitigate.agents.topological.agent import SENSORS
+from mitigate.agents.topological.agent import IMAGENET, OWN, SENSORS
 from mitigate.agents.topological.planner import Planner
 from mitigate.core import settings
 
@@ -44,6 +44,11 @@ def number(least: float, most: float) -> Kind:
         f"a number from {least:g} to {most:g}",
         lambda value: type(value) in (int, float) and least <= value <= most,
     )
+
+
+def one_of(names: tuple[str, ...]) -> Kind:
+    """One of ``names``."""
+    return Kind(f"one of {', '.join(names)}", lambda value: value in names)
 
 
 def some_of(names: tuple[str, ...]) -> Kind:
@@ -104,6 +109,7 @@ AGENT = {
     "planner": PLANNER,
     "adapters": ADAPTERS,
     "vocabulary": VOCABULARY,
+    "encoder": one_of((OWN, IMAGENET)),
 }
 _AGAIN = "Fetch the folder again, or train again."
 
