@@ -86,7 +86,7 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     are those of another kind of agent than ``node``, or if the file holds anything but plain data
     that the agent takes (:func:`mitigate.core.settings.read_agent`).
     """
-    from mitigate.shipping import hardened  # brings the reference agent with it
+    from mitigate.shipping import hardened
 
     weights = str(find(weights))
     if hardened.adapters_only(weights):
@@ -95,8 +95,8 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
         file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
     if not file.is_file():
         return {}
-    if node._target_ == hardened.TARGET:
-        return hardened.agent_settings(file)
+    if hardened.is_ours(node._target_):
+        return hardened.agent_settings(file, node._target_)
     names = {*signature(get_object(node._target_)).parameters, *map(str, node)} - {"_target_"}
     return settings.read_agent(file, node._target_, names)
 

@@ -38,7 +38,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
         "suite": SUITE_VERSION,
         "base": reference(cfg["init"]) if cfg.get("init") else None,
         "teachers": [reference(path) for path in teachers],
-        "vocabulary": hardened.vocabulary_sha(agent) if hasattr(agent, "vocabulary") else None,
+        "vocabulary": hardened.vocabulary_sha(agent),
         "commit": commit(),
         "versions": {package: _version(package) for package in VERSIONS},
         "license": LICENCE,

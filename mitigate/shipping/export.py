@@ -111,6 +111,12 @@ def _finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], An
             f"{run} holds no finished run: it needs config.yaml and agent/{checkpoint.WEIGHTS}. "
             "Run `make train` to the end, then name its folder (runs/...)."
         )
+    kind = hardened.kind_of(config)
+    if walks is None and kind != hardened.TARGET:
+        raise ValueError(
+            f"{run} holds a {kind.rpartition('.')[2]}, of which a folder without programs is "
+            "written: name its config, such as agent=recurrent behind the folder's name."
+        )
     agent = hardened.build(config) if walks is None else walks.make_agent()
     checkpoint.load_weights(agent, weights)
     if walks is None and not all(

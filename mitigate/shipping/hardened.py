@@ -14,8 +14,7 @@ from typing import Any
 
 import torch
 
-from mitigate.agents import adapters
-from mitigate.agents.topological import TopologicalAgent, schema
+from mitigate.agents import adapters, schema
 from mitigate.core import checkpoint, settings
 from mitigate.core.files import PACKAGE, ROOT, sha256
 
@@ -37,7 +36,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
             the card says, looked for below the current folder, the folders above ``folder`` and
             the checkout.
         agent: an agent of a class of your own, with the settings of the one that was exported, to
-            be filled in place; None: the reference agent, built here.
+            be filled in place; None: one of ours, built here.
     Raises FileNotFoundError or ValueError, naming the file, if the folder is not whole or not what
     its card states.
     """
@@ -71,21 +70,37 @@ def _check_same(agent: Any, config: Path) -> None:
         )
 
 
-def build(config: Path) -> TopologicalAgent:
-    """Return an agent with the settings in ``config`` (YAML, read as data), its weights random.
+def build(config: Path) -> Any:
+    """Return an agent of ours with the settings in ``config`` (YAML, read as data), its weights
+    random.
 
     Raises ValueError if the file is damaged or names another kind of agent.
     """
-    given = agent_settings(config)
+    kind = kind_of(config)
+    given = agent_settings(config, kind)
     try:
-        return TopologicalAgent(**given)
+        return schema.class_of(kind)(**given)
     except (TypeError, RuntimeError) as error:
         raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
 
 
-def agent_settings(config: Path) -> dict[str, Any]:
-    """Return the keyword arguments of the agent in ``config``. Errors as :func:`build`."""
-    return schema.check(settings.read_agent(config, TARGET, schema.AGENT), config)
+def kind_of(config: Path) -> str:
+    """Return which of ``schema.KINDS`` the agent in ``config`` is; the first if it does not say."""
+    held = settings.read(config).get("agent")
+    named = held.get("_target_") if isinstance(held, dict) else None
+    return named if isinstance(named, str) and named in schema.KINDS else TARGET
+
+
+def is_ours(target: str) -> bool:
+    """Whether a folder may hold an agent of the class ``target`` without the user building it."""
+    return target in schema.KINDS
+
+
+def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
+    """Return the keyword arguments of the agent of the kind ``target`` in ``config``. Errors as
+    :func:`build`."""
+    known = schema.KINDS[target].settings
+    return schema.check(settings.read_agent(config, target, known), config, target)
 
 
 def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
@@ -171,8 +186,11 @@ def card_sha(card: dict[str, Any]) -> str:
     return hashlib.sha256(json.dumps(entries, sort_keys=True).encode()).hexdigest()
 
 
-def vocabulary_sha(agent: TopologicalAgent) -> str:
-    """Return the first 12 hex digits of the sha256 of the words, in the order of their ids."""
+def vocabulary_sha(agent: Any) -> str | None:
+    """Return the first 12 hex digits of the sha256 of the words, in the order of their ids; None
+    of an agent without a vocabulary."""
+    if not hasattr(agent, "vocabulary"):
+        return None
     return hashlib.sha256("\n".join(agent.vocabulary).encode()).hexdigest()[:12]
 
 

@@ -15,9 +15,11 @@ import yaml
 from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
+from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.fusion import reliability
-from mitigate.agents.topological import TopologicalAgent, schema
+from mitigate.agents.recurrent.policy import Policy
+from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.topological.planner import Planner
 from mitigate.core import build, checkpoint, conf, settings
 from mitigate.evaluation import evaluate
@@ -270,7 +272,12 @@ def test_the_schema_has_the_arguments_of_what_it_describes():
     def names(function, *given: str) -> set[str]:
         return set(signature(function).parameters) - set(given)
 
-    assert schema.AGENT.keys() == names(TopologicalAgent)
+    for target, kind in schema.KINDS.items():
+        assert kind.settings.keys() == names(schema.class_of(target))
+    for kind, network in zip(schema.KINDS.values(), (Planner, Policy), strict=False):
+        usual = (signature(network).parameters[name].default for name in ("width", "heads"))
+        assert kind.usual == tuple(usual)
+    assert schema.POLICY.keys() == names(Policy, "rgb", "depth", "vocabulary")
     assert schema.PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
     assert schema.ADAPTERS.keys() == names(insert_adapters, "model")
     assert schema.FUSION.keys() == names(reliability, "views", "valid")
@@ -311,8 +318,9 @@ SHIPPED = sorted(p.parent for p in (ROOT / "checkpoints").rglob(hardened.CONFIG)
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
 def test_every_shipped_agent_is_built_from_its_settings(folder):
-    built = build.build_agent(build.settings_of(node(), str(folder)), weights=str(folder), seed=0)
-    assert isinstance(built, TopologicalAgent)
+    own = OmegaConf.create({"_target_": hardened.kind_of(folder / hardened.CONFIG)})
+    built = build.build_agent(build.settings_of(own, str(folder)), weights=str(folder), seed=0)
+    assert isinstance(built, schema.class_of(own._target_))
     assert settings.read(folder / hardened.CONFIG)["agent"]
 
 

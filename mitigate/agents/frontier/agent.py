@@ -32,6 +32,7 @@ from mitigate.agents.frontier.planning import (
     object_cells,
     routes,
 )
+from mitigate.agents.schema import SENSES
 from mitigate.core.names import unknown
 from mitigate.core.observation import (
     DEPTH,
@@ -45,7 +46,6 @@ from mitigate.core.observation import (
     TURN_DEGREES,
 )
 
-SENSORS = (RGB, DEPTH, "instruction")
 TURNS = 18  # at the start: 270 degrees, with a view of 90 all around
 AGAIN = 8  # actions until it plans anew
 LEG = 1.5  # metres that it goes straight before it looks at its route again
@@ -81,8 +81,8 @@ class FrontierAgent(nn.Module):
     ) -> None:
         super().__init__()
         for name in blind:
-            if name not in SENSORS:
-                raise ValueError(unknown("sensor in blind", name, SENSORS))
+            if name not in SENSES:
+                raise ValueError(unknown("sensor in blind", name, SENSES))
         self._settings = copy.deepcopy(
             {"width": width, "adapters": adapters, "blind": list(blind), "size": size, "eye": eye}
         )

@@ -22,6 +22,7 @@ from mitigate.agents.adapters import insert_adapters, remove_adapters
 from mitigate.agents.agent import Output
 from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import SIZE, DepthEncoder, RGBEncoder
+from mitigate.agents.schema import RGB_ENCODERS, SENSES
 from mitigate.agents.text import Vocabulary, pad
 from mitigate.agents.topological import decisions as joining
 from mitigate.agents.topological import learning
@@ -38,9 +39,8 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
-SENSORS = ("rgb", "depth", "instruction")
 PARTS = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
-OWN, IMAGENET = "own", "efficientnet_lite0"
+OWN, IMAGENET = RGB_ENCODERS
 BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")  # what does not train of an encoder not ours
 FEATURES = 1 << 25  # bytes of features kept while remembering (ours): about 900 panoramas
 
@@ -51,7 +51,7 @@ class TopologicalAgent(nn.Module):
     Args:
         width: of view features of each sensor. planner: keyword arguments of ``Planner``.
         adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
-        blind: sensors that are blanked before they enter (the ablations): of ``SENSORS``.
+        blind: sensors that are blanked before they enter (the ablations): of ``schema.SENSES``.
         size: pixels of a square view that it works on; frames of another size are resized.
         encoder: of RGB: "own", or "efficientnet_lite0" (``imagenet.py``), which stays as it is
         but for adapters and what reads its map.
@@ -72,10 +72,10 @@ class TopologicalAgent(nn.Module):
         super().__init__()
         if encoder not in (OWN, IMAGENET):
             raise ValueError(names.unknown("encoder", encoder, (OWN, IMAGENET)))
-        unknown = set(blind) - set(SENSORS)
+        unknown = set(blind) - set(SENSES)
         if unknown:
             raise ValueError(
-                f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSORS)}."
+                f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSES)}."
             )
         self.blind = tuple(blind)
         self._settings = copy.deepcopy(

@@ -1,4 +1,4 @@
-"""What the settings of the reference agent may be, where they come with weights.
+"""What the settings of our agents may be, where they come with weights.
 
 The limits are far above what any agent here has; they keep a file from asking for all memory, and
 patterns from taking for ever to match.
@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from inspect import signature
+from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mitigate.agents.topological.agent import IMAGENET, OWN, SENSORS
-from mitigate.agents.topological.planner import Planner
 from mitigate.core import settings
+from mitigate.core.observation import DEPTH, RGB
 
+SENSES = (RGB, DEPTH, "instruction")
+RGB_ENCODERS = ("own", "efficientnet_lite0")
 MOST_TARGETS = 64  # patterns of a list
 MOST_WORDS = 50_000  # of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
@@ -102,38 +103,79 @@ ADAPTERS = {
     "views": whole(3, 64),
     "hfov": number(1, 179),
 }
-AGENT = {
+POLICY = {
     "width": whole(4, 1024),
-    "size": whole(16, 1024),
-    "blind": some_of(SENSORS),
-    "planner": PLANNER,
-    "adapters": ADAPTERS,
-    "vocabulary": VOCABULARY,
-    "encoder": one_of((OWN, IMAGENET)),
+    "heads": whole(1, 64),
+    "text_layers": whole(0, 32),
+    "dropout": number(0, 1),
 }
+ENCODERS = {  # what all have
+    "size": whole(16, 1024),
+    "blind": some_of(SENSES),
+    "adapters": ADAPTERS,
+}
+AGENT = {
+    **ENCODERS,
+    "width": whole(4, 1024),
+    "planner": PLANNER,
+    "vocabulary": VOCABULARY,
+    "encoder": one_of(RGB_ENCODERS),
+}
+RECURRENT = {
+    **ENCODERS,
+    "sensors": some_of((RGB, DEPTH)),
+    "rgb_width": whole(4, 1024),
+    "depth_width": whole(4, 1024),
+    "policy": POLICY,
+    "vocabulary": VOCABULARY,
+}
+FRONTIER = {**ENCODERS, "width": whole(4, 1024), "eye": number(0.05, 5)}
+
+
+class Shipped(NamedTuple):
+    """A kind of agent that a folder may hold: what its settings may be, and of the part that has
+    attention heads, its name and the usual width and heads."""
+
+    settings: dict[str, Any]
+    part: str = ""
+    usual: tuple[int, int] = (1, 1)
+
+
+KINDS = {  # a folder may name these classes, and no others
+    "mitigate.agents.topological.TopologicalAgent": Shipped(AGENT, "planner", (128, 4)),
+    "mitigate.agents.recurrent.RecurrentAgent": Shipped(RECURRENT, "policy", (160, 4)),
+    "mitigate.agents.frontier.FrontierAgent": Shipped(FRONTIER),
+}
+
+
+def class_of(target: str) -> Callable[..., Any]:
+    """The class of one of ``KINDS``; each is imported only where it is needed."""
+    assert target in KINDS, target
+    module, _, name = target.rpartition(".")
+    return getattr(import_module(module), name)
+
+
 _AGAIN = "Fetch the folder again, or train again."
 
 
-def check(found: dict[str, Any], file: Path) -> dict[str, Any]:
-    """Return ``found``, the settings of a reference agent in ``file``. Raises ValueError, naming
-    the file and the setting, for an unknown one and a value of another kind."""
-    _check(found, AGENT, file, "agent")
-    planner, adapters = found.get("planner") or {}, found.get("adapters") or {}
-    width, heads = (planner.get(name, _planner_default(name)) for name in ("width", "heads"))
+def check(found: dict[str, Any], file: Path, target: str) -> dict[str, Any]:
+    """Return ``found``, the settings of an agent of the kind ``target`` in ``file``. Raises
+    ValueError, naming the file and the setting, for an unknown one and a value of another kind."""
+    kind = KINDS[target]
+    _check(found, kind.settings, file, "agent")
+    own = found.get(kind.part) or {}
+    width, heads = (own.get(n, d) for n, d in zip(("width", "heads"), kind.usual, strict=True))
     if width % heads:
         raise ValueError(
-            f"{file}: agent.planner.width ({width}) must be a multiple of agent.planner.heads "
-            f"({heads}). {_AGAIN}"
+            f"{file}: agent.{kind.part}.width ({width}) must be a multiple of agent."
+            f"{kind.part}.heads ({heads}). {_AGAIN}"
         )
+    adapters = found.get("adapters") or {}
     if adapters and "target_modules" not in adapters:
         raise ValueError(
             f"{file}: agent.adapters lacks target_modules ([] for none beside ring). {_AGAIN}"
         )
     return found
-
-
-def _planner_default(name: str) -> int:
-    return signature(Planner).parameters[name].default
 
 
 def _check(found: dict[str, Any], schema: dict[str, Any], file: Path, where: str) -> None:
