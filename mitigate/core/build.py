@@ -19,6 +19,7 @@ from torch import nn
 
 from mitigate.core import checkpoint, seeding, settings
 from mitigate.core.files import find
+from mitigate.core.names import unknown
 
 PARTIAL = "_partial_"  # Hydra's mark: give a function that makes this
 
@@ -101,8 +102,11 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     return settings.read_agent(file, node._target_, names)
 
 
-def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Module:
-    """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file."""
+def build_agent(
+    node: DictConfig, *, weights: str | None, seed: int, parts: Sequence[str] | None = None
+) -> nn.Module:
+    """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file;
+    ``parts``: of its ``parts()``, those that are read; None: all."""
     from mitigate.shipping import hardened
 
     weights = None if weights is None else str(find(weights))
@@ -112,7 +116,12 @@ def build_agent(node: DictConfig, *, weights: str | None, seed: int) -> nn.Modul
         plain = OmegaConf.to_container(node, resolve=True)
         assert isinstance(plain, dict)
         agent.settings = partial(dict, {k: v for k, v in plain.items() if k != "_target_"})
-    if weights is not None and hardened.adapters_only(weights):
+    if weights is not None and parts:
+        for name in parts:
+            if name not in agent.parts():
+                raise ValueError(unknown("part of the agent", name, agent.parts()))
+            checkpoint.load_part(agent.parts()[name], name, weights)
+    elif weights is not None and hardened.adapters_only(weights):
         hardened.check(Path(weights))
         hardened.fill(agent, weights)
     elif weights is not None:

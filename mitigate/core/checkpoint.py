@@ -171,7 +171,21 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
     Raises FileNotFoundError or ValueError, naming the file and the first differences.
     """
     file = weights_file(path)
-    found = load_tensors(file)
+    _fill(module, load_tensors(file), file)
+
+
+def load_part(module: nn.Module, name: str, path: str | Path) -> None:
+    """As :func:`load_weights`, of the part ``name`` alone, which is ``module``."""
+    file, prefix = weights_file(path), f"{name}."
+    found = {
+        k.removeprefix(prefix): v for k, v in load_tensors(file).items() if k.startswith(prefix)
+    }
+    if not found:
+        raise ValueError(f"The weights {file} hold no part {name!r}.")
+    _fill(module, found, file)
+
+
+def _fill(module: nn.Module, found: dict[str, torch.Tensor], file: Path) -> None:
     wanted = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
     if not any(ADAPTER in name for name in found):
         wanted = {name: value for name, value in wanted.items() if ADAPTER not in name}

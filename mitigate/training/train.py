@@ -77,6 +77,7 @@ class TrainConfig:
     severity: float = 0.6
     severity_depth: float | None = None
     init: str | None = None
+    init_parts: list[str] | None = None
     rollouts: int = 24
     runs: str = "runs"
     folder: str | None = None
@@ -109,7 +110,7 @@ def run(cfg: DictConfig) -> Path:
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     if ranks.first:
         say(plan(cfg, folder))
-    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
+    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
     _check_settings(cfg.agent, agent)
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
         for name, stage in cfg.stages.items():
@@ -131,7 +132,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
     if cfg.evaluation.enabled:
         base = None
-        if cfg.init:
+        if cfg.init and not cfg.init_parts:
             base = load(cfg.agent, cfg.init, cfg.seed)
         get_method(cfg.report)(cfg, base, agent, folder)
     print(f"done: {folder}", flush=True)

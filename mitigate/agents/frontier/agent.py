@@ -55,7 +55,8 @@ WORTH = 6.0  # metres of way that a frontier of value 1 is worth (chosen on val_
 FOUND, MAYBE = 4.0, 1.0  # evidence for the object to go there, and to go there in the end
 TRIES = 12  # plans in one instant
 NEAR_ENOUGH = 0.4  # probability that the object is near, at which it stops in front of it
-ARRIVED = 0.9  # metres from the object's cells at which it stops
+ARRIVED = 0.9  # metres from the object's cells within which it stops
+MIDDLE = 3.0  # metres of way that a metre nearer to the object's middle is worth (ours)
 
 
 class FrontierAgent(nn.Module):
@@ -175,10 +176,13 @@ class FrontierAgent(nn.Module):
         ways, late = routes(self.grid, pose[:2]), self.actions > LAST
         thing = object_cells(self.grid, MAYBE if late else FOUND)
         target = self._beside(ways, thing)
-        if target is not None and self._at(thing, target, pose):
+        if target is not None and self._at(target, pose):
             return STOP if late else self._check(thing, pose)
         if target is None and not late:
             target = self._frontier(ways)
+            if target is not None and self._at(target, pose):
+                self.grid.settle(target)  # what is unknown there cannot be seen
+                return None
         if target is None and not late:
             self.actions = LAST
             return None
@@ -203,21 +207,26 @@ class FrontierAgent(nn.Module):
         self.grid.doubt(thing)
         return None
 
-    def _at(self, thing: np.ndarray, target: np.ndarray, pose: np.ndarray) -> bool:
-        """Whether the agent stands at the object's cells, or at ``target``, as near as it comes."""
+    def _at(self, target: np.ndarray, pose: np.ndarray) -> bool:
+        """Whether the agent stands at ``target``, as near as its steps allow."""
         assert self.grid is not None
-        gaps = self.grid.place(np.concatenate([thing, target[None]])) - pose[:2]
-        away = np.hypot(gaps[:, 0], gaps[:, 1])
-        return bool(away[:-1].min() < ARRIVED or away[-1] < FORWARD_METRES)
+        return bool(np.hypot(*(self.grid.place(target[None])[0] - pose[:2])) < FORWARD_METRES)
 
     def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
-        """The cell [2] cheapest to reach within ``ARRIVED`` of the object; None: there is none."""
+        """The cell [2] within ``ARRIVED`` of the object that is cheap to reach and near its middle;
+        None if there is none."""
+        assert self.grid is not None
         reach = int(ARRIVED / CELL)
         steps = np.arange(-reach, reach + 1)
         around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
         around = around[np.hypot(around[:, 0], around[:, 1]) < reach]
-        cells = (thing[:, None] + around[None]).reshape(-1, 2)
-        cost = ways.at(cells) if len(cells) else np.array([np.inf])
+        cells = np.unique((thing[:, None] + around[None]).reshape(-1, 2), axis=0)
+        if not len(cells):
+            return None
+        sure = self.grid.evidence[thing[:, 0], thing[:, 1]]
+        middle = (thing * sure[:, None]).sum(0) / sure.sum()
+        away = np.hypot(*(cells - middle).T) * CELL
+        cost = ways.at(cells) + MIDDLE * away
         return cells[int(cost.argmin())] if np.isfinite(cost.min()) else None
 
     def _frontier(self, ways: Routes) -> np.ndarray | None:

@@ -78,6 +78,12 @@ class Grid:
         i, j = self.cell(xy)
         self.occupied[i, j], self.known[i, j] = MOST, True
 
+    def settle(self, cell: np.ndarray) -> None:
+        """What is still unknown within half a metre of ``cell`` is no frontier any more."""
+        reach = int(0.5 / CELL)
+        i, j = np.maximum(cell - reach, 0)
+        self.known[i : i + 2 * reach + 1, j : j + 2 * reach + 1] = True
+
     def doubt(self, cells: np.ndarray) -> None:
         """The object is not at ``cells`` [n, 2] or right around them, whatever was seen."""
         here = np.zeros(self.evidence.shape, np.uint8)

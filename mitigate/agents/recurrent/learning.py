@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
 INFLECTION = 3.2  # weight of a step at which the expert changes its action (VLN-CE)
-LIMIT = 120  # steps of a training walk (ours): the expert takes 53 on average
+LIMIT = 90  # steps of a training walk (ours): the expert takes 53 on average
 _SCALE, _FARTHEST = 5.0, 25.0  # metres: the unit of the predicted distance; it learns no more
 Piece = dict[str, Any]
 

@@ -22,11 +22,13 @@ from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
 
 ACTIONS = 4
 MOVES = 5 + 4  # last action (none, or one of four); heading as sine and cosine, metres gone, steps
+KEYS = 64  # width of the attention over words: what it costs in training
 REACH = 7  # words around the last ones that the attention sees at once, odd
 
 
 class Text(NamedTuple):
-    """Words of E instructions: keys and values [E, L, width], mask bool [E, L], True = a word."""
+    """Words of E instructions: keys [E, L, KEYS] and values [E, L, width]; mask bool [E, L], True
+    where there is a word."""
 
     keys: Tensor
     values: Tensor
@@ -86,7 +88,7 @@ class Policy(nn.Module):
         nn.init.normal_(self.places.weight, std=0.1)
         self.register_buffer("concept_words", vocabulary.concept_words(), persistent=False)
         self.text = nn.ModuleList([Layer(width, heads, False, dropout) for _ in range(text_layers)])
-        self.text_norm, self.keys = nn.LayerNorm(width), nn.Linear(width, width)
+        self.text_norm, self.keys = nn.LayerNorm(width), nn.Linear(width, KEYS)
         if rgb:
             self.rgb = nn.Linear(rgb, width)
             self.seen, self.close, self.kinds = (
@@ -99,7 +101,7 @@ class Policy(nn.Module):
         self.whole = nn.Sequential(nn.Linear(GRID * width, width), nn.GELU(), nn.Dropout(dropout))
         self.move = nn.Linear(MOVES, width)
         self.first = nn.GRUCell(width, width)
-        self.ask = nn.Linear(width, width)
+        self.ask = nn.Linear(width, KEYS)
         self.near = nn.Conv1d(2, 8, REACH, padding=REACH // 2)
         self.place = nn.Linear(8, 1, bias=False)
         self.look_for = nn.Linear(width, width)
@@ -140,14 +142,13 @@ class Policy(nn.Module):
         return self.whole(columns.flatten(-2)) + self.move(moves)
 
     def _step(self, text: Text, columns: Tensor, x: Tensor, state: State) -> State:
-        scale = x.shape[-1] ** -0.5
         first = self.first(x, state.hidden)
-        energy = (text.keys @ self.ask(first)[:, :, None]).squeeze(-1) * scale
+        energy = (text.keys @ self.ask(first)[:, :, None]).squeeze(-1) * KEYS**-0.5
         around = self.near(torch.stack([state.last, state.sum], 1).to(x.dtype))
         energy = energy + self.place(torch.tanh(around).transpose(1, 2)).squeeze(-1)
         due = energy.float().masked_fill(~text.mask, -1e4).softmax(-1).to(text.values.dtype)
         words = (due[:, None] @ text.values).squeeze(1)
-        match = (columns @ self.look_for(words)[:, :, None]).squeeze(-1) * scale
+        match = (columns @ self.look_for(words)[:, :, None]).squeeze(-1) * x.shape[-1] ** -0.5
         found = (match.softmax(-1)[:, None] @ columns).squeeze(1)
         hidden = self.second(torch.cat([x, words, found, match], -1), first)
         return State(hidden, due, state.sum + due)
