@@ -1,10 +1,10 @@
 """DAgger: imitation on fresh walks and on walks kept from earlier steps.
 
-Walking and looking cost more than learning. So each step walks a few episodes with the current
-policy, keeps them on disk, and learns from them together with some drawn from all that were kept
-before (Ross et al. 2011 aggregate so; here the data grow at every step). The oracle's share of the
-decisions falls over the training. For agents whose walks are plain data (tensors, lists, text);
-otherwise as ``recipes/imitate.py``, whose loss it uses.
+Walking and looking cost more than learning. So some episodes are walked every few steps with the
+current policy and kept on disk, and each step learns from walks drawn from all that were kept (Ross
+et al. 2011 aggregate so; here the data grow all the time). The oracle's share of the decisions
+falls over the training. For agents whose walks are plain data (tensors, lists, text); otherwise as
+``recipes/imitate.py``, whose loss it uses.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ _DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the d
 
 
 class Dagger(Imitate):
-    """Args: as ``Imitate``; episodes: walked anew each step. kept: earlier walks that a step learns
-    from again. folder: of the kept walks, a file a piece. steps: over 0.6 of them the oracle's
-    share of the decisions falls from 1 to ``follow_oracle``.
+    """Args: as ``Imitate``; episodes: walked anew every ``every`` steps. walks: that a step learns
+    from, fresh and kept ones. folder: of the kept walks, a file a piece. steps: over 0.6 of them
+    the oracle's share of the decisions falls from 1 to ``follow_oracle``.
 
     A step's walks depend on its weights alone and are written before they are learned from, so a
     resumed run draws the same ones. Raises ValueError for an agent whose walks are no plain data.
@@ -43,8 +43,9 @@ class Dagger(Imitate):
         steps: int,
         schedule: Schedule | None = None,
         train_parts: Sequence[str] | str | None = None,
-        episodes: int = 8,
-        kept: int = 24,
+        episodes: int = 18,
+        every: int = 6,
+        walks: int = 24,
         follow_oracle: float = 0.25,
         seed: int = 0,
         losses: Mapping[str, float] | None = None,
@@ -53,10 +54,13 @@ class Dagger(Imitate):
         super().__init__(
             agent, world, training, schedule, train_parts, episodes, follow_oracle, seed, losses
         )
-        self.folder, self.steps, self.kept, self.least = Path(folder), steps, kept, follow_oracle
+        self.folder, self.steps, self.least = Path(folder), steps, follow_oracle
+        self.every, self.walks = every, walks
 
     def jobs(self, step: int) -> list[tuple]:
-        """As ``Rollouts.jobs``, each with the oracle's share."""
+        """As ``Rollouts.jobs``, each with the oracle's share; none where nothing is walked."""
+        if step % self.every:
+            return []
         share = max(0.0, 1 - step / (_DECAY * self.steps))
         expert = self.least + share * (1 - self.least)
         return [(*job, expert) for job in self.rollouts.jobs(step)]
@@ -65,23 +69,28 @@ class Dagger(Imitate):
         *own, self.rollouts.expert_share = job
         return self.rollouts.work(tuple(own))
 
+    def batch(self, step: int) -> dict[str, Any]:
+        return super().batch(step) if step % self.every == 0 else self.collate(step, [])
+
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         for number, (piece, _) in enumerate(pieces):
             self._keep(step, number, piece)
-        again = self._drawn(step, len(pieces), -(-self.episodes // len(pieces)))
+        size = -(-self.rollouts.episodes // self._pieces)  # walks of a piece
+        again = self._drawn(step, -(-self.walks // size) - len(pieces))
         return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
 
     @property
-    def episodes(self) -> int:
-        return self.rollouts.episodes
+    def _pieces(self) -> int:
+        return len(self.rollouts.jobs(1))
 
-    def _drawn(self, step: int, pieces: int, size: int) -> list[Any]:
-        """Kept pieces of ``size`` walks each, drawn from those of earlier steps."""
-        count = min(-(-self.kept // size), step * pieces)
+    def _drawn(self, step: int, count: int) -> list[Any]:
+        """Kept pieces, drawn from those of earlier steps."""
+        known = [(s, n) for s in range(0, step, self.every) for n in range(self._pieces)]
         rng = generator(self.rollouts.seed, "kept walks", step)
-        chosen = rng.choice(step * pieces, count, replace=False) if count else []
-        files = [self._file(*divmod(int(index), pieces)) for index in chosen]
-        return [torch.load(file, weights_only=True) for file in files]
+        count = max(0, min(count, len(known)))
+        chosen = rng.choice(len(known), count, replace=False) if count else []
+        files = [self._file(*known[i]) for i in chosen]
+        return [_floats(torch.load(f, weights_only=True), torch.float32) for f in files]
 
     def _file(self, step: int, number: int) -> Path:
         return self.folder / f"{step:06d}-{number}.pt"
@@ -89,13 +98,14 @@ class Dagger(Imitate):
     def _keep(self, step: int, number: int, piece: Any) -> None:
         """Write a piece; floating tensors are kept as float16."""
         written = io.BytesIO()
-        torch.save(_half(piece), written)
+        torch.save(_floats(piece, torch.float16), written)
         write_bytes(self._file(step, number), written.getvalue())
 
 
-def _half(data: Any) -> Any:
+def _floats(data: Any, dtype: torch.dtype) -> Any:
+    """``data`` with its floating tensors in ``dtype``."""
     if isinstance(data, torch.Tensor):
-        return data.half() if data.is_floating_point() else data
+        return data.to(dtype) if data.is_floating_point() else data
     if isinstance(data, dict):
-        return {name: _half(value) for name, value in data.items()}
+        return {name: _floats(value, dtype) for name, value in data.items()}
     return data

@@ -97,7 +97,7 @@ class Rollouts:
 
     def collate(self, pieces: list[tuple]) -> Decisions:
         """The decisions of all pieces."""
-        self.picture = pieces[0][1]
+        self.picture = pieces[0][1] if pieces[0][1] is not None else self.picture
         return self.agent.join([piece for piece, _ in pieces])
 
     def figures(self) -> dict[str, np.ndarray]:

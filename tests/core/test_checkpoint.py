@@ -119,3 +119,15 @@ def test_truncated_weights_are_refused(tmp_path):
 def test_missing_weights_say_what_to_train(tmp_path):
     with pytest.raises(FileNotFoundError, match="make train RECIPE=base"):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+
+
+def test_a_part_alone_is_read_from_whole_weights(tmp_path):
+    whole = nn.ModuleDict({"a": nn.Linear(2, 2), "b": nn.Linear(2, 3)})
+    file = checkpoint.save_weights(whole, tmp_path)
+    part = nn.Linear(2, 3)
+    checkpoint.load_part(part, "b", tmp_path)
+    assert torch.equal(part.weight, whole["b"].weight)
+    with pytest.raises(ValueError, match="no part 'c'"):
+        checkpoint.load_part(part, "c", file)
+    with pytest.raises(ValueError, match="do not fit"):
+        checkpoint.load_part(part, "a", file)

@@ -50,6 +50,7 @@ TURNS = 18  # at the start: 270 degrees, with a view of 90 all around
 AGAIN = 8  # actions until it plans anew
 LEG = 1.5  # metres that it goes straight before it looks at its route again
 STUCK = 0.05  # metres of a step forward below which something is in the way
+SLID, BUMPS = 0.2, 4  # metres of a step that slid along something; so many end the way to an object
 LAST = 400  # actions until it goes to the likeliest place that it knows and stops
 WORTH = 6.0  # metres of way that a frontier of value 1 is worth (chosen on val_seen_ogn)
 FOUND, MAYBE = 4.0, 1.0  # evidence for the object to go there, and to go there in the end
@@ -120,7 +121,7 @@ class FrontierAgent(nn.Module):
             )
         self.grid: Grid | None = None
         self.controller = Controller()
-        self.actions = self._planned = 0
+        self.actions = self._planned = self._bumps = 0
         self._before: np.ndarray | None = None  # where the last step forward began
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
@@ -139,10 +140,8 @@ class FrontierAgent(nn.Module):
         """Lay what is seen over the map."""
         if self.grid is None:
             self.grid = Grid(pose, self.eye)
-        if self._before is not None and np.hypot(*(pose[:2] - self._before)) < STUCK:
-            ahead = np.array([-np.sin(pose[2]), np.cos(pose[2])])
-            self.grid.block(pose[:2] + FORWARD_METRES * ahead)
-            self._planned = 0
+        if self._before is not None:
+            self._bump(pose, float(np.hypot(*(pose[:2] - self._before))))
         concepts = self._recognise(checked.frame(observation, RGB, 1))
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
@@ -151,6 +150,14 @@ class FrontierAgent(nn.Module):
         depth = np.zeros_like(depth) if DEPTH in self.blind else depth
         self._near = float(thing[:, 1].max())
         self.grid.add(depth, pose, thing, search.worth(concepts, self.thing))
+
+    def _bump(self, pose: np.ndarray, gone: float) -> None:
+        """Take note of a step forward of ``gone`` metres: was something in the way?"""
+        assert self.grid is not None
+        self._bumps += gone < SLID
+        if gone < STUCK:
+            self.grid.block(pose)
+            self._planned = 0
 
     @torch.inference_mode()
     def _recognise(self, rgb: np.ndarray) -> np.ndarray:
@@ -176,9 +183,11 @@ class FrontierAgent(nn.Module):
         ways, late = routes(self.grid, pose[:2]), self.actions > LAST
         thing = object_cells(self.grid, MAYBE if late else FOUND)
         target = self._beside(ways, thing)
-        if target is not None and self._at(target, pose):
+        if target is not None and (self._at(target, pose) or self._bumps >= BUMPS):
+            self._bumps = 0
             return STOP if late else self._check(thing, pose)
         if target is None and not late:
+            self._bumps = 0
             target = self._frontier(ways)
             if target is not None and self._at(target, pose):
                 self.grid.settle(target)  # what is unknown there cannot be seen

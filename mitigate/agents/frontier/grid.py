@@ -13,6 +13,8 @@ import cv2
 import numpy as np
 from numba import njit
 
+from mitigate.core.observation import FORWARD_METRES
+
 CELL = 0.1  # metres
 SIDE = 320  # cells: 32 m
 REACH = 5.0  # metres to which depth is used (VLFM: 5)
@@ -27,7 +29,8 @@ SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
 class Grid:
     """Args: start: pose [3] of the first look. eye: metres of the camera above the floor.
 
-    Arrays [SIDE, SIDE], row by y: occupied (log-odds), known (bool), value (0 to 1, how likely the
+    Arrays [SIDE, SIDE], row by y: occupied (log-odds), known, blocked (bool; what was bumped into),
+    value (0 to 1, how likely the
     object is over there), evidence (sum of log-odds that the object is here).
     """
 
@@ -37,7 +40,7 @@ class Grid:
         self.occupied, self.value, self.evidence = (
             np.zeros((SIDE, SIDE), np.float32) for _ in range(3)
         )
-        self.known = np.zeros((SIDE, SIDE), np.bool_)
+        self.known, self.blocked = (np.zeros((SIDE, SIDE), np.bool_) for _ in range(2))
         self.trust = np.zeros((SIDE, SIDE), np.float32)  # of the value: how well it was seen
         self._stamp = np.zeros((SIDE, SIDE), np.int32)
         self._looks = 0
@@ -73,10 +76,13 @@ class Grid:
             self._looks,
         )
 
-    def block(self, xy: np.ndarray) -> None:
-        """Something was bumped into at ``xy``."""
-        i, j = self.cell(xy)
-        self.occupied[i, j], self.known[i, j] = MOST, True
+    def block(self, pose: np.ndarray) -> None:
+        """The way ahead of a pose [3] is blocked, whatever depth says."""
+        ahead = np.array([-np.sin(pose[2]), np.cos(pose[2])])
+        aside = np.array([ahead[1], -ahead[0]])
+        for offset in (-2 * CELL, -CELL, 0.0, CELL, 2 * CELL):
+            i, j = self.cell(pose[:2] + FORWARD_METRES * ahead + offset * aside)
+            self.blocked[i, j] = self.known[i, j] = True
 
     def settle(self, cell: np.ndarray) -> None:
         """What is still unknown within half a metre of ``cell`` is no frontier any more."""

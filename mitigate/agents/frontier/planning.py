@@ -10,6 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 
 from mitigate.agents.frontier.grid import CELL, Grid
+from mitigate.core.observation import FORWARD_METRES
 
 RADIUS = 0.2  # metres kept from what is occupied
 TIGHT, WIDE = 3.0, 0.4  # cells nearer than WIDE metres to something cost TIGHT times as much
@@ -49,7 +50,7 @@ class Routes:
 
 def clearance(grid: Grid) -> np.ndarray:
     """Metres from each cell of the map to the nearest occupied one: float32 [SIDE, SIDE]."""
-    free = (grid.occupied <= 0).astype(np.uint8)
+    free = ((grid.occupied <= 0) & ~grid.blocked).astype(np.uint8)
     return cv2.distanceTransform(free, cv2.DIST_L2, 5) * CELL
 
 
@@ -112,12 +113,13 @@ def object_cells(grid: Grid, least: float) -> np.ndarray:
 
 def clear_ahead(grid: Grid, path: np.ndarray, most: float) -> np.ndarray:
     """The last cell of ``path`` [n, 2], at most ``most`` metres away, to which the straight line
-    from its first cell keeps ``RADIUS`` from what is occupied; at least the second."""
-    gap = clearance(grid)
-    best = min(1, len(path) - 1)
-    for k in range(2, min(len(path), int(most / CELL) + 1)):
-        line = np.linspace(path[0], path[k], 2 * k + 1).round().astype(int)
-        if (gap[line[2:, 0], line[2:, 1]] <= RADIUS).any():
+    from its first cell keeps ``RADIUS`` from what is occupied. It is at least a step away, if the
+    path is: where the agent stands, it may be nearer to things than that."""
+    gap, step = clearance(grid), int(np.ceil(FORWARD_METRES / CELL))
+    best = min(step, len(path) - 1)
+    for k in range(step + 1, min(len(path), int(most / CELL) + 1)):
+        line = np.linspace(path[0], path[k], 2 * k + 1).round().astype(int)[2 * step :]
+        if (gap[line[:, 0], line[:, 1]] <= RADIUS).any():
             break
         best = k
     return path[best]

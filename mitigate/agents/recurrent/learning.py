@@ -194,8 +194,7 @@ def join(agent: RecurrentAgent, pieces: Sequence[Piece]) -> WalkDecisions:
     """One batch of all walks of the pieces."""
     lengths = [n for piece in pieces for n in piece["lengths"]]
     names = [name for piece in pieces for name in piece["ids"]]
-    seen = {n: torch.cat([p["seen"][n] for p in pieces]).float() for n in pieces[0]["seen"]}
-    frames = [n for n in seen if n.removeprefix("clean_") == RGB]
+    seen = {n: torch.cat([p["seen"][n] for p in pieces]) for n in pieces[0]["seen"]}
     answer = torch.cat([piece["answer"] for piece in pieces])
     return WalkDecisions(
         walk=torch.repeat_interleave(torch.arange(len(lengths)), torch.tensor(lengths)),
@@ -203,7 +202,7 @@ def join(agent: RecurrentAgent, pieces: Sequence[Piece]) -> WalkDecisions:
         **{n: torch.cat([p[n] for p in pieces]) for n in ("moves", "weight", "metres")},
         tokens=agent.tokens([text for piece in pieces for text in piece["texts"]]),
         target=F.one_hot(answer, agent.actions).float(),
-        seen={n: v.to(torch.uint8) if n in frames else v for n, v in seen.items()},
+        seen=seen,
         episode_ids=[name for name, n in zip(names, lengths, strict=True) for _ in range(n)],
     )
 

@@ -1,0 +1,78 @@
+"""DAgger learns from fresh walks and from ones that it kept; a resumed run draws the same."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import pytest
+import torch
+
+from mitigate.agents.recurrent import RecurrentAgent
+from mitigate.core.seeding import seed_everything
+from mitigate.recipes.dagger import Dagger
+from mitigate.worlds.apartments.tasks import DrawnEpisodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+
+SMALL = {"width": 16, "heads": 2, "text_layers": 1}
+
+
+def recipe(folder, **settings) -> Dagger:
+    seed_everything(0, "dagger")
+    agent = RecurrentAgent(["rgb"], 8, 8, SMALL, size=16)
+    given = {
+        "steps": 10,
+        "episodes": 2,
+        "every": 2,
+        "walks": 3,
+        "train_parts": "policy",
+        **settings,
+    }
+    world = partial(ApartmentsWorld, 16, 2, views=1)
+    return Dagger(agent, world, DrawnEpisodes(2), folder=str(folder), **given).eval()
+
+
+def walks(batch: dict) -> list[str]:
+    """The episodes of a batch, each walk once."""
+    ids, rows = batch["episode_ids"], batch["decisions"].walk.tolist()
+    return [ids[rows.index(walk)] for walk in range(max(rows) + 1)]
+
+
+def test_a_step_learns_from_fresh_walks_and_from_kept_ones(tmp_path):
+    made = recipe(tmp_path)
+    assert [len(walks(made.batch(step))) for step in range(5)] == [2, 2, 3, 3, 3]
+    assert len(list(tmp_path.glob("*.pt"))) == 6  # 3 steps of 2 pieces
+
+
+def test_a_resumed_run_draws_the_same_walks(tmp_path):
+    made = recipe(tmp_path)
+    batches = [made.batch(step) for step in range(4)]
+    again = recipe(tmp_path).batch(3)
+    assert walks(again) == walks(batches[3])
+    assert torch.equal(again["decisions"].moves, batches[3]["decisions"].moves)
+
+
+def test_kept_walks_are_read_as_data_and_half_as_large(tmp_path):
+    made = recipe(tmp_path)
+    made.batch(0)
+    piece = torch.load(next(tmp_path.glob("*.pt")), weights_only=True)
+    assert piece["seen"]["views"].dtype == torch.float16
+
+
+def test_kept_walks_have_gradients_as_fresh_ones(tmp_path):
+    made = recipe(tmp_path, every=1).train()
+    for step in range(2):
+        made(made.batch(step))["loss"].backward()
+    assert made.agent.policy.first.weight_hh.grad.abs().sum() > 0
+
+
+def test_the_oracle_takes_less_and_less_of_the_decisions(tmp_path):
+    made = recipe(tmp_path, follow_oracle=0.25)
+    shares = [made.jobs(step)[0][-1] for step in (0, 2, 6, 8)]
+    assert shares[0] == 1 and shares == sorted(shares, reverse=True)
+    assert shares[-2:] == pytest.approx([0.25, 0.25])
+
+
+def test_only_the_policy_trains(tmp_path):
+    made = recipe(tmp_path)
+    trained = {name.split(".")[1] for name, p in made.named_parameters() if p.requires_grad}
+    assert trained == {"policy"}

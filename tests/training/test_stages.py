@@ -1,0 +1,54 @@
+"""One recipe serves agents of all kinds: what one has not to learn is left out."""
+
+from __future__ import annotations
+
+import pytest
+from omegaconf import OmegaConf
+
+from mitigate.agents.frontier import FrontierAgent
+from mitigate.agents.recurrent import RecurrentAgent
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import conf
+from mitigate.training import train  # noqa: F401  (its schema is part of the config)
+from mitigate.training.parts import policy_parts, train_only
+from mitigate.training.stages import nothing_to_do
+from tests.tiny import TinyAgent
+
+RGB, DEPTH, POLICY = (
+    OmegaConf.create({"recipe": recipe})
+    for recipe in ({"modality": "rgb"}, {"modality": "depth"}, {"train_parts": "policy"})
+)
+KINDS = ["topological", "recurrent", "recurrent_rgb", "frontier"]
+
+
+@pytest.mark.parametrize(
+    ("agent", "left"),
+    [
+        (TopologicalAgent(16), []),
+        (RecurrentAgent(), []),
+        (RecurrentAgent(["rgb"]), [DEPTH]),
+        (FrontierAgent(), [DEPTH, POLICY]),
+        (TinyAgent(), []),
+    ],
+    ids=lambda x: type(x).__name__,
+)
+def test_a_stage_that_has_nothing_to_train_says_why(agent, left):
+    said = [stage for stage in (RGB, DEPTH, POLICY) if nothing_to_do(stage, agent)]
+    assert said == left
+    if left:
+        assert type(agent).__name__ in nothing_to_do(left[0], agent)
+
+
+def test_the_policy_is_all_but_the_encoders():
+    agent = TopologicalAgent(16)
+    assert policy_parts(agent) == ["planner"]
+    train_only(agent, "policy")
+    assert {n.split(".")[0] for n, p in agent.named_parameters() if p.requires_grad} == {"planner"}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_of_agent_says_what_it_asks_of_the_world(kind):
+    cfg = conf.load_config("train", [f"agent={kind}"])
+    assert cfg.env.world.views == (12 if kind == "topological" else 1)
+    assert cfg.evaluation.split == ("val_unseen_ogn" if kind == "frontier" else "val_unseen")
+    assert conf.load_config("evaluate", [f"agent={kind}"]).checkpoint == cfg.weights.base
