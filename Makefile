@@ -7,7 +7,7 @@ ARGS ?=
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install train evaluate sweep table table2 export test lint bench doctor clean
+.PHONY: help install train evaluate sweep table table1 table2 export test lint bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9]+):.*## /\1|/' \
@@ -39,6 +39,9 @@ sweep: $(VENV)/.stamp-sweep ## many runs, one table: ARGS="recipe=da_per_frame,d
 
 table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --out report"
 	$(BIN)/python -m mitigate.table $(ARGS)
+
+table1: $(VENV)/.stamp ## all kinds of agent under everything, the paper's Table I: ARGS="split=val_unseen_ogn"
+	$(BIN)/python -m mitigate.table1 $(ARGS)
 
 table2: $(VENV)/.stamp ## train and evaluate the paper's Table II: ARGS="seeds=[0] jobs=2"
 	$(BIN)/python -m mitigate.table2 $(ARGS)

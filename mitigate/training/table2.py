@@ -1,5 +1,6 @@
-"""The paper's Table II with our agent: ``python -m mitigate.table2 seeds=[0] jobs=2``.
+"""The paper's Tables I and II: ``python -m mitigate.table2 seeds=[0] jobs=2``.
 
+Table II is all methods with our reference agent, Table I all kinds of agent (``mitigate.table1``).
 Trains and evaluates every column for every seed, several cells at a time, each in processes of its
 own. The same command again goes on where the last one stopped: trainings resume, evaluations go on,
 finished cells are kept. Then the report is written from the rows of all cells.
@@ -27,13 +28,12 @@ from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.evaluation.evaluate import ROWS, episodes, load
 
-BASE = "checkpoints/base"
 COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"
 
 
 @dataclass
 class Table2Config:
-    """Types of ``conf/table2.yaml``; the meaning of each entry is written there."""
+    """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, where each entry's meaning is."""
 
     out: str = "runs/table2"
     rows: list[str] = field(default_factory=list)
@@ -41,6 +41,7 @@ class Table2Config:
     seeds: list[int] = field(default_factory=list)
     split: str = "val_unseen"
     episodes: int | None = None
+    suite: str = "full"
     severity: float = 0.6
     train: list[str] = field(default_factory=list)
     jobs: int = 2
@@ -61,9 +62,17 @@ class Cell:
     folder: Path
 
     @property
-    def weights(self) -> str:
-        """Where the agent's weights are, or will be."""
-        return str(self.folder / "run" / "agent") if self.options else BASE
+    def trains(self) -> bool:
+        """Whether the agent is trained; else its options name one that is there already."""
+        return any(option.startswith("recipe=") for option in self.options)
+
+    @property
+    def agent(self) -> tuple[str, ...]:
+        """What an evaluation must know of the agent: its kind and its weights."""
+        if self.trains:
+            kind = tuple(option for option in self.options if option.startswith("agent="))
+            return (*kind, f"checkpoint={self.folder / 'run' / 'agent'}")
+        return self.options
 
     @property
     def evaluation(self) -> Path:
@@ -73,7 +82,7 @@ class Cell:
     def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
         """What makes the cell: ("train" or "evaluate", arguments after ``python -m``)."""
         found = []
-        if self.options:
+        if self.trains:
             found.append(
                 (
                     "train",
@@ -94,7 +103,8 @@ class Cell:
                 "evaluate",
                 [
                     "mitigate.evaluate",
-                    f"checkpoint={self.weights}",
+                    *self.agent,
+                    f"suite={cfg.suite}",
                     f"name={self.column}",
                     f"seed={self.seed}",
                     f"split={cfg.split}",
@@ -222,8 +232,9 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     made = {c.column: c for c in cells(cfg) if c.seed == cfg.seeds[0] and c.column in cfg.walks}
     if len(made) < len(cfg.walks) or not made:
         return []
-    node = conf.load_config("evaluate")
-    agents: dict[str, Any] = {name: load(node.agent, made[name].weights) for name in cfg.walks}
+    nodes = {name: conf.load_config("evaluate", made[name].agent) for name in cfg.walks}
+    agents: dict[str, Any] = {n: load(c.agent, c.checkpoint) for n, c in nodes.items()}
+    node = nodes[cfg.walks[0]]
     chosen = episodes(node.env, cfg.split, cfg.episodes)
     drawn = {episode.episode_id for episode in chosen}
     found = [

@@ -14,11 +14,11 @@ from mitigate.core import conf
 from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
 from mitigate.safeguard import guard
-from mitigate.training import table2, train
+from mitigate.training import table1, table2, train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 
 YAMLS = sorted(path.relative_to(conf.CONF) for path in conf.CONF.rglob("*.yaml"))
-PRIMARY = tuple(module.__name__.split(".")[-1] for module in (train, evaluate, table2))
+PRIMARY = tuple(module.__name__.split(".")[-1] for module in (train, evaluate, table1, table2))
 GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
 

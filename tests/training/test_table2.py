@@ -57,6 +57,17 @@ def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
     assert "seed=1" in train and "seed=1" in evaluate and "episodes=5" in evaluate
 
 
+def test_table_1_evaluates_every_kind_of_agent_and_trains_the_hardened_ones(tmp_path):
+    cfg = conf.load_config("table1", [f"out={tmp_path}", "split=val_unseen_ogn"])
+    made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in table2.cells(cfg)}
+    (plain,), (train, hardened) = made["recurrent"], made["recurrent+da"]
+    assert "agent=recurrent" in plain and not any(a.startswith("checkpoint=") for a in plain)
+    assert {"agent=recurrent", "recipe=da_per_episode"} <= set(train)
+    weights = tmp_path / "cells" / "recurrent+da-seed0" / "run" / "agent"
+    assert {"agent=recurrent", f"checkpoint={weights}", "suite=all"} <= set(hardened)
+    assert "split=val_unseen_ogn" in hardened
+
+
 def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)
@@ -124,7 +135,7 @@ def test_the_papers_figures_stand_only_beside_its_severity(tmp_path):
 
 def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick, monkeypatch):
     """Every cell's weights are the base agent's, so a test takes seconds; the rows say who won."""
-    monkeypatch.setattr(table2.Cell, "weights", "checkpoints/base")
+    monkeypatch.setattr(table2.Cell, "agent", ())
     cfg = config(tmp_path, walks=["base", "da_per_frame"], episodes=2, seeds=[0])
     ids = [
         episode.episode_id
