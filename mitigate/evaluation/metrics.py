@@ -7,6 +7,7 @@ Distances "to the goal" and of the episode are geodesic, as the simulator measur
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,9 +27,41 @@ def success(distance_to_goal: float, stopped: bool, *, threshold: float = SUCCES
     return bool(stopped) and distance_to_goal < threshold
 
 
-def rule(threshold: float = SUCCESS_DISTANCE) -> str:
-    """Return the text of :func:`success` that result rows and tables carry."""
-    return f"vln: STOP and geodesic < {float(threshold)} m"
+@dataclass(frozen=True)
+class Rule:
+    """When an episode counts as a success: nearer than ``metres`` to the goal.
+
+    name: of whose rule it is. stop: the agent must have said STOP. inclusive: at exactly that
+    distance, too. view_points: not the goal counts, but the nearest place to see it from.
+    """
+
+    name: str
+    metres: float
+    stop: bool = True
+    inclusive: bool = False
+    view_points: bool = False
+
+    def met(self, distance: float, stopped: bool) -> bool:
+        """Whether it is a success to end ``distance`` metres away, with STOP or without. A NaN
+        distance raises ValueError."""
+        if self.inclusive:
+            distance = math.nextafter(distance, -math.inf)
+        return success(distance, stopped or not self.stop, threshold=self.metres)
+
+    def __str__(self) -> str:
+        """What result rows and tables carry."""
+        away = f"geodesic {'<=' if self.inclusive else '<'} {float(self.metres)} m"
+        away += " to a view point" if self.view_points else ""
+        return f"{self.name}: {f'STOP and {away}' if self.stop else f'{away}, STOP or not'}"
+
+
+RULES = {  # by name, as options take them; the source of each is in docs/agents.md
+    "vln_ce": Rule("vln", SUCCESS_DISTANCE),
+    "etpnav": Rule("etpnav", 3.0, stop=False, inclusive=True),
+    "habitat_vln": Rule("habitat-lab vln", 0.2),
+    "objectnav": Rule("objectnav", 0.1, view_points=True),
+    "wmnav": Rule("wmnav", 1.0, stop=False, view_points=True),
+}
 
 
 def path_length(path: ArrayLike) -> float:

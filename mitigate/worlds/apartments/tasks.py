@@ -172,6 +172,19 @@ def landmarks(episode: Episode) -> list[int]:
     return [i for i, piece in enumerate(furniture) if piece.category == episode.info["category"]]
 
 
+def view_field(episode: Episode) -> np.ndarray:
+    """Metres from every free cell of the scene to the nearest place to see the goal from: one
+    beside it, as VLN-CE's object goals have view points."""
+    return _view_field(episode.scene_id, tuple(landmarks(episode)))
+
+
+@lru_cache(maxsize=64)
+def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
+    apartment = apartment_of(scene_id)
+    beside = np.unique(np.concatenate([_beside(apartment, thing) for thing in things]))
+    return apartment.space.distances(list(beside))
+
+
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
     """A split's validation list: ``_PER_APARTMENT`` episodes an apartment, in seed order."""
     low, _ = SEED_RANGES[split]

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.memory import Memory
+from mitigate.core.names import unknown
 from mitigate.core.observation import (
     DEPTH,
     FORWARD,
@@ -37,10 +38,11 @@ from mitigate.worlds.apartments.labels import (
 from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import shared_renderer
 from mitigate.worlds.apartments.simulator import Simulator
-from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_field
 from mitigate.worlds.episodes import Episode, from_vlnce
 
 KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
+RULES = {"apartments": metrics.Rule("vln", SUCCESS_METRES), **metrics.RULES}
 STOP_WITHIN = 1.0  # metres from the goal at which the oracle stops
 
 
@@ -48,22 +50,26 @@ class ApartmentsWorld:
     """One agent in one apartment; all of a process draw through one renderer.
 
     Args: size: pixels of a square view. layouts: how many training layouts ``scenes`` names.
-    views: 12, a panorama, or 1, a camera that looks ahead. Raises ValueError for another number.
+    views: 12, a panorama, or 1, a camera that looks ahead. rule: what counts as success, of
+    ``RULES``. Raises ValueError for another number of views and an unknown rule.
     """
 
-    rule = metrics.rule(SUCCESS_METRES)
-
-    def __init__(self, size: int = 64, layouts: int = 400, views: int = VIEWS) -> None:
+    def __init__(
+        self, size: int = 64, layouts: int = 400, views: int = VIEWS, rule: str = "apartments"
+    ) -> None:
+        if rule not in RULES:
+            raise ValueError(unknown("success rule", rule, RULES))
         if views not in (1, VIEWS):
             raise ValueError(f"views={views}: an agent sees {VIEWS} views, or 1 ahead.")
         self.size, self.layouts, self.views = size, layouts, views
+        self._rule, self.rule = rule, str(RULES[rule])
         self.sensors: dict[str, Sensor] = cameras(size, views)
         self._memory = Memory(0)
         self._simulator: Simulator | None = None
         self._rendered: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"size": self.size, "layouts": self.layouts, "views": self.views}
+        return {"size": self.size, "layouts": self.layouts, "views": self.views, "rule": self._rule}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
@@ -106,7 +112,11 @@ class ApartmentsWorld:
         length, left = metrics.path_length(walked), simulator.distance_to_goal()
         reference = np.stack([from_vlnce(p) for p in episode.reference_path])
         geodesic = float(episode.geodesic_distance or simulator.distance_to_goal(reference[0]))
-        won = metrics.success(left, simulator.stopped, threshold=SUCCESS_METRES)
+        rule = RULES[self._rule]
+        away = left
+        if rule.view_points:
+            away = float(view_field(episode)[simulator.space.cell_of(simulator.xy)])
+        won = rule.met(away, simulator.stopped)
         return {
             "success": int(won),
             "spl": round(metrics.spl(won, geodesic, length), 6),

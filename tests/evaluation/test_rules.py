@@ -1,0 +1,58 @@
+"""Whose success rule it is: each paper's own, by name, and in every row."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from mitigate.core.observation import FORWARD, STOP
+from mitigate.evaluation.metrics import RULES
+from mitigate.worlds.apartments.tasks import load_episodes, view_field
+from mitigate.worlds.apartments.world import ApartmentsWorld
+
+
+def test_etpnav_counts_the_edge_and_asks_for_no_stop():
+    ours, theirs = RULES["vln_ce"], RULES["etpnav"]
+    assert not ours.met(3.0, True) and ours.met(2.999, True) and not ours.met(2.0, False)
+    assert theirs.met(3.0, False) and not theirs.met(3.001, True)
+    with pytest.raises(ValueError, match="NaN"):
+        theirs.met(math.nan, True)
+
+
+def test_rows_say_which_rule_it_was():
+    texts = [ApartmentsWorld(rule=name).rule for name in ("apartments", "etpnav", "objectnav")]
+    assert texts == [
+        "vln: STOP and geodesic < 2.0 m",
+        "etpnav: geodesic <= 3.0 m, STOP or not",
+        "objectnav: STOP and geodesic < 0.1 m to a view point",
+    ]
+    with pytest.raises(ValueError, match="object_nav"):
+        ApartmentsWorld(rule="object_nav")
+
+
+def test_an_object_is_found_beside_it_not_at_one_goal_alone():
+    episode = load_episodes("val_seen", "ogn")[0]
+    world = ApartmentsWorld(rule="objectnav")
+    world.reset(episode)
+    space, field = world.simulator.space, view_field(episode)
+    beside = [i for i in range(len(field)) if field[i] == 0]
+    assert len(beside) > len(episode.goals)
+    world.simulator.xy = space.centre(
+        max(beside, key=lambda i: world.expert().distance(space.centre(i)))
+    )
+    world.step(STOP)
+    assert world.measures()["success"] == 1
+
+
+def test_where_no_stop_is_asked_for_standing_there_is_enough():
+    episode = load_episodes("val_seen")[0]
+    for rule, won in (("apartments", 0), ("etpnav", 1)):
+        world = ApartmentsWorld(rule=rule)
+        world.reset(episode)
+        goal = episode.goals[0].position
+        world.simulator.xy = world.simulator.space.centre(
+            world.simulator.space.cell_of((goal[0], -goal[2]))
+        )
+        world.step(FORWARD)
+        assert world.measures()["success"] == won
