@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import torch
+import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.attention import Layer
@@ -59,6 +60,14 @@ class State:
         """Replace the rows ``index``, in place."""
         for name, value in vars(fresh).items():
             getattr(self, name)[index] = value
+
+
+def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
+    """What ``cell`` makes of ``hidden`` [E, width], its input's part [E, 3 width] given."""
+    reset, update, new = inputs.chunk(3, -1)
+    held_reset, held_update, held_new = F.linear(hidden, cell.weight_hh, cell.bias_hh).chunk(3, -1)
+    candidate = torch.tanh(new + torch.sigmoid(reset + held_reset) * held_new)
+    return torch.lerp(candidate, hidden, torch.sigmoid(update + held_update))
 
 
 class Policy(nn.Module):
@@ -136,21 +145,30 @@ class Policy(nn.Module):
 
     def step(self, text: Text, columns: Tensor, moves: Tensor, state: State) -> State:
         """One instant of E episodes: columns [E, 4, width], moves [E, MOVES]."""
-        return self._step(text, columns, self._input(columns, moves), state)
+        return self._step(text, columns, self._inputs(columns, moves), state)
 
-    def _input(self, columns: Tensor, moves: Tensor) -> Tensor:
-        return self.whole(columns.flatten(-2)) + self.move(moves)
+    def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:
+        """What of both cells depends on no memory, [..., 6 width]: for all steps at once."""
+        x = self.whole(columns.flatten(-2)) + self.move(moves)
+        width = x.shape[-1]
+        first = F.linear(x, self.first.weight_ih, self.first.bias_ih)
+        second = F.linear(x, self.second.weight_ih[:, :width], self.second.bias_ih)
+        return torch.cat([first, second], -1)
 
-    def _step(self, text: Text, columns: Tensor, x: Tensor, state: State) -> State:
-        first = self.first(x, state.hidden)
+    def _step(self, text: Text, columns: Tensor, inputs: Tensor, state: State) -> State:
+        width = columns.shape[-1]
+        into_first, into_second = inputs.chunk(2, -1)
+        first = gated(into_first, state.hidden, self.first)
         energy = (text.keys @ self.ask(first)[:, :, None]).squeeze(-1) * KEYS**-0.5
-        around = self.near(torch.stack([state.last, state.sum], 1).to(x.dtype))
+        around = self.near(torch.stack([state.last, state.sum], 1).to(first.dtype))
         energy = energy + self.place(torch.tanh(around).transpose(1, 2)).squeeze(-1)
         due = energy.float().masked_fill(~text.mask, -1e4).softmax(-1).to(text.values.dtype)
         words = (due[:, None] @ text.values).squeeze(1)
-        match = (columns @ self.look_for(words)[:, :, None]).squeeze(-1) * x.shape[-1] ** -0.5
+        match = (columns @ self.look_for(words)[:, :, None]).squeeze(-1) * width**-0.5
         found = (match.softmax(-1)[:, None] @ columns).squeeze(1)
-        hidden = self.second(torch.cat([x, words, found, match], -1), first)
+        read = torch.cat([words, found, match], -1)
+        into_second = into_second + F.linear(read, self.second.weight_ih[:, width:])
+        hidden = gated(into_second, first, self.second)
         return State(hidden, due, state.sum + due)
 
     def answer(self, hidden: Tensor) -> Tensor:
@@ -164,7 +182,7 @@ class Policy(nn.Module):
         [E, T, 4] (logit that the goal's landmark shows in a column), state [E, T, width].
         """
         columns = self.look(views)
-        inputs, state = self._input(columns, moves), State.start(text)
+        inputs, state = self._inputs(columns, moves), State.start(text)
         made = []
         for x, seen in zip(inputs.unbind(1), columns.unbind(1), strict=True):
             state = self._step(text, seen, x, state)
