@@ -27,7 +27,7 @@ $(VENV)/.stamp-%: $(VENV)/.stamp
 
 install: $(VENV)/.stamp ## make the environment in .venv and stop
 
-train: $(VENV)/.stamp ## train and evaluate: RECIPE=da_per_episode ARGS="severity=0.6 seed=1"
+train: $(VENV)/.stamp $(if $(filter encoder swap_encoder,$(RECIPE)),$(VENV)/.stamp-encoders) ## train and evaluate: RECIPE=da_per_episode ARGS="severity=0.6 seed=1"
 	$(BIN)/python -m mitigate.train recipe=$(RECIPE) $(ARGS)
 
 evaluate: $(VENV)/.stamp ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"

@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 GENERAL = sorted(
     path
-    for folder in ("recipes", "mitigate/training", "mitigate/evaluation")
+    for folder in ("recipes", "mitigate/training", "mitigate/evaluation", "mitigate/encoders")
     for path in (ROOT / folder).rglob("*.py")
 )
 CONCRETE = ("mitigate.worlds.apartments", "panda3d", "mitigate.agents.topological")

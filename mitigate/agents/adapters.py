@@ -1,9 +1,11 @@
-"""Zero-initialised residual convolutional adapters for any frozen torch encoder.
+"""Zero-initialised residual adapters for any frozen torch encoder.
 
 ``insert_adapters(model, target_modules=...)`` puts ``x + up(act(down(x)))`` behind named modules,
 as PEFT does for attention: the backbone's own weights keep their names and values, and nothing
-changes until ``up`` has learned. A *ring* adapter (``ring.py``) also sees the neighbours of each
-view of a panorama, so that what one view has lost can come from the views that overlap it.
+changes until ``up`` has learned. Behind a module that gives maps it is convolutional, behind one
+that gives tokens (``tokens.py``) it is linear. A *ring* adapter (``ring.py``) also sees the
+neighbours of each view of a panorama, so that what one view has lost can come from the views that
+overlap it.
 """
 
 from __future__ import annotations
@@ -20,6 +22,8 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.ring import RingAdapter
+from mitigate.agents.sites import MAP, Run, Site, first, look
+from mitigate.agents.tokens import Gate, TokenAdapter, further
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
@@ -35,31 +39,45 @@ class ConvAdapter(nn.Module):
 
     Args:
         channels: C. reduction: the bottleneck has ``max(4, C // reduction)`` channels.
-        kernel: of the spatial convolution, odd.
+        kernel: of the spatial convolution, odd. gate: see ``tokens.Gate``.
+        middle: channels of the bottleneck, in place of ``reduction``.
 
     Source: bottleneck and zero start after Houlsby et al. 2019, as the paper's section on adapters
     asks; reduction and kernel are ours, chosen for 1-4 % of the weights.
     """
 
-    def __init__(self, channels: int, reduction: int = 8, kernel: int = 3) -> None:
+    def __init__(
+        self,
+        channels: int,
+        reduction: int = 8,
+        kernel: int = 3,
+        gate: bool = False,
+        middle: int | None = None,
+    ) -> None:
         super().__init__()
-        if channels < 1 or reduction < 1 or kernel % 2 == 0:
+        if channels < 1 or reduction < 1 or kernel % 2 == 0 or (middle or 1) < 1:
             raise ValueError(
                 f"An adapter needs channels ({channels}) and reduction ({reduction}) of at least 1 "
                 f"and an odd kernel ({kernel})."
             )
-        middle = max(4, channels // reduction)
         self.settings = {"channels": channels, "reduction": reduction, "kernel": kernel}
+        self.settings |= further(gate, middle)
+        middle = middle or max(4, channels // reduction)
         self.down = nn.Conv2d(channels, middle, kernel, padding=kernel // 2)
         self.up = nn.Conv2d(middle, channels, 1)
+        self.gate = Gate(middle) if gate else None
         for parameter in self.up.parameters():
             nn.init.zeros_(parameter)
 
     def forward(self, x: Tensor) -> Tensor:
-        return x + self.up(F.gelu(self.down(x)))
+        y = F.gelu(self.down(x))
+        z = self.up(y)
+        if self.gate is not None:
+            z = z * self.gate(y, (2, 3)).sigmoid()[:, None, None, None]
+        return x + z
 
 
-ADAPTERS = (ConvAdapter, RingAdapter)
+ADAPTERS = (ConvAdapter, RingAdapter, TokenAdapter)
 
 
 def insert_adapters(
@@ -72,11 +90,19 @@ def insert_adapters(
     ring_reduction: int = 4,
     views: int = VIEWS,
     hfov: float = HFOV_DEGREES,
+    run: Run | None = None,
+    gate: bool = False,
+    middle: int | None = None,
 ) -> list[str]:
     """Freeze ``model`` and give an adapter to every module that a target names.
 
     Args:
-        model: any module tree; the targets must return one tensor ``[n, C, h, w]``.
+        model: any module tree; the targets must return one tensor ``[n, C, h, w]``, or with ``run``
+            one that an adapter fits behind, alone or as the first item of a tuple or list.
+        run: calls the model on so many frames, such as ``lambda n: model(frames[:n])``; what the
+            targets return then is looked at, and tokens get a :class:`TokenAdapter`.
+        gate: adapters that say for each frame how much they correct. middle: channels of the
+            bottlenecks, in place of ``reduction``.
         target_modules: regular expressions, each matched against the whole dotted name of a module
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
@@ -96,6 +122,7 @@ def insert_adapters(
     if not target_modules + ring:
         raise ValueError("target_modules names no module: give at least one, such as 'layer[1-4]'.")
     plain, ringed = _find(model, target_modules), _find(model, ring)
+    sites = None if run is None else look(model, run)
     made: dict[str, nn.Module] = {}
     for name, module in model.named_modules():
         if name in ringed and views == 1:  # no neighbours
@@ -103,9 +130,29 @@ def insert_adapters(
         elif name in ringed:
             made[name] = RingAdapter(_channels(name, module), ring_reduction, kernel, views, hfov)
         elif name in plain:
-            made[name] = ConvAdapter(_channels(name, module), reduction, kernel)
+            made[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
     _attach_all(model, made)
     return list(made)
+
+
+def _plain(
+    name: str,
+    module: nn.Module,
+    sites: dict[str, Site | str] | None,
+    reduction: int,
+    kernel: int,
+    gate: bool,
+    middle: int | None,
+) -> nn.Module:
+    """The adapter that fits behind a module."""
+    if sites is None:
+        return ConvAdapter(_channels(name, module), reduction, kernel, gate, middle)
+    site = sites.get(name, "the encoder does not call it")
+    if isinstance(site, str):
+        raise ValueError(f"No adapter fits behind {name}: {site}. Choose another target module.")
+    if site.kind == MAP:
+        return ConvAdapter(site.channels, reduction, kernel, gate, middle)
+    return TokenAdapter(site.channels, reduction, site.batch, gate, middle)
 
 
 def adapted(model: nn.Module) -> list[str]:
@@ -206,7 +253,9 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> nn.Module:
     """Return the adapter of ``settings`` with the weights ``tensors``. Raises TypeError or
     RuntimeError if they do not fit; no memory is taken for what does not."""
-    kind = RingAdapter if "views" in settings else ConvAdapter
+    settings = dict(settings)
+    tokens = settings.pop("kind", None) == "tokens"
+    kind = TokenAdapter if tokens else RingAdapter if "views" in settings else ConvAdapter
     with torch.device("meta"):
         wanted = {name: value.shape for name, value in kind(**settings).state_dict().items()}
     if wanted != {name: value.shape for name, value in tensors.items()}:
@@ -221,9 +270,13 @@ def backbone_sha(model: nn.Module) -> str:
     return checkpoint.weights_sha(model, leave_out=checkpoint.ADAPTER)
 
 
-def _adapt(module: nn.Module, inputs: Any, output: Tensor) -> Tensor:
-    """Forward hook: the adapter of ``module`` on its output."""
-    return getattr(module, NAME)(output)
+def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
+    """Forward hook: the adapter of ``module`` on its output, or on the first item of it."""
+    adapter = getattr(module, NAME)
+    if isinstance(output, (tuple, list)):
+        rest = (adapter(first(output)), *output[1:])
+        return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
+    return adapter(output)
 
 
 def _refuse_adapted(model: nn.Module) -> None:
@@ -240,8 +293,9 @@ def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
             "adapter takes. Choose other target modules."
         )
     model.requires_grad_(False)
+    like = next(model.parameters(), torch.zeros(()))
     for name, adapter in made.items():
-        _attach(model.get_submodule(name), adapter)
+        _attach(model.get_submodule(name), adapter, like)
     setattr(model, _STATISTICS, _statistics(model))
 
 
@@ -257,8 +311,9 @@ def _listed(what: str, targets: Iterable[str]) -> list[str]:
     return list(targets)
 
 
-def _attach(module: nn.Module, adapter: nn.Module) -> None:
-    like = next(module.parameters())
+def _attach(module: nn.Module, adapter: nn.Module, usual: Tensor) -> None:
+    """``usual``: whose device and dtype it gets where ``module`` has no weights."""
+    like = next(module.parameters(), usual)
     module.add_module(NAME, adapter.to(like.device, like.dtype))
     if type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
         setattr(module, _HOOK, module.register_forward_hook(_adapt))

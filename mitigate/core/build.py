@@ -21,6 +21,9 @@ from mitigate.core import checkpoint, seeding, settings
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 
+# attribute of an agent's class: arguments that name code or files, which no config that came with
+# weights may set
+OWN_CONFIG_ONLY = "own_config_only"
 PARTIAL = "_partial_"  # Hydra's mark: give a function that makes this
 
 
@@ -98,7 +101,9 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
         return {}
     if hardened.is_ours(node._target_):
         return hardened.agent_settings(file, node._target_)
-    names = {*signature(get_object(node._target_)).parameters, *map(str, node)} - {"_target_"}
+    made = get_object(node._target_)
+    names = {*signature(made).parameters, *map(str, node)} - {"_target_"}
+    names -= set(getattr(made, OWN_CONFIG_ONLY, ()))
     return settings.read_agent(file, node._target_, names)
 
 

@@ -78,6 +78,15 @@ def corrupted(
     return _encode(Image.fromarray(np.where(_same(after, metres), stored, counts)), suffix)
 
 
+def read(path: Path, unit: float) -> np.ndarray:
+    """The frame in a file: uint8 [H, W, 3], or float32 metres [H, W, 1]; ``unit`` and errors as
+    :func:`corrupted`."""
+    if modality(path) == RGB:
+        return _decode(path)
+    metres = _load(path) if path.suffix.lower() == ".npy" else _decode(path) * unit
+    return metres.astype(np.float32).reshape(*metres.shape[:2], 1)
+
+
 def _decode(path: Path) -> np.ndarray:
     """uint8 [H, W, 3] or uint16 [H, W]; a JPEG is turned upright as its EXIF data say."""
     try:

@@ -24,7 +24,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate.core import checkpoint, conf, precision, seeding
-from mitigate.core.build import build_agent, maker
+from mitigate.core.build import OWN_CONFIG_ONLY, build_agent, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
@@ -188,7 +188,8 @@ def check(cfg: DictConfig) -> None:
                 f"The recipe {cfg.name} has no stage {name!r}: its stages are {', '.join(own)}. "
                 "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
             )
-    if cfg.evaluation.enabled:  # a mistake there must not show only after hours of training
+    listed = cfg.report == TrainConfig.report or OmegaConf.select(cfg, "env.episodes")
+    if cfg.evaluation.enabled and listed:  # a mistake must not show only after hours of training
         count = cfg.evaluation.episodes
         episodes(cfg.env, cfg.evaluation.split, count if count is None else min(count, 1))
         met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
@@ -228,7 +229,9 @@ def _written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
         return value
 
     own = getattr(agent, "settings", dict)()
-    return {"_target_": node._target_, **data(plain(node)), **data(own)}
+    barred = getattr(agent, OWN_CONFIG_ONLY, ())
+    held = {name: value for name, value in data(plain(node)).items() if name not in barred}
+    return {"_target_": node._target_, **held, **data(own)}
 
 
 def _check_settings(node: DictConfig, agent: nn.Module) -> None:

@@ -19,6 +19,7 @@ from mitigate.core import conf
 from mitigate.core.build import build_agent
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.observation import VIEWS
+from mitigate.encoders import plain_adapters
 
 
 class Bottleneck(nn.Module):
@@ -159,6 +160,7 @@ def test_the_lines_in_the_readme_load_adapters_without_this_package(tmp_path, mo
     exec(train.replace("save_adapters(encoder", "shake(encoder); save_adapters(encoder"),
          {"encoder": model, "torch": torch, "shake": shaken})  # fmt: skip
     assert "mitigate" not in load
+    monkeypatch.syspath_prepend(Path(plain_adapters.__file__).parent)  # as if it was copied
     exec(load, {"encoder": twin})
     assert torch.equal(twin(x), model(x)) and adapters.adapted(model) and not adapters.adapted(twin)
 

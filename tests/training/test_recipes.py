@@ -10,6 +10,7 @@ from mitigate.core.build import build
 from mitigate.training import train
 from tests.safeguard.conftest import write_tiny_model
 
+TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
 
 
@@ -19,6 +20,9 @@ def test_every_recipe_trains_two_steps(tmp_path, name):
     cfg = conf.load_config("train", options)
     if "base" in cfg.agent:  # a language model: the real one takes half a minute to load
         cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
+    if "adapters" in cfg.agent and "model" in cfg.agent:  # an encoder that an extra brings
+        cfg.agent = OmegaConf.merge(cfg.agent, TINY_ENCODER)
+        cfg.agent.kwargs = {}
     if cfg.get("schedule") and cfg.schedule.mode == "success_distributed":
         for stage in cfg.stages.values():  # success rates of one episode a corruption, not eight
             OmegaConf.update(stage, "recipe.refresh_episodes", 1, force_add=True)

@@ -1,0 +1,1 @@
+"""Encoders that are not ours: loading, frames, the measurement of their features, adapters."""

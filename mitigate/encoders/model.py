@@ -1,0 +1,247 @@
+"""An encoder that is not ours, with its transform, the output that is its target, and adapters."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import torch
+from torch import Tensor, nn
+
+from mitigate.agents import adapters as inserted
+from mitigate.agents.sites import choose, first, look
+from mitigate.core.names import unknown
+from mitigate.core.progress import say
+from mitigate.corruptions import DepthSensor
+from mitigate.encoders import loading
+from mitigate.encoders.transform import Transform
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
+
+TUNE = ("adapters", "all")
+POOL = ("mean", "first", "flatten")
+SENSORS = {"rgb": 3, "depth": 1}  # channels of a frame
+AUTO, SITES = "auto", 6
+
+
+class Encoder(nn.Module):
+    """Frames in, features out; stands where the other recipes have an agent.
+
+    Args:
+        model, kwargs: as :func:`mitigate.encoders.loading.load_model`. weights, prefix: as
+            ``load_weights`` there; None: those that the model comes with.
+        sensor: "rgb" or "depth". transform: arguments of :class:`Transform`.
+        output: what is the target: None: what the model returns; a number or a name: that item of
+            it (``pooler_output``); else the dotted name of a module, whose output it is.
+        pool: how features become a vector for the report: the mean over places or tokens, the first
+            token (CLIP's class token), or all of it. The target itself is not pooled.
+        tune: "adapters", or "all" of the encoder's weights (its BatchNorms keep their statistics).
+        adapters: targets ("auto", or regular expressions), sites (how many blocks "auto" takes),
+            reduction, kernel, middle, gate: as ``insert_adapters``.
+    Raises ValueError or FileNotFoundError for what does not fit, saying what would.
+    """
+
+    own_config_only = ("model", "kwargs", "weights", "prefix")  # core/build.py
+
+    def __init__(
+        self,
+        model: str | None,
+        transform: Mapping[str, Any],
+        kwargs: Mapping[str, Any] | None = None,
+        weights: str | None = None,
+        prefix: str = "",
+        sensor: str = "rgb",
+        output: str | int | None = None,
+        pool: str = "mean",
+        tune: str = "adapters",
+        adapters: Mapping[str, Any] | None = None,
+    ) -> None:
+        super().__init__()
+        for name, value, allowed in (
+            ("sensor", sensor, SENSORS),
+            ("pool", pool, POOL),
+            ("tune", tune, TUNE),
+        ):
+            if value not in allowed:
+                raise ValueError(unknown(f"agent.{name}", value, list(allowed)))
+        if model is None:
+            raise ValueError(
+                "agent.model is not set: name your encoder as agent.model=package.module:callable, "
+                "or a TorchScript (.ts, .pt) or exported (.pt2) file (docs/encoder.md)."
+            )
+        self.given = {"model": model, "kwargs": kwargs, "weights": weights, "prefix": prefix}
+        self.sensor, self.output, self.pool, self.tune = sensor, output, pool, tune
+        self.transform = Transform(**transform)
+        means, channels = len(self.transform.mean), SENSORS[sensor]
+        if means not in (1, channels):
+            raise ValueError(
+                f"agent.transform.mean and std have {means} values, but {sensor} has {channels} "
+                "channels. For depth as it is: agent.transform.mean=[0] agent.transform.std=[1]."
+            )
+        self.model = loading.load_model(model, kwargs)
+        if weights is not None:
+            loading.load_weights(self.model, weights, prefix)
+        self._check()
+        if tune == "adapters":
+            self.add_adapters(**(adapters or {}))
+        elif not any(p.is_floating_point() for p in self.model.parameters()):
+            raise ValueError(
+                f"agent.tune=all, but {model} has no parameters that could train (a frozen "
+                "TorchScript has none): agent.tune=adapters."
+            )
+        self.choose_trained()
+
+    @property
+    def wrapped(self) -> bool:
+        """Whether the model is a TorchScript, whose inside no adapter reaches."""
+        return isinstance(self.model, loading.Wrapped)
+
+    def settings(self) -> dict[str, Any]:
+        """What is known of it beside its config: nothing."""
+        return {}
+
+    def choose_trained(self) -> None:
+        """Let the adapters train and nothing else, or all that can."""
+        self.model.requires_grad_(False)
+        trained = inserted.adapter_parameters(self.model)
+        if self.tune == "all":
+            trained = [p for p in self.model.parameters() if p.is_floating_point()]
+        for parameter in trained:
+            parameter.requires_grad_(True)
+
+    def train(self, mode: bool = True) -> Self:
+        """The encoder stays in eval mode: no dropout, and its BatchNorms keep their statistics."""
+        super().train(mode)
+        self.model.train(False)
+        return self
+
+    def forward(self, frames: Tensor) -> Tensor:
+        """Features of uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``: ``[n, C]``,
+        ``[n, C, h, w]`` or ``[n, T, C]``, as the model gives them."""
+        given = self.transform(frames)
+        modules = dict(self.model.named_modules()) if isinstance(self.output, str) else {}
+        if self.output not in modules or not self.output:
+            return self._item(self.model(given))
+        seen: list[Any] = []
+        module = modules[self.output]
+        handle = module.register_forward_hook(lambda *called: seen.append(called[2]))
+        try:
+            self.model(given)
+        finally:
+            handle.remove()
+        if not seen:
+            raise ValueError(f"The encoder does not call its module {self.output} (agent.output).")
+        return first(seen[-1])
+
+    def pooled(self, features: Tensor) -> Tensor:
+        """Features as vectors, float32 ``[n, C]``."""
+        features = features.float()
+        if features.dim() <= 2 or self.pool == "flatten":
+            return features.flatten(1)
+        if features.dim() == 4:
+            return features.mean((2, 3)) if self.pool == "mean" else features[:, :, 0, 0]
+        return features.mean(1) if self.pool == "mean" else features[:, 0]
+
+    def add_adapters(
+        self,
+        targets: str | Sequence[str] = AUTO,
+        sites: int = SITES,
+        reduction: int = 8,
+        kernel: int = 3,
+        middle: int | None = None,
+        gate: bool = False,
+    ) -> None:
+        """Freeze the encoder and put adapters into it; it computes what it did before."""
+        where = self.targets(targets, sites)
+        names = inserted.insert_adapters(
+            self.model,
+            where,
+            reduction=reduction,
+            kernel=kernel,
+            run=self._probe,
+            gate=gate,
+            middle=middle,
+        )
+        share = inserted.trainable_share(self.model)
+        say(f"adapters behind {', '.join(names)}: {share:.1%} of the encoder's weights")
+
+    def targets(self, targets: str | Sequence[str], count: int) -> list[str]:
+        """Regular expressions of the modules that get adapters."""
+        if targets != AUTO:
+            return [targets] if isinstance(targets, str) else list(targets)
+        if self.wrapped:
+            return ["before", "behind"]
+        chosen = choose(look(self.model, self._probe), self.model, count)
+        return [re.escape(name) for name in chosen]
+
+    def _probe(self, count: int) -> Any:
+        """The model's answer to noise: to constant frames some normalisations give NaN."""
+        size, channels = self.transform.size, SENSORS[self.sensor]
+        noise = torch.rand(count, channels, size, size, generator=torch.Generator().manual_seed(0))
+        like = next(self.model.parameters(), noise)
+        return self.model(noise.to(like.device, like.dtype))
+
+    def _item(self, output: Any) -> Tensor:
+        """The target in what the model returned."""
+        if self.output is not None and not isinstance(output, Tensor):
+            held = dict(output) if isinstance(output, Mapping) else dict(enumerate(output))
+            if self.output in held:
+                return held[self.output]
+            names = [str(name) for name in held]
+        elif self.output is None:
+            chosen = next(iter(output.values())) if isinstance(output, Mapping) else first(output)
+            if isinstance(chosen, Tensor):
+                return chosen
+            names = list(output) if isinstance(output, Mapping) else []
+        else:
+            names = []
+        modules = [name for name, _ in self.model.named_modules() if name]
+        what = f"It returns {', '.join(names)}. " if names else ""
+        raise ValueError(
+            f"agent.output={self.output} is nothing that the encoder gives (it returns a "
+            f"{type(output).__name__}). {what}Name one of these, or a module, such as "
+            f"{', '.join(modules[-8:])}."
+        )
+
+    @torch.no_grad()
+    def _check(self) -> None:
+        """Run it once, so that what does not fit shows before anything is rendered."""
+        self.model.requires_grad_(False)
+        size, channels = self.transform.size, SENSORS[self.sensor]
+        dtype = torch.uint8 if self.sensor == "rgb" else torch.float32
+        frames = torch.ones(2, size, size, channels, dtype=dtype)
+        try:
+            features = self(frames)
+        except (RuntimeError, TypeError, AssertionError) as error:
+            lines = str(error).strip().splitlines() or [type(error).__name__]
+            raise ValueError(
+                f"The encoder {self.given['model']} does not take {self.sensor} frames [2, "
+                f"{channels}, {size}, {size}] ({lines[-1][:200]}). Set agent.transform.size to its "
+                "input's pixels and agent.sensor to rgb or depth; a program traced or exported for "
+                "one frame takes no two: give it a dynamic number of frames."
+            ) from error
+        if len(features) != 2 or features.dim() not in (2, 3, 4):
+            raise ValueError(
+                f"agent.output={self.output} gives {tuple(features.shape)} for two frames: it must "
+                "be [n, C], [n, C, h, w] or [n, T, C]. Name another module or item."
+            )
+
+    def far(self) -> DepthSensor:
+        """What depth corruptions must know of the sensor."""
+        far = self.transform.far
+        return DepthSensor() if far is None else DepthSensor(z_max=float(far))
+
+    def save(self, folder: str | Path) -> Path:
+        """Write what was trained: see ``folder.py``."""
+        from mitigate.encoders import folder as folders
+
+        return folders.write(self, folder)
+
+    def load(self, folder: str | Path) -> None:
+        """Read what :meth:`save` wrote; errors as ``folder.fill``."""
+        from mitigate.encoders import folder as folders
+
+        folders.fill(self, folder)

@@ -1,0 +1,205 @@
+"""Where frames come from: a world that can look from anywhere, or a folder of files.
+
+A source knows scenes in two splits that share none, ``TRAIN`` and ``UNSEEN``, and reads a number of
+frames of each scene.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import cv2
+import numpy as np
+
+from mitigate.core.files import find
+from mitigate.core.names import unknown
+from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
+from mitigate.core.seeding import generator
+from mitigate.corruptions import frame_files
+from mitigate.corruptions.plan import make_plan, told
+from mitigate.worlds.episodes import read_episodes
+from mitigate.worlds.world import Placeable
+
+TRAIN, UNSEEN = "train", "unseen"
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One frame, uint8 [H, W, 3] or float32 metres [H, W, 1]; the direction it looks in, in radians
+    as ``core/observation.py`` has it, or None; labels in {0, 1} [L], or None."""
+
+    frame: np.ndarray
+    heading: float | None = None
+    labels: np.ndarray | None = None
+
+
+class Source(Protocol):
+    """Where frames come from."""
+
+    def scenes(self, split: str) -> Sequence[str]:
+        """Names of the scenes of a split."""
+
+    def shots(self, scene: str, count: int, seed: int) -> Iterator[Shot]:
+        """Up to ``count`` frames of a scene: a function of the arguments."""
+
+
+class WorldFrames:
+    """Single views of random poses of a world, with the labels that it gives.
+
+    Args:
+        made: the world (``worlds/world.py``, Placeable); its ``scenes`` are trained in. sensor:
+        "rgb" or "depth". unseen: an episode list whose scenes are the unseen ones. label: the entry
+        of the truth, [views, L] or [L] in {0, 1}, None: no labels. every: of a panorama's views.
+    Raises ValueError for a world that cannot look from anywhere or has no such sensor, and for
+    scenes in both splits.
+    """
+
+    def __init__(
+        self, made: Any, sensor: str, unseen: str, label: str | None = "concepts", every: int = 2
+    ) -> None:
+        if not isinstance(made, Placeable):
+            raise ValueError(
+                f"{type(made).__name__} cannot look from anywhere (scenes, enter, point, put), so "
+                "it gives no frames of random poses. Save frames of it as PNG and use env=frames "
+                "env.path=FOLDER, or give the world these (docs/bring-your-own.md)."
+            )
+        if sensor not in made.sensors:
+            raise ValueError(
+                f"{type(made).__name__} shows no {sensor}, only {', '.join(made.sensors)}: set "
+                "agent.sensor, or take another world (env=...)."
+            )
+        self.world, self.sensor, self.label, self.every = made, sensor, label, every
+        train = list(made.scenes)
+        held = sorted({episode.scene_id for episode in read_episodes(find(unseen))})
+        both = sorted(set(train) & set(held))
+        if both:
+            raise ValueError(
+                f"The scenes {', '.join(both[:3])} are trained in and listed in {unseen}: the "
+                "report is of unseen scenes. Name another list (evaluation.split=...)."
+            )
+        self._scenes = {TRAIN: train, UNSEEN: held}
+
+    def scenes(self, split: str) -> Sequence[str]:
+        return self._scenes[split]
+
+    def shots(self, scene: str, count: int, seed: int) -> Iterator[Shot]:
+        rng = generator(seed, "encoder frames", scene)
+        self.world.enter(scene)
+        shape = self.world.sensors[self.sensor].shape
+        views = shape[0] if len(shape) == 4 else 1
+        step = min(self.every, views)
+        while count > 0:
+            heading = float(rng.uniform(-np.pi, np.pi))
+            shown = list(range(int(rng.integers(step)), views, step))[:count]
+            xy = self.world.point(rng)
+            looked, truth = self.world.put(xy, heading, views=shown, rgb=self.sensor == "rgb")
+            frames = looked[self.sensor].reshape(views, *shape[-3:])
+            labels = None if self.label is None else truth[self.label]
+            for view in shown:
+                own = labels if labels is None or labels.ndim == 1 else labels[view]
+                yaw = np.radians(VIEW_STEP_DEGREES) * view if views == VIEWS else 0.0
+                yield Shot(frames[view].copy(), heading - yaw, own)
+            count -= len(shown)
+
+
+class FolderFrames:
+    """The PNG (and JPEG, and NPY depth) files of a folder and the folders in it.
+
+    Args:
+        path: the folder. sensor: "rgb" or "depth". Each folder with frames in it is a scene; of a
+            single one, each ``block`` frames in the order of their names are. held_out: share of
+            the scenes that are unseen; one whose path begins with "val" or "test" is, if there is
+            one, and then no other.
+        size: pixels of a side to which all are resized when they are read; None: as they are, which
+            must then be one size. unit: metres of one count of a 16-bit PNG.
+    Raises FileNotFoundError if there is no folder or no frame, ValueError for too few.
+    """
+
+    def __init__(
+        self,
+        path: str,
+        sensor: str = "rgb",
+        size: int | None = None,
+        held_out: float = 0.2,
+        block: int = 50,
+        unit: float = 0.001,
+    ) -> None:
+        self.path, self.sensor, self.size, self.unit = Path(path), sensor, size, unit
+        self.held_out, self.block = held_out, block
+        if not self.path.is_dir():
+            raise FileNotFoundError(
+                f"There is no folder {path}: name the one that holds the frames, env.path=FOLDER."
+            )
+        self._files = self._found()
+
+    def scenes(self, split: str) -> Sequence[str]:
+        files = self._files
+        named = [name for name in files if name.lower().startswith(("val", "test"))]
+        if not named:
+            count = max(1, round(self.held_out * len(files)))
+            named = list(files)[-count:] if len(files) > 1 else []
+        train = [name for name in files if name not in named]
+        if not named or not train:
+            raise ValueError(
+                f"{self.path} has {len(files)} scenes, and training and unseen frames must come "
+                "from different ones: make folders in it, one a place (those called val... or "
+                f"test... are the unseen ones), or put more than {self.block} frames into it."
+            )
+        return train if split == TRAIN else named
+
+    def shots(self, scene: str, count: int, seed: int) -> Iterator[Shot]:
+        files = self._files[scene]
+        rng = generator(seed, "encoder frames", scene)
+        chosen = sorted(rng.permutation(len(files))[:count])
+        for index in chosen:
+            yield Shot(self._read(files[index]))
+
+    def _found(self) -> dict[str, list[Path]]:
+        """The files of each scene, in the order of their names."""
+        plan = make_plan(self.path, self.path / ".none", self.sensor, "folder")
+        scenes: dict[str, list[Path]] = {}
+        for frame in plan.frames:
+            if frame.path.as_posix() not in plan.left_out:
+                scenes.setdefault(frame.episode, []).append(self.path / frame.path)
+        if not scenes:
+            other = told(plan.other_files) or "none"
+            raise FileNotFoundError(
+                f"{self.path} holds no {self.sensor} frames: {plan.other_modality} of the other "
+                f"sensor, {len(plan.left_out)} damaged, other files {other}. RGB is 8-bit RGB in "
+                "PNG or JPEG, depth 16-bit grey PNG or NPY metres (agent.sensor=depth)."
+            )
+        if len(scenes) > 1:
+            return scenes
+        ((name, files),) = scenes.items()
+        starts = range(0, len(files), self.block)
+        return {f"{name}#{at // self.block:04d}": files[at : at + self.block] for at in starts}
+
+    def _read(self, path: Path) -> np.ndarray:
+        frame = frame_files.read(path, self.unit)
+        if self.size is not None and frame.shape[:2] != (self.size, self.size):
+            shrinks = self.size < max(frame.shape[:2])
+            kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
+            kind = cv2.INTER_NEAREST if frame.shape[-1] == 1 else kind  # holes stay holes
+            frame = cv2.resize(frame, (self.size, self.size), interpolation=kind)
+        return frame.reshape(*frame.shape[:2], -1)
+
+
+def source_of(
+    world: Callable[[], Any],
+    sensor: str,
+    episodes: Mapping[str, str] | None,
+    split: str,
+    label: str | None,
+) -> Source:
+    """The source of an ``env`` config: what its ``world`` makes, if that is a source (a folder of
+    frames), or the random poses of a world, with the scenes of its list ``split`` as the unseen
+    ones. Raises ValueError for a list that there is not, and as these do."""
+    made = world()
+    if hasattr(made, "shots"):
+        return made
+    if split not in (episodes or {}):
+        raise ValueError(unknown("split", split, episodes or {}))
+    return WorldFrames(made, sensor, (episodes or {})[split], label)

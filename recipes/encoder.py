@@ -1,0 +1,191 @@
+"""Harden an image encoder from frames alone: corrupted frames must give the clean ones' features.
+
+    L = w_feat mean of (f(corrupted) - f0(clean))^2 / v + w_gate BCE(gates, corrupted or not)
+
+f0 is the encoder as it came, and v how much its clean features differ between frames: a loss of 1
+is that of features that say nothing of the frame. Nothing else is needed: no label, action,
+instruction or policy. Some frames stay clean (``schedule.clean_share``): clean features must stay
+where the rest of an agent expects them; adapters with a gate learn to leave those frames alone.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from mitigate.agents.adapters import backbone_sha
+from mitigate.agents.tokens import Gate
+from mitigate.core import checkpoint
+from mitigate.core.pictures import side_by_side
+from mitigate.core.progress import Progress
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule
+from mitigate.corruptions.registry import modality
+from mitigate.encoders.frames import Frames, collect, corrupted
+from mitigate.encoders.model import Encoder
+from mitigate.encoders.sources import TRAIN, source_of
+from mitigate.training.parts import without_adapters
+from mitigate.training.recipe import Recipe
+
+SHOWN = 12  # frames in the log's picture
+MOST_KEPT = 1 << 30  # bytes of clean features kept from the start; more are computed at each step
+
+
+class HardenEncoder(Recipe):
+    """Args:
+    agent: the encoder; its adapters, or all of its weights, are trained in place.
+    world, episodes, split, label: where frames come from (``source_of``). schedule: of corruptions;
+        those of the encoder's sensor are drawn. frames: read once, from the training scenes.
+    batch: frames a step. micro_batch: of them in memory at once.
+    w_feat, w_gate: of the loss above. per_channel: whether v is of each channel, so that all count
+        alike, or the mean of all.
+    """
+
+    def __init__(
+        self,
+        agent: Encoder,
+        world: Callable[[], Any],
+        schedule: Schedule,
+        episodes: Mapping[str, str] | None = None,
+        split: str = "val_unseen",
+        label: str | None = None,
+        frames: int = 4800,
+        batch: int = 48,
+        micro_batch: int = 48,
+        seed: int = 0,
+        w_feat: float = 1.0,
+        w_gate: float = 0.1,
+        per_channel: bool = False,
+    ) -> None:
+        super().__init__()
+        if not 1 <= micro_batch <= batch or frames < 1:
+            raise ValueError(
+                f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.batch ({batch}), and "
+                f"recipe.frames ({frames}) at least 1."
+            )
+        self.agent, self.batch_size, self.micro = agent, batch, micro_batch
+        agent.choose_trained()
+        self.teacher = without_adapters(agent).requires_grad_(False).eval()
+        names = tuple(name for name in schedule.names if modality(name) == agent.sensor)
+        if not names:
+            raise ValueError(
+                f"schedule.names has no corruption of {agent.sensor}, which this encoder sees."
+            )
+        self.schedule = dataclasses.replace(schedule, names=names)
+        self.source = source_of(world, agent.sensor, episodes, split, label)
+        self.count, self.seed, self.w_feat, self.w_gate = frames, seed, w_feat, w_gate
+        self.per_channel = per_channel
+        self.frames: Frames | None = None
+        self.targets: Tensor | None = None
+        self.variance = torch.ones(())
+        self.backbone = backbone_sha(agent.model)
+        self._last: np.ndarray | None = None
+
+    def identity(self) -> dict[str, str]:
+        return {"encoder_sha256": checkpoint.weights_sha(self.teacher)}
+
+    def start(self) -> None:
+        self.frames = collect(self.source, TRAIN, self.count, self.seed)
+        device, self.targets = next(self.teacher.parameters(), torch.zeros(())).device, None
+        clean = torch.from_numpy(self.frames.frames).split(self.micro)
+        first = self._clean(clean[0].to(device))
+        self.variance = variance(first, self.per_channel)
+        if first[0].numel() * first.element_size() * len(self.frames) > MOST_KEPT:
+            return
+        with Progress("clean features", len(self.frames), unit="frame") as progress:
+            self.targets = first.new_empty(len(self.frames), *first.shape[1:])
+            for at, part in enumerate(clean):
+                start = at * self.micro
+                self.targets[start : start + len(part)] = self._clean(part.to(device))
+                progress.advance(len(part))
+        self.variance = variance(self.targets, self.per_channel)
+
+    @torch.no_grad()
+    def _clean(self, frames: Tensor) -> Tensor:
+        return self.teacher(frames).float()
+
+    def batch(self, step: int) -> dict[str, Any]:
+        assert self.frames is not None, "start() reads the frames"
+        rng = generator(self.seed, "encoder batch", step)
+        chosen = rng.integers(len(self.frames), size=self.batch_size)
+        clean, changed, hit = [], [], []
+        for place, index in enumerate(chosen):
+            corruption, key = self.schedule.draw(self.seed, f"{step}-{place}", 0)
+            clean.append(self.frames.frames[index])
+            changed.append(corrupted(self.frames, index, corruption, key, self.agent.far()))
+            hit.append(float(not np.array_equal(changed[-1], clean[-1])))  # black-out spares some
+        self._last = np.stack(changed[:SHOWN])
+        return {
+            "frames": torch.from_numpy(np.stack(changed)),
+            **self._wanted(chosen, clean),
+            "corrupted": torch.tensor(hit),
+            "episode_ids": [self.frames.names[self.frames.scene[index]] for index in chosen],
+        }
+
+    def _wanted(self, chosen: np.ndarray, clean: list[np.ndarray]) -> dict[str, Tensor]:
+        """The clean features of a step's frames, or the frames to compute them from."""
+        if self.targets is None:
+            return {"clean": torch.from_numpy(np.stack(clean))}
+        return {"wanted": self.targets[torch.from_numpy(chosen).to(self.targets.device)]}
+
+    def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
+        """Parts of the step's frames, each with its share of them."""
+        tensors = {name: batch[name].split(self.micro) for name in batch if name != "episode_ids"}
+        parts = [
+            dict(zip(tensors, part, strict=True)) for part in zip(*tensors.values(), strict=True)
+        ]
+        return [{**part, "share": len(part["frames"]) / self.batch_size} for part in parts]
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        wanted = batch["wanted"] if "wanted" in batch else self._clean(batch["clean"])
+        gates: list[Tensor] = []
+        handles = [
+            module.register_forward_hook(lambda _, given, out: gates.append(out))
+            for module in self.agent.modules()
+            if isinstance(module, Gate)
+        ]
+        try:
+            found = self.agent(batch["frames"])
+        finally:
+            for handle in handles:
+                handle.remove()
+        values = {"feat": ((found.float() - wanted).square() / self.variance).mean()}
+        loss = self.w_feat * values["feat"]
+        if gates:
+            hit = batch["corrupted"]
+            values["gate"] = torch.stack(
+                [F.binary_cross_entropy_with_logits(gate.float(), hit) for gate in gates]
+            ).mean()
+            loss = loss + self.w_gate * values["gate"]
+        values = {"loss": loss, **values, "cosine": cosine(found, wanted).mean()}
+        return {name: value * batch.get("share", 1.0) for name, value in values.items()}
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """1 if the encoder's own weights are what they were, as they must be with adapters."""
+        return {"backbone_unchanged": float(backbone_sha(self.agent.model) == self.backbone)}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return {} if self._last is None else {"frames": side_by_side(self._last)}
+
+
+def variance(clean: Tensor, per_channel: bool) -> Tensor:
+    """How much features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]`` differ between frames, at the
+    same place: of each channel, in a shape that divides them, or the mean of all, a number. A
+    channel that hardly differs counts as if it had a hundredth of the mean."""
+    each = clean.var(0)
+    channel = 0 if each.dim() == 3 else each.dim() - 1
+    others = [axis for axis in range(each.dim()) if axis != channel]
+    each = each.mean(others, keepdim=True) if others else each
+    mean = each.mean().clamp(min=1e-12)
+    return each.clamp(min=0.01 * float(mean)) if per_channel else mean
+
+
+def cosine(found: Tensor, wanted: Tensor) -> Tensor:
+    """Cosine [n] between the features of each frame."""
+    return nn.functional.cosine_similarity(found.float().flatten(1), wanted.float().flatten(1))

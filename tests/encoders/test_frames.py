@@ -1,0 +1,120 @@
+"""Frames of a world and of a folder: repeatable, in two splits that share no scene."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from mitigate.corruptions import Corruption, DepthSensor, Key
+from mitigate.encoders.frames import collect, corrupted
+from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames, WorldFrames, source_of
+from mitigate.worlds.apartments.world import ApartmentsWorld
+
+LIST = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"
+
+
+@pytest.fixture(scope="module")
+def world() -> WorldFrames:
+    return source_of(lambda: ApartmentsWorld(24, layouts=3), "rgb", {"a": LIST}, "a", "concepts")
+
+
+def write(folder, name: str, seed: int, size: int = 12) -> None:
+    pixels = np.random.default_rng(seed).integers(0, 256, (size, size, 3), np.uint8)
+    (folder / name).parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(pixels).save(folder / name)
+
+
+def test_a_worlds_frames_are_the_same_each_time_and_carry_labels(world):
+    one, two = (collect(world, TRAIN, 10, 0) for _ in range(2))
+    assert np.array_equal(one.frames, two.frames) and one.headings == two.headings
+    assert one.frames.shape == (10, 24, 24, 3) and set(one.scene) == {0, 1, 2}
+    assert one.labels is not None and one.labels.shape[0] == 10
+    assert not np.array_equal(collect(world, TRAIN, 10, 1).frames, one.frames)
+
+
+def test_unseen_frames_come_from_the_scenes_of_the_list(world):
+    assert not set(world.scenes(TRAIN)) & set(world.scenes(UNSEEN))
+    assert all("/val_unseen/" in name for name in world.scenes(UNSEEN))
+    made = ApartmentsWorld(24, layouts=1)
+    made.__class__ = type("Both", (ApartmentsWorld,), {"scenes": property(lambda s: [seen])})
+    seen = world.scenes(UNSEEN)[0]
+    with pytest.raises(ValueError, match="the report is of unseen scenes"):
+        WorldFrames(made, "rgb", LIST)
+
+
+def test_a_worlds_depth_is_in_metres():
+    source = source_of(lambda: ApartmentsWorld(24, layouts=1), "depth", {"a": LIST}, "a", None)
+    frames = collect(source, TRAIN, 4, 0)
+    assert frames.frames.shape == (4, 24, 24, 1) and frames.frames.dtype == np.float32
+    assert 0.1 < frames.frames.max() < 30 and frames.labels is None
+
+
+def test_a_frame_is_corrupted_as_an_instant_of_its_own(world):
+    frames = collect(world, TRAIN, 6, 0)
+    key = Key(0, "a")
+    for index in (0, 5):
+        seen = corrupted(frames, index, Corruption("low_light", 0.6), key, DepthSensor())
+        assert (
+            seen.shape == frames.frames[index].shape and seen.mean() < frames.frames[index].mean()
+        )
+
+
+def test_folders_are_scenes_and_the_last_are_unseen(tmp_path):
+    for scene in range(5):
+        for number in range(3):
+            write(tmp_path, f"house{scene}/{number}.png", 10 * scene + number)
+    source = source_of(lambda: FolderFrames(str(tmp_path)), "rgb", None, "unseen", None)
+    assert list(source.scenes(UNSEEN)) == ["house4"] and len(source.scenes(TRAIN)) == 4
+    frames = collect(source, TRAIN, 8, 0)
+    assert len(frames) == 8 and frames.labels is None and frames.headings[0] is None
+
+
+def test_folders_called_val_are_the_unseen_ones(tmp_path):
+    for scene in ("train/a", "train/b", "val/c"):
+        write(tmp_path, f"{scene}/0.png", 0)
+    source = FolderFrames(str(tmp_path))
+    assert list(source.scenes(UNSEEN)) == ["val/c"]
+
+
+def test_a_single_folder_is_cut_into_blocks(tmp_path):
+    for number in range(12):
+        write(tmp_path, f"{number}.png", number)
+    source = FolderFrames(str(tmp_path), block=3)
+    assert len(source.scenes(TRAIN)) == 3 and len(source.scenes(UNSEEN)) == 1
+    first = list(source.shots(source.scenes(TRAIN)[0], 3, 0))
+    assert len(first) == 3
+
+
+def test_frames_of_several_sizes_are_refused_unless_resized(tmp_path):
+    for number in range(4):
+        write(tmp_path, f"a{number}/0.png", number, 12 + number % 2)
+    with pytest.raises(ValueError, match=r"env.size=PIXELS"):
+        collect(FolderFrames(str(tmp_path), held_out=0.25), TRAIN, 3, 0)
+    frames = collect(FolderFrames(str(tmp_path), size=8, held_out=0.25), TRAIN, 3, 0)
+    assert frames.frames.shape == (3, 8, 8, 3)
+
+
+def test_depth_files_become_metres(tmp_path):
+    for number in range(2):
+        (tmp_path / f"s{number}").mkdir()
+        Image.fromarray(np.full((6, 6), 1500, np.uint16)).save(tmp_path / f"s{number}/0.png")
+        np.save(tmp_path / f"s{number}/1.npy", np.full((6, 6), 2.5, np.float32))
+    frames = collect(FolderFrames(str(tmp_path), "depth"), TRAIN, 2, 0)
+    assert sorted(frames.frames[:, 0, 0, 0].tolist()) == [1.5, 2.5]
+
+
+def test_what_a_folder_lacks_is_said(tmp_path):
+    with pytest.raises(FileNotFoundError, match="There is no folder"):
+        FolderFrames(str(tmp_path / "none"))
+    (tmp_path / "notes.txt").write_text("x")
+    with pytest.raises(FileNotFoundError, match="holds no rgb frames: .* 1 .txt"):
+        FolderFrames(str(tmp_path))
+    write(tmp_path, "0.png", 0)
+    with pytest.raises(ValueError, match="must come from different ones"):
+        FolderFrames(str(tmp_path)).scenes(TRAIN)
+
+
+def test_a_world_that_cannot_look_from_anywhere_is_named():
+    with pytest.raises(ValueError, match="Save frames of it as PNG and use env=frames"):
+        source_of(object, "rgb", {"a": LIST}, "a", None)

@@ -1,0 +1,187 @@
+"""An encoder by import path or file, its weights by prefix, and what is said if they do not fit."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+import types
+
+import pytest
+import torch
+from safetensors.torch import save_file
+
+from mitigate.encoders import loading
+from mitigate.encoders.loading import Wrapped, load_model, load_weights
+from mitigate.encoders.model import Encoder
+from mitigate.encoders.transform import Transform
+from tests.encoders.shapes import TinyNet, tiny
+
+TINY = "tests.encoders.shapes:tiny"
+FRAMES = torch.randint(0, 256, (3, 32, 32, 3), dtype=torch.uint8)
+
+
+def encoder(**given) -> Encoder:
+    given = {"model": TINY, "transform": {"size": 32}, "output": "pool", **given}
+    return Encoder(**given).eval()
+
+
+def test_an_import_path_is_called_with_its_arguments():
+    assert load_model(TINY, {"width": 12}).fc.in_features == 12
+
+
+@pytest.mark.parametrize(
+    ("model", "kwargs", "says"),
+    [
+        ("no.such.package:make", None, "cannot be imported"),
+        ("tests.encoders.shapes:tinyy", None, "Did you mean tiny"),
+        (TINY, {"depth": 3}, "cannot be called with"),
+        ("os.path:join", {"a": "b"}, "not a torch nn.Module"),
+        ("weights.pth", None, "Name it as agent.weights"),
+        ("model.onnx", None, "neither an import path"),
+        ("efficientnet_lite_pytorch:EfficientNet.from_name", None, "extra 'encoders'"),
+    ],
+)
+def test_a_wrong_model_is_explained(model, kwargs, says, monkeypatch):
+    monkeypatch.setitem(sys.modules, "efficientnet_lite_pytorch", None)
+    with pytest.raises((ValueError, FileNotFoundError), match=says):
+        load_model(model, kwargs)
+
+
+def test_a_torchscript_takes_adapters_before_and_behind(tmp_path):
+    torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.ts"))
+    made = encoder(model=str(tmp_path / "net.ts"), output=None, adapters={"middle": 8})
+    assert isinstance(made.model, Wrapped)
+    wanted = tiny().eval()(made.transform(FRAMES))
+    torch.testing.assert_close(made(FRAMES), wanted)
+
+
+def test_a_torchscript_can_be_trained_whole(tmp_path):
+    torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.pt"))
+    made = encoder(model=str(tmp_path / "net.pt"), output=None, tune="all")
+    made(FRAMES).sum().backward()
+    assert any(p.grad is not None for p in made.model.parameters())
+
+
+def test_an_exported_program_is_hooked_inside(tmp_path):
+    size = {0: torch.export.Dim("n")}
+    program = torch.export.export(
+        tiny().eval(), (torch.randn(2, 3, 32, 32),), dynamic_shapes=(size,)
+    )
+    torch.export.save(program, tmp_path / "net.pt2")
+    made = encoder(model=str(tmp_path / "net.pt2"), adapters={"targets": [r"blocks\.\d"]})
+    wanted = encoder()(FRAMES)
+    torch.testing.assert_close(made(FRAMES), wanted)
+    assert {"blocks.0", "blocks.3"} <= set(loading_adapted(made))
+
+
+def loading_adapted(made: Encoder) -> list[str]:
+    from mitigate.agents.adapters import adapted
+
+    return adapted(made.model)
+
+
+@pytest.mark.parametrize("kind", ["plain", "nested", "safetensors"])
+def test_weights_are_found_by_their_prefix(tmp_path, kind):
+    wanted = TinyNet()
+    state = {f"net.rgb_encoder.model.{k}": v for k, v in wanted.state_dict().items()}
+    state["net.other.weight"] = torch.zeros(2)
+    path = tmp_path / ("w.safetensors" if kind == "safetensors" else "w.pth")
+    if kind == "safetensors":
+        save_file(state, path)
+    else:
+        torch.save({"state_dict": state, "iteration": 7} if kind == "nested" else state, path)
+    made = tiny()
+    load_weights(made, str(path), "net.rgb_encoder.model.")
+    assert torch.equal(made.stem.weight, wanted.stem.weight)
+    with pytest.raises(ValueError, match=r"Their names begin with net; agent.prefix is ''"):
+        load_weights(made, str(path))
+
+
+class Config(dict):
+    """As yacs has it: pickled beside the weights of many navigation agents."""
+
+
+def test_a_config_beside_the_weights_is_left_out_and_runs_nothing(tmp_path, monkeypatch):
+    module = types.ModuleType("somebodys_config")
+    Config.__module__, Config.__qualname__ = "somebodys_config", "Config"
+    module.Config = Config
+    monkeypatch.setitem(sys.modules, "somebodys_config", module)
+    config = Config(depth=3)
+    config.frozen = True
+    torch.save({"state_dict": tiny().state_dict(), "config": config}, tmp_path / "w.pth")
+    monkeypatch.delitem(sys.modules, "somebodys_config")
+    load_weights(tiny(), str(tmp_path / "w.pth"))
+    assert "somebodys_config" not in sys.modules
+
+
+class Runs:
+    """A pickle that would run a command."""
+
+    def __reduce__(self):
+        return (print, ("this ran",))
+
+
+def test_nothing_is_unpickled(tmp_path, capsys):
+    (tmp_path / "w.pth").write_bytes(pickle.dumps({"a": Runs()}))
+    with pytest.raises(ValueError, match="cannot be read without running code|holds no tensors"):
+        load_weights(tiny(), str(tmp_path / "w.pth"))
+    torch.save({"a": Runs()}, tmp_path / "w.pth")
+    with pytest.raises(ValueError, match="cannot be read without running code|holds no tensors"):
+        load_weights(tiny(), str(tmp_path / "w.pth"))
+    assert "this ran" not in capsys.readouterr().out
+
+
+def test_a_missing_package_of_weights_names_the_extra():
+    with pytest.raises(FileNotFoundError, match="is not installed|cannot be imported"):
+        loading.find_weights("pkg://no_such_package/w.pth")
+
+
+def test_the_output_is_an_item_a_module_or_an_error_that_lists_them():
+    assert encoder().output == "pool" and encoder()(FRAMES).shape == (3, 8, 1, 1)
+    assert encoder(output=None)(FRAMES).shape == (3, 5)
+    with pytest.raises(ValueError, match=r"agent.output=pol is nothing .* pool, fc"):
+        encoder(output="pol")
+
+
+def test_an_item_of_what_the_model_returns_is_named():
+    clip = {"hidden_size": 24, "intermediate_size": 48, "num_hidden_layers": 4}
+    clip |= {"num_attention_heads": 4, "image_size": 32, "patch_size": 8}
+    model = {"model": "tests.encoders.shapes:clip_vit_b32", "kwargs": clip}
+    assert encoder(**model, output="pooler_output")(FRAMES).shape == (3, 24)
+    tokens = encoder(**model, output=None, pool="first")
+    assert tokens(FRAMES).shape == (3, 17, 24)
+    assert torch.equal(tokens.pooled(tokens(FRAMES)), tokens(FRAMES)[:, 0])
+
+
+def test_frames_that_the_encoder_does_not_take_are_named():
+    with pytest.raises(ValueError, match=r"does not take depth frames \[2, 1, 32, 32\]"):
+        encoder(sensor="depth")
+    with pytest.raises(ValueError, match="have 3 values, but depth has 1 channels"):
+        encoder(sensor="depth", transform={"size": 32, "mean": [0, 0, 0], "std": [1, 1, 1]})
+    with pytest.raises(ValueError, match="agent.model is not set"):
+        encoder(model=None)
+    with pytest.raises(ValueError, match="Did you mean adapters"):
+        encoder(tune="adapter")
+
+
+def test_the_encoder_stays_in_eval_mode_in_training():
+    made = encoder(tune="all").train()
+    before = {k: v.clone() for k, v in made.model.named_buffers()}
+    made(FRAMES)
+    assert all(torch.equal(v, before[k]) for k, v in made.model.named_buffers())
+
+
+def test_the_transform_normalises_crops_and_clips():
+    shape = (1, 20, 40, 3)
+    frames = torch.full(shape, 255, dtype=torch.uint8)
+    x = Transform(10, mean=[0.5] * 3, std=[0.5] * 3, crop=True)(frames)
+    assert x.shape == (1, 3, 10, 10) and torch.allclose(x, torch.ones(()))
+    metres = torch.tensor([0.0, 5.0, 10.0, 20.0]).reshape(1, 2, 2, 1)
+    assert Transform(2, far=10.0)(metres).flatten().tolist() == [0.0, 0.5, 1.0, 1.0]
+    assert Transform(2)(metres).flatten().tolist() == [0.0, 5.0, 10.0, 20.0]
+    half = Transform(10, crop=True)
+    left, right = torch.zeros(1, 20, 20, 3), torch.ones(1, 20, 20, 3)
+    middle = half(torch.cat([left, right], 2))
+    assert float(middle[..., :4].max()) < 0.01 and float(middle[..., 6:].min()) > 0.99
+    with pytest.raises(ValueError, match="near"):
+        Transform(2, near=3, far=2)

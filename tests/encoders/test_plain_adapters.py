@@ -1,0 +1,127 @@
+"""The file to copy gives what ours gives, reads data only, and needs nothing of ours."""
+
+from __future__ import annotations
+
+import ast
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import torch
+from torch import nn
+
+from mitigate.agents.adapters import insert_adapters, save_adapters
+from mitigate.encoders import plain_adapters
+from mitigate.encoders.loading import Wrapped
+from tests.encoders.test_token_adapters import ENCODERS, answer, shaken
+
+FILE = Path(plain_adapters.__file__)
+
+
+@pytest.mark.parametrize("gate", [False, True])
+@pytest.mark.parametrize("name", sorted(ENCODERS))
+def test_it_gives_the_same_bits_as_our_own_loader(name, gate, tmp_path):
+    make, shape, target, *_ = ENCODERS[name]
+    torch.manual_seed(0)
+    model, frames = make().eval(), torch.randn(5, *shape)
+    state = {k: v.clone() for k, v in model.state_dict().items()}
+    insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
+    save_adapters(shaken(model), tmp_path)
+    torch.manual_seed(1)
+    other = make().eval()
+    other.load_state_dict(state)
+    assert plain_adapters.attach(other, tmp_path) is other
+    with torch.no_grad():
+        assert torch.equal(answer(other, frames), answer(model, frames))
+    assert list(other.state_dict()) == list(state)
+
+
+def test_a_torchscript_is_wrapped(tmp_path):
+    frames = torch.randn(5, 3, 32, 32)
+    script = torch.jit.trace(nn.Sequential(nn.Conv2d(3, 8, 3, 2), nn.ReLU()).eval(), frames)
+    model = Wrapped(script)
+    insert_adapters(model, ["before", "behind"], run=lambda n: model(frames[:n]), middle=16)
+    save_adapters(shaken(model), tmp_path)
+    attached = plain_adapters.attach(script, tmp_path)
+    with torch.no_grad():
+        assert torch.equal(attached(frames), model(frames))
+        assert not torch.equal(attached(frames), script(frames))
+
+
+def saved(folder: Path) -> nn.Module:
+    make, shape, target, *_ = ENCODERS["cnn"]
+    torch.manual_seed(0)
+    model, frames = make().eval(), torch.randn(3, *shape)
+    insert_adapters(model, [target], run=lambda n: model(frames[:n]))
+    save_adapters(shaken(model), folder)
+    torch.manual_seed(0)
+    return make().eval()
+
+
+def test_a_changed_file_is_refused(tmp_path):
+    model, file = saved(tmp_path), tmp_path / plain_adapters.WEIGHTS
+    data = bytearray(file.read_bytes())
+    data[-1] ^= 1
+    file.write_bytes(data)
+    with pytest.raises(ValueError, match="does not have the sha256 beside it"):
+        plain_adapters.attach(model, tmp_path)
+
+
+def test_another_encoder_is_refused_unless_told(tmp_path):
+    model = saved(tmp_path)
+    nn.init.zeros_(model.stem.weight)
+    with pytest.raises(ValueError, match="Load those weights first"):
+        plain_adapters.attach(model, tmp_path)
+    plain_adapters.attach(model, tmp_path, check=False)
+    with pytest.raises(ValueError, match=r"no module called blocks\.0"):
+        plain_adapters.attach(nn.Linear(2, 2), tmp_path)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        {"channels": 8, "reduction": 8, "kernel": 3, "views": 12, "hfov": 90},
+        {"channels": 1 << 40, "reduction": 1, "kernel": 3},
+        {"channels": 8, "reduction": 0, "kernel": 3},
+        {"channels": 8, "reduction": 8, "kernel": 2},
+        {"channels": 8, "reduction": 8, "kernel": 3, "_target_": "os.system"},
+        "conv",
+    ],
+)
+def test_settings_of_any_other_form_are_refused(tmp_path, shape):
+    model, file = saved(tmp_path), tmp_path / plain_adapters.SETTINGS
+    settings = json.loads(file.read_text())
+    settings["adapters"]["blocks.0"] = shape
+    file.write_text(json.dumps(settings))
+    with pytest.raises(ValueError, match="damaged, or of adapters that this file does not know"):
+        plain_adapters.attach(model, tmp_path)
+
+
+@pytest.mark.parametrize("cut", [4, 40, -8])
+def test_a_cut_file_is_refused(tmp_path, cut):
+    saved(tmp_path)
+    with pytest.raises(ValueError, match="damaged"):
+        plain_adapters.parse((tmp_path / plain_adapters.WEIGHTS).read_bytes()[:cut])
+
+
+def test_it_imports_the_standard_library_numpy_and_torch_alone():
+    tree = ast.parse(FILE.read_text(encoding="utf-8"), feature_version=(3, 6))
+    names = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
+    assert names <= {"hashlib", "json", "os", "re", "numpy", "torch", "torch.nn.functional"}
+    assert not [n for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)]
+
+
+def test_it_works_as_a_copied_file(tmp_path):
+    """In another process that cannot import this project."""
+    saved(tmp_path)
+    (tmp_path / "plain_adapters.py").write_text(FILE.read_text(encoding="utf-8"))
+    code = (
+        "import sys; sys.modules['mitigate'] = None; import plain_adapters as p; "
+        "print(len(p.read('.')[0]['adapters']), len(p.read('.')[1]))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split() == ["4", "16"]

@@ -1,0 +1,78 @@
+"""The measures, against values known by other means."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from mitigate.encoders import report
+from mitigate.encoders.probe import (
+    LinearProbe,
+    Resamples,
+    Score,
+    average_precision,
+    cosine,
+    retrieval,
+)
+
+
+def test_average_precision_of_a_list_worked_by_hand():
+    guess = np.array([0.9, 0.8, 0.7, 0.6])
+    label = np.array([1, 0, 1, 0])
+    one = np.ones((1, 4), np.float32)
+    assert np.isclose(average_precision(guess, label, one)[0], (1 + 2 / 3) / 2)
+    twice = np.array([[1, 0, 2, 1]], np.float32)  # weights are repetitions
+    assert np.isclose(average_precision(guess, label, twice)[0], 1.0)
+
+
+def test_the_cosine_is_of_what_differs_from_the_mean():
+    rng = np.random.default_rng(0)
+    clean = 100 + rng.standard_normal((50, 8))
+    other = 100 + rng.standard_normal((50, 8))
+    centre = clean.mean(0)
+    assert np.allclose(cosine(clean, clean, centre), 1)
+    assert abs(cosine(other, clean, centre).mean()) < 0.2
+    assert cosine(other, clean, 0 * centre).mean() > 0.99  # without centring all look alike
+    assert retrieval(clean, clean, centre).all() and retrieval(other, clean, centre).mean() < 0.2
+
+
+def test_intervals_are_over_scenes_not_frames():
+    scene = np.repeat(np.arange(10), 20)
+    values = np.repeat(np.random.default_rng(0).standard_normal(10), 20)
+    score = Resamples(scene).mean(values)
+    assert np.isclose(score.value, values.mean())
+    wanted = values[::20].std() / np.sqrt(10)
+    assert np.isclose(score.samples.std(), wanted, rtol=0.15)
+
+
+def test_the_probe_finds_a_linear_label_and_not_a_random_one():
+    rng = np.random.default_rng(0)
+    x = rng.standard_normal((400, 6)).astype(np.float32)
+    scene = np.repeat(np.arange(20), 20)
+    labels = np.stack([x[:, 0] + x[:, 1] > 0, rng.random(400) > 0.5], 1).astype(np.float32)
+    for column, low, high in ((0, 0.95, 1.0), (1, 0.3, 0.7)):
+        probe = LinearProbe(x[:200], labels[:200, [column]], scene[:200])
+        score = probe.score(x[200:], labels[200:, [column]], Resamples(scene[200:]))
+        assert low <= score.value <= high and score.samples.shape == (1000,)
+
+
+def test_the_table_pairs_before_and_after(tmp_path, capsys):
+    rng = np.random.default_rng(0)
+    noise = rng.normal(0, 0.1, 1000)
+    scores = {
+        (state, condition, "cosine"): Score(value, value + noise)
+        for state, condition, value in (
+            ("before", "clean", 1.0),
+            ("before", "spatter", 0.4),
+            ("after", "clean", 0.9),
+            ("after", "spatter", 0.7),
+        )
+    }
+    report.write(report.with_mean(scores), tmp_path, "made")
+    text = (tmp_path / "features.md").read_text()
+    assert "| Spatter | 0.40" in text and "+0.30 [+0.30, +0.30] |" in text  # the noise is shared
+    rows = [json.loads(line) for line in (tmp_path / "features.jsonl").read_text().splitlines()]
+    assert [row["condition"] for row in rows] == ["clean", "spatter", report.MEAN]
+    assert rows[1]["gain"] == [0.3, 0.3, 0.3]
+    assert (tmp_path / "features.png").stat().st_size > 1000

@@ -1,0 +1,209 @@
+"""The recipe from the command's config to a folder that loads, on tiny encoders."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+from omegaconf import OmegaConf
+from PIL import Image
+
+from mitigate.agents.adapters import adapter_parameters
+from mitigate.core import conf
+from mitigate.core.build import build, carried
+from mitigate.core.checkpoint import weights_sha
+from mitigate.corruptions import Schedule
+from mitigate.encoders import folder as folders
+from mitigate.encoders import plain_adapters
+from mitigate.encoders.model import Encoder
+from mitigate.encoders.sources import FolderFrames
+from mitigate.recipes.encoder import HardenEncoder, variance
+from mitigate.training import train
+from mitigate.training.trainer import Trainer
+from tests.encoders.shapes import tiny
+
+TINY = ["agent=encoder", "agent.model=tests.encoders.shapes:tiny", "agent.output=pool"]
+
+
+@pytest.fixture(scope="module")
+def pictures(tmp_path_factory):
+    """Six scenes of smooth random pictures."""
+    path, rng = tmp_path_factory.mktemp("pictures"), np.random.default_rng(0)
+    for scene in range(6):
+        (path / f"s{scene}").mkdir()
+        for number in range(8):
+            coarse = rng.integers(0, 256, (4, 4, 3), np.uint8)
+            Image.fromarray(coarse).resize((32, 32), 3).save(path / f"s{scene}/{number}.png")
+    return path
+
+
+def made(**given) -> Encoder:
+    given = {"model": "tests.encoders.shapes:tiny", "output": "pool", **given}
+    torch.manual_seed(0)
+    return Encoder(transform={"size": 32, "mean": [0.5] * 3, "std": [0.25] * 3}, **given)
+
+
+def recipe_of(encoder: Encoder, pictures, **given) -> HardenEncoder:
+    schedule = Schedule("per_frame", (0.3, 1.0))
+    source = {"world": lambda: FolderFrames(str(pictures)), "schedule": schedule}
+    return HardenEncoder(encoder, **source, frames=40, **{"batch": 12, "micro_batch": 12, **given})
+
+
+def config(tmp_path, pictures, *options: str):
+    own = ["recipe=encoder", "env=frames", f"env.path={pictures}", "env.size=32", *options]
+    small = ["stages.encoder.recipe.frames=40", "stages.encoder.recipe.batch=8"]
+    small += ["stages.encoder.recipe.micro_batch=4", "trainer.steps=2", "evaluation.episodes=1"]
+    return conf.load_config("train", [*own, *small, f"runs={tmp_path}", "workers=0"])
+
+
+@pytest.mark.parametrize("gate", [False, True])
+def test_training_brings_corrupted_features_nearer_to_the_clean_ones(tmp_path, pictures, gate):
+    encoder = made(adapters={"targets": [r"blocks\.\d"], "reduction": 1, "gate": gate})
+    recipe = recipe_of(encoder, pictures)
+    recipe.start()
+    first = float(recipe.eval()(recipe.batch(1000))["feat"])
+    before = {k: v.clone() for k, v in encoder.model.state_dict().items() if ".adapter." not in k}
+    Trainer(recipe, steps=40, folder=tmp_path, lr=3e-2, precision="fp32").fit()
+    after = float(recipe.eval()(recipe.batch(1000))["feat"])
+    assert after < 0.8 * first
+    assert all(torch.equal(encoder.model.state_dict()[k], v) for k, v in before.items())
+    assert recipe.evaluate(0) == {"backbone_unchanged": 1.0}
+
+
+def test_only_corruptions_of_the_encoders_sensor_are_drawn(pictures):
+    recipe = recipe_of(made(), pictures)
+    assert "missing_data" not in recipe.schedule.names and "spatter" in recipe.schedule.names
+    with pytest.raises(ValueError, match="no corruption of rgb"):
+        source = {"world": lambda: FolderFrames(str(pictures))}
+        HardenEncoder(
+            made(), **source, schedule=Schedule("per_frame", 0.6, names=("missing_data",))
+        )
+
+
+def test_micro_batches_add_up_to_the_step(pictures):
+    values = []
+    for micro in (12, 5):
+        recipe = recipe_of(made(), pictures, micro_batch=micro, w_gate=0.0)
+        recipe.start()
+        parts = [recipe(part) for part in recipe.micro_batches(recipe.batch(0))]
+        values.append(float(sum(part["cosine"] for part in parts)))
+    assert values[0] == pytest.approx(values[1], abs=1e-5)
+
+
+def test_a_folder_of_png_to_a_folder_that_plain_torch_loads(tmp_path, pictures, capsys):
+    cfg = config(tmp_path, pictures, *TINY)
+    out = train.run(cfg)
+    shown = capsys.readouterr().out
+    assert (
+        "own clean frame retrieved first" in shown and "from plain_adapters import attach" in shown
+    )
+    assert (out / "features.png").is_file() and folders.card(out / "agent")["sensor"] == "rgb"
+    again = build(cfg.agent)
+    again.load(out / "agent")
+    frames = torch.randint(0, 256, (3, 32, 32, 3), dtype=torch.uint8)
+    model = plain_adapters.attach(tiny().eval(), out / "agent")
+    seen: list = []
+    model.pool.register_forward_hook(lambda *called: seen.append(called[2]))
+    model(again.transform(frames))
+    with torch.no_grad():
+        assert torch.equal(seen[0], again.eval()(frames))
+    assert sum(p.abs().sum() for p in adapter_parameters(again.model)) > 0
+
+
+def test_a_torchscript_file(tmp_path, pictures):
+    torch.jit.trace(tiny().eval(), torch.randn(2, 3, 32, 32)).save(str(tmp_path / "net.ts"))
+    own = ["agent=encoder", f"agent.model={tmp_path / 'net.ts'}", "agent.adapters.middle=8"]
+    cfg = config(tmp_path, pictures, *own, "evaluation.enabled=false")
+    out = train.run(cfg)
+    script = torch.jit.load(str(tmp_path / "net.ts"))
+    again = build(cfg.agent)
+    again.load(out / "agent")
+    frames = torch.randint(0, 256, (3, 32, 32, 3), dtype=torch.uint8)
+    attached = plain_adapters.attach(script, out / "agent")
+    with torch.no_grad():
+        assert torch.equal(attached(again.transform(frames)), again.eval()(frames))
+
+
+def test_all_weights_can_be_tuned(tmp_path, pictures):
+    cfg = config(tmp_path, pictures, *TINY, "agent.tune=all")
+    out = train.run(cfg)
+    again = build(cfg.agent)
+    before = again.model.stem.weight.clone()
+    again.load(out / "agent")
+    assert not torch.equal(again.model.stem.weight, before)
+    plain = tiny()
+    held = plain_adapters.parse((out / "agent/model.safetensors").read_bytes())
+    plain.load_state_dict(held)
+    assert torch.equal(plain.stem.weight, again.model.stem.weight)
+
+
+def test_a_depth_encoder_in_a_world(tmp_path):
+    own = ["recipe=encoder", "debug=smoke", *TINY, "+agent.kwargs.channels=1", "agent.sensor=depth"]
+    own += ["agent.transform.mean=[0.0]", "agent.transform.std=[1.0]", "agent.transform.far=10"]
+    own += ["env.size=32", "stages.encoder.recipe.frames=40", f"runs={tmp_path}", "workers=0"]
+    out = train.run(conf.load_config("train", own))
+    assert "Missing data" in (out / "features.md").read_text()
+
+
+def test_the_folder_of_another_encoder_is_refused(tmp_path):
+    made().save(tmp_path)
+    with pytest.raises(ValueError, match="is of an encoder with pool='mean'"):
+        made(pool="flatten").load(tmp_path)
+    (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
+    with pytest.raises(ValueError, match="sensor must not be"):
+        made().load(tmp_path)
+
+
+def test_the_card_names_nothing_that_could_be_run(tmp_path):
+    made().save(tmp_path)
+    text = (tmp_path / folders.CARD).read_text()
+    assert "tests.encoders" not in text and "model" not in folders.card(tmp_path)
+    OmegaConf.create(folders.card(tmp_path))
+
+
+def test_no_import_path_comes_from_a_folder(tmp_path, pictures):
+    """Neither is one written, nor is one read that somebody wrote into it."""
+    cfg = config(tmp_path, pictures, *TINY, "evaluation.enabled=false", "agent.tune=all")
+    out = train.run(cfg) / "agent"
+    assert "tests.encoders" not in (out / "config.yaml").read_text()
+    assert carried(cfg.agent, str(out))["sensor"] == "rgb"
+    written = OmegaConf.load(out / "config.yaml")
+    written.agent.model = "os:system"
+    OmegaConf.save(written, out / "config.yaml")
+    with pytest.raises(ValueError, match="There is no setting of agent 'model'"):
+        carried(cfg.agent, str(out))
+
+
+def test_the_unit_of_the_loss_is_what_differs_between_frames():
+    base = torch.randn(1, 3, 4, 4) * 100  # the same for all frames
+    frames = base + torch.randn(500, 3, 4, 4) * torch.tensor([1.0, 2.0, 0.0])[:, None, None]
+    each = variance(frames, per_channel=True)
+    torch.testing.assert_close(each.flatten()[:2], torch.tensor([1.0, 4.0]), rtol=0.1, atol=0)
+    assert each.shape == (3, 1, 1) and float(each[2]) > 0.01
+    assert float(variance(frames, per_channel=False)) == pytest.approx(5 / 3, rel=0.1)
+    assert variance(torch.randn(9, 5, 7), True).shape == (1, 7)
+    assert variance(torch.randn(9, 7), True).shape == (7,)
+
+
+def test_a_resumed_training_gives_the_same_bits(tmp_path, pictures):
+    class Stop(Exception):
+        pass
+
+    def trained(folder, stop: int | None = None) -> Encoder:
+        recipe = recipe_of(made(), pictures)
+        made_batch = recipe.batch
+
+        def batch(step: int) -> dict:
+            if step == stop:
+                raise Stop
+            return made_batch(step)
+
+        recipe.batch = batch
+        Trainer(recipe, steps=4, folder=folder, save_every=2, precision="fp32").fit()
+        return recipe.agent
+
+    whole = trained(tmp_path / "whole")
+    with pytest.raises(Stop):
+        trained(tmp_path / "parts", stop=3)
+    again = trained(tmp_path / "parts")
+    assert weights_sha(again) == weights_sha(whole)
