@@ -97,9 +97,23 @@ class Dagger(Imitate):
 
     def _keep(self, step: int, number: int, piece: Any) -> None:
         """Write a piece; floating tensors are kept as float16."""
+        if not _is_plain(piece):
+            raise ValueError(
+                f"{type(self.rollouts.agent).__name__}.collect gives a {type(piece).__name__}, and "
+                "kept walks are read as data alone: make it of dicts, lists, texts, numbers and "
+                "tensors, as RecurrentAgent does, or train by recipes/imitate.py."
+            )
         written = io.BytesIO()
         torch.save(_floats(piece, torch.float16), written)
         write_bytes(self._file(step, number), written.getvalue())
+
+
+def _is_plain(data: Any) -> bool:
+    if isinstance(data, dict):
+        return all(isinstance(n, str) and _is_plain(value) for n, value in data.items())
+    if isinstance(data, list):
+        return all(map(_is_plain, data))
+    return isinstance(data, str | int | float | torch.Tensor)
 
 
 def _floats(data: Any, dtype: torch.dtype) -> Any:

@@ -104,7 +104,8 @@ def run(cfg: DictConfig) -> Path:
     """
     check(cfg)
     with Ranks.of_environment() as ranks:
-        return _run(cfg, Path(cfg.folder or default_folder(cfg)), ranks)
+        cfg.folder = cfg.folder or default_folder(cfg)  # what refers to it finds it
+        return _run(cfg, Path(cfg.folder), ranks)
 
 
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:

@@ -76,3 +76,9 @@ def test_only_the_policy_trains(tmp_path):
     made = recipe(tmp_path)
     trained = {name.split(".")[1] for name, p in made.named_parameters() if p.requires_grad}
     assert trained == {"policy"}
+
+
+def test_walks_that_are_no_plain_data_are_refused(tmp_path):
+    made = recipe(tmp_path)
+    with pytest.raises(ValueError, match=r"recipes/imitate\.py"):
+        made.collate(0, [(object(), None)])
