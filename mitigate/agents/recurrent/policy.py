@@ -67,7 +67,8 @@ def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
     reset, update, new = inputs.chunk(3, -1)
     held_reset, held_update, held_new = F.linear(hidden, cell.weight_hh, cell.bias_hh).chunk(3, -1)
     candidate = torch.tanh(new + torch.sigmoid(reset + held_reset) * held_new)
-    return torch.lerp(candidate, hidden, torch.sigmoid(update + held_update))
+    kept = torch.sigmoid(update + held_update)
+    return candidate + kept * (hidden - candidate)
 
 
 class Policy(nn.Module):
