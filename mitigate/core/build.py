@@ -76,7 +76,8 @@ def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -
     """
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
-    found = OmegaConf.merge(node, carried(node, weights))
+    known = OmegaConf.create(OmegaConf.to_container(node, resolve=True))  # open to further settings
+    found = OmegaConf.merge(known, carried(node, weights))
     assert isinstance(found, DictConfig)
     for setting in named:
         found[setting] = node[setting]

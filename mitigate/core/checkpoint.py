@@ -175,13 +175,16 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
 
 
 def load_part(module: nn.Module, name: str, path: str | Path) -> None:
-    """As :func:`load_weights`, of the part ``name`` alone, which is ``module``."""
+    """As :func:`load_weights`, of the part ``name`` alone, which is ``module``; what it has not,
+    such as a layer for a sensor that this agent lacks, is left out."""
     file, prefix = weights_file(path), f"{name}."
     found = {
         k.removeprefix(prefix): v for k, v in load_tensors(file).items() if k.startswith(prefix)
     }
     if not found:
         raise ValueError(f"The weights {file} hold no part {name!r}.")
+    own = {*module.state_dict(), *_borrowed(module)}
+    found = {name: value for name, value in found.items() if name in own}
     _fill(module, found, file)
 
 

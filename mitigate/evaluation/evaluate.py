@@ -147,9 +147,12 @@ def _check_list(note: Path, source: str) -> None:
 
 
 def name_of(weights: str) -> str:
-    """Return the name of weights by their path: of the run, for a run's ``agent`` folder."""
+    """Return the name of weights by their path: of the run, for a run's ``agent`` folder; of the
+    kind of agent, for its shipped base weights (``checkpoints/frontier/base``)."""
     path = Path(weights.removesuffix(".safetensors"))
     while path.name in ("model", "agent", "run"):
+        path = path.parent
+    if path.name == "base" and path.parent.parent.name == "checkpoints":
         path = path.parent
     return path.name or "agent"
 

@@ -127,6 +127,9 @@ def test_a_part_alone_is_read_from_whole_weights(tmp_path):
     part = nn.Linear(2, 3)
     checkpoint.load_part(part, "b", tmp_path)
     assert torch.equal(part.weight, whole["b"].weight)
+    smaller = nn.Linear(2, 3, bias=False)  # what it lacks is left out
+    checkpoint.load_part(smaller, "b", tmp_path)
+    assert torch.equal(smaller.weight, whole["b"].weight)
     with pytest.raises(ValueError, match="no part 'c'"):
         checkpoint.load_part(part, "c", file)
     with pytest.raises(ValueError, match="do not fit"):

@@ -91,6 +91,7 @@ def test_weights_are_named_after_their_folder_or_run():
         "base.safetensors",
     ):
         assert evaluate.name_of(path) == "base"
+    assert evaluate.name_of("checkpoints/frontier/base") == "frontier"
     assert evaluate.name_of("runs/da-s0.6-seed0/agent") == "da-s0.6-seed0"
 
 
