@@ -109,18 +109,19 @@ def run(cfg: DictConfig) -> Path:
 
 
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
-    if ranks.first:
-        say(plan(cfg, folder))
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
     _check_settings(cfg.agent, agent)
+    OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
+    for name, stage in cfg.stages.items():
+        idle = None if stage is None else nothing_to_do(stage, agent)
+        if idle:
+            cfg.stages[name] = None
+            say(f"{name}: left out, {idle}")
+    if ranks.first:
+        say(plan(cfg, folder))
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
         for name, stage in cfg.stages.items():
-            if stage is None:
-                continue
-            idle = nothing_to_do(stage, agent)
-            if idle:
-                say(f"{name}: left out, {idle}")
-            else:
+            if stage is not None:
                 stage.trainer.precision = train_stage(
                     cfg, name, stage, agent, folder / name, workers, ranks
                 )

@@ -9,7 +9,7 @@ from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import conf
-from mitigate.training import train  # noqa: F401  (its schema is part of the config)
+from mitigate.training import train
 from mitigate.training.parts import policy_parts, train_only
 from mitigate.training.stages import nothing_to_do
 from tests.tiny import TinyAgent
@@ -52,3 +52,13 @@ def test_every_kind_of_agent_says_what_it_asks_of_the_world(kind):
     assert cfg.env.world.views == (12 if kind == "topological" else 1)
     assert cfg.evaluation.split == ("val_unseen_ogn" if kind == "frontier" else "val_unseen")
     assert conf.load_config("evaluate", [f"agent={kind}"]).checkpoint == cfg.weights.base
+
+
+def test_a_stage_may_name_one_that_is_left_out(tmp_path, capsys):
+    """The teacher of all stages of ts_distill is named by its first, which learns RGB."""
+    small = ["agent.size=16", "env.size=16", "agent.depth_width=8", "init=null", "trainer.steps=1"]
+    options = ["agent=recurrent", "agent.sensors=[depth]", *small, "evaluation.enabled=false"]
+    cfg = conf.load_config("train", ["recipe=ts_distill", "debug=smoke", "rollouts=1", *options])
+    cfg.runs, cfg.stages.views_rgb.recipe.teacher = str(tmp_path), "start"
+    assert (train.run(cfg) / "episodes").is_dir()
+    assert "views_rgb: left out, RecurrentAgent has no rgb encoder" in capsys.readouterr().out
