@@ -120,13 +120,15 @@ class FolderFrames:
 
     def __init__(
         self,
-        path: str,
+        path: str | None,
         sensor: str = "rgb",
         size: int | None = None,
         held_out: float = 0.2,
         block: int = 50,
         unit: float = 0.001,
     ) -> None:
+        if path is None:
+            raise FileNotFoundError("Name the folder that holds the frames: env.path=FOLDER.")
         self.path, self.sensor, self.size, self.unit = Path(path), sensor, size, unit
         self.held_out, self.block = held_out, block
         if not self.path.is_dir():

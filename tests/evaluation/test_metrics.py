@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mitigate.evaluation.metrics import dtw, ndtw, path_length, prs, rule, spl, success
+from mitigate.evaluation.metrics import Rule, dtw, ndtw, path_length, prs, spl, success
 from mitigate.worlds.episodes import read_episodes, read_ground_truth
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
@@ -62,7 +62,7 @@ def test_success_is_stop_strictly_within_the_threshold(distance, stopped, expect
 
 def test_the_threshold_can_be_scaled_and_is_named():
     assert not success(2.5, True, threshold=2.0)
-    assert rule(2.0) == "vln: STOP and geodesic < 2.0 m"
+    assert str(Rule("vln", 2)) == "vln: STOP and geodesic < 2.0 m"
     with pytest.raises(ValueError, match="NaN"):
         success(math.nan, True)
 
