@@ -20,6 +20,8 @@ def test_every_recipe_trains_two_steps(tmp_path, name):
     cfg = conf.load_config("train", options)
     if "base" in cfg.agent:  # a language model: the real one takes half a minute to load
         cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
+    if cfg.agent.get("encoder", "own") != "own":  # an extra brings it, and it is slow
+        cfg.agent.encoder, cfg.agent.size, cfg.env.size = "own", 64, 64
     if "adapters" in cfg.agent and "model" in cfg.agent:  # an encoder that an extra brings
         cfg.agent = OmegaConf.merge(cfg.agent, TINY_ENCODER)
         cfg.agent.kwargs = {}
