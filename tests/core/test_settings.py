@@ -329,6 +329,8 @@ def test_every_config_of_this_checkout_makes_settings_that_are_read_again(tmp_pa
         cfg = conf.load_config(PRIMARY, [f"recipe={recipe.stem}"])
         if cfg.agent._target_ != hardened.TARGET:
             continue
+        if "encoder" in cfg.agent:
+            cfg.agent.encoder = "own"  # another comes with an extra
         file = tmp_path / hardened.CONFIG
         OmegaConf.save(cfg, file, resolve=True)
         own = hardened.agent_settings(file)
