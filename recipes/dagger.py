@@ -19,10 +19,8 @@ import torch
 from mitigate.core.files import write_bytes
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import Imitate, batch_of
+from mitigate.recipes.imitate import Imitate, batch_of, falling_share
 from mitigate.worlds.world import TrainingEpisodes, World
-
-_DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions
 
 
 class Dagger(Imitate):
@@ -61,8 +59,7 @@ class Dagger(Imitate):
         """As ``Rollouts.jobs``, each with the oracle's share; none where nothing is walked."""
         if step % self.every:
             return []
-        share = max(0.0, 1 - step / (_DECAY * self.steps))
-        expert = self.least + share * (1 - self.least)
+        expert = falling_share(step, self.steps, self.least)
         return [(*job, expert) for job in self.rollouts.jobs(step)]
 
     def work(self, job: tuple) -> Any:

@@ -23,6 +23,8 @@ from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import Rollouts
 from mitigate.worlds.world import TrainingEpisodes, World
 
+DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions (ours)
+
 
 class Imitate(Recipe):
     """Args:
@@ -121,6 +123,12 @@ def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -
     right = target.gather(1, logits.argmax(-1)[:, None])[:, 0] > 0.4 * target.max(1).values
     figures = {"imitation": imitated, **out.losses, "accuracy": right.float().mean(), **out.figures}
     return {"loss": loss, **figures}
+
+
+def falling_share(step: int, steps: int, least: float) -> float:
+    """The expert's share of the decisions at ``step``: it falls from 1 to ``least`` over the first
+    ``DECAY`` of ``steps``."""
+    return least + max(0.0, 1 - step / (DECAY * steps)) * (1 - least)
 
 
 def masked(logits: Tensor, mask: Tensor | None) -> Tensor:

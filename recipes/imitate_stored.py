@@ -13,13 +13,11 @@ import numpy as np
 from torch import Tensor
 
 from mitigate.core.seeding import generator
-from mitigate.recipes.imitate import batch_of, imitation, loss_weights
+from mitigate.recipes.imitate import batch_of, falling_share, imitation, loss_weights
 from mitigate.training.parts import train_only
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import PIECES
 from mitigate.worlds.world import TrainingEpisodes, World
-
-_DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions
 
 
 class ImitateStored(Recipe):
@@ -67,8 +65,7 @@ class ImitateStored(Recipe):
         step, piece, pieces, count = job
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
         episodes = [self.source.draw(rng, (piece, pieces)) for rng in rngs]
-        share = max(0.0, 1 - step / (_DECAY * self.steps))
-        expert_share = self.follow_oracle + share * (1 - self.follow_oracle)
+        expert_share = falling_share(step, self.steps, self.follow_oracle)
         return self.store.collect(episodes, expert_share=expert_share, rngs=rngs)
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:

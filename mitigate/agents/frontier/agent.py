@@ -39,7 +39,6 @@ from mitigate.core.observation import (
     FORWARD,
     FORWARD_METRES,
     LEFT,
-    POSE,
     RGB,
     RIGHT,
     STOP,
@@ -71,7 +70,6 @@ class FrontierAgent(nn.Module):
 
     encoders: ClassVar = {RGB: camera.ENCODERS[RGB]}
     labels: ClassVar = {RGB: camera.LABELS[RGB]}
-    needs = (RGB, DEPTH, POSE)
 
     def __init__(
         self,

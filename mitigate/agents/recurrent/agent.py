@@ -89,11 +89,6 @@ class RecurrentAgent(nn.Module):
     def device(self) -> torch.device:
         return self.policy.places.weight.device
 
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """The entries of observations that it reads."""
-        return self.sensors
-
     def tokens(self, instructions: list[str]) -> Tensor:
         """Instructions to padded token ids int64 [E, L]."""
         encode = self.vocabulary.encode

@@ -8,6 +8,7 @@ import numpy as np
 
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN_DEGREES
 
+MOVES = 5 + 4  # last action (none, or one of four); heading as sine and cosine, metres gone, steps
 _METRES, _STEPS = 5.0, 50.0  # units in which metres gone and steps taken are given
 
 
@@ -28,7 +29,7 @@ class Odometer:
     def moves(self) -> np.ndarray:
         """float32 [9]: which action was the last one (none, or one of four), sine and cosine of the
         turns since the start, metres gone / 5, steps taken / 50."""
-        out = np.zeros(9, np.float32)
+        out = np.zeros(MOVES, np.float32)
         out[1 + self.last] = 1.0
         out[5:] = (
             math.sin(self.heading),

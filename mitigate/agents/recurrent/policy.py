@@ -19,10 +19,10 @@ from mitigate.agents.attention import Layer
 from mitigate.agents.camera import DIRECTIONS
 from mitigate.agents.concepts import CONCEPTS, NEAR, THINGS
 from mitigate.agents.encoders import GRID
+from mitigate.agents.recurrent.odometer import MOVES
 from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
 
 ACTIONS = 4
-MOVES = 5 + 4  # last action (none, or one of four); heading as sine and cosine, metres gone, steps
 KEYS = 64  # width of the attention over words: what it costs in training
 REACH = 7  # words around the last ones that the attention sees at once, odd
 
