@@ -50,6 +50,11 @@ COMMANDS = {
         "train and evaluate every method of the paper's Table II",
         "seeds=[0] jobs=2",
     ),
+    "run": Command(
+        "mitigate.bridge.run",
+        "run an agent of another project, unchanged, under every corruption",
+        "severity=0.6 episodes=100 -- conda run -n etpnav bash run_r2r/main.bash eval 2333",
+    ),
     "corrupt": Command(
         "mitigate.corruptions.frames_command",
         "corrupt a folder of recorded frames",

@@ -59,9 +59,12 @@ class NamedTokenizer:
         self.mask_token: str | None = self._tokenizer.mask_token
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Tokens with the tokenizer's own begin and end marks."""
+        """Tokens with the tokenizer's own begin and end marks, which stay where text is cut."""
         ids = list(self._tokenizer(text)["input_ids"])
-        return _fitted(ids, length, self._tokenizer.pad_token_id or 0)
+        cut = length is not None and len(ids) > length
+        if cut:
+            ids = list(self._tokenizer(text, truncation=True, max_length=length)["input_ids"])
+        return _fitted(ids, length, self._tokenizer.pad_token_id or 0)[0], cut
 
 
 def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:

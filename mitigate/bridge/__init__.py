@@ -1,0 +1,1 @@
+"""Agents of other projects, unchanged, under the suite: ``mitigate run -- COMMAND``."""

@@ -1,0 +1,227 @@
+"""What the cameras of an agent are, where their frames lie in shared memory, and their corruption.
+
+Cameras of one call that are alike (size, field of view, place, level) and 30 degrees apart are one
+panorama; every other camera stands alone and has draws of its own.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
+from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observation
+from mitigate.corruptions.normalised import corrupt_normalised
+
+LARGEST = 1 << 30  # bytes of all frames of a call (ours): 24 cameras of 1080 x 1920 have 5e8
+MOST = 256  # cameras of a call (ours)
+CHANNELS = {RGB: (3,), DEPTH: (1,)}
+_TURNED = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")  # name of a camera that says its yaw
+_LEVEL = 1e-3  # radians: a pitch or roll below it is none
+_DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
+
+
+@dataclass(frozen=True)
+class Camera:
+    """One camera as the agent's process describes it.
+
+    kind: "rgb" or "depth". yaw: in degrees to the left of the agent; pitch and roll count as
+    ``level`` False. sensor: range of depth; normalised: depth is in [0, 1] over it.
+    """
+
+    name: str
+    kind: str
+    shape: tuple[int, ...]
+    dtype: str
+    hfov: float | None
+    place: tuple[float, ...] | None
+    yaw: float
+    level: bool
+    sensor: DepthSensor
+    normalised: bool
+
+    @property
+    def bytes(self) -> int:
+        return math.prod(self.shape) * np.dtype(self.dtype).itemsize
+
+    def alike(self) -> tuple:
+        """What cameras of one panorama have in common."""
+        return (self.kind, self.shape, self.dtype, self.hfov, self.place, self.sensor)
+
+
+def read_camera(told: Mapping[str, Any], sensor: DepthSensor) -> Camera:
+    """Return the camera that a message describes; ``sensor``: of depth whose range is not told.
+
+    Raises ValueError for what cannot be corrupted.
+    """
+    name, kind = str(told.get("name")), told.get("type")
+    if kind not in CHANNELS:
+        raise ValueError(f"The camera {name!r} is of the kind {kind!r}, not rgb or depth.")
+    shape = tuple(told.get("shape") or ())
+    fits = len(shape) == 3 and shape[2] in CHANNELS[kind] or len(shape) == 2 and kind == DEPTH
+    if not fits or not all(isinstance(n, int) and 0 < n < 1 << 16 for n in shape):
+        raise ValueError(
+            f"The camera {name!r} gives {kind} of the shape {list(shape)}; it must be "
+            f"{'[H, W, 3]' if kind == RGB else '[H, W, 1] or [H, W]'}."
+        )
+    if told.get("dtype") not in _DTYPES[kind]:
+        raise ValueError(
+            f"The camera {name!r} gives {kind} as {told.get('dtype')}; it must be "
+            f"{' or '.join(_DTYPES[kind])}."
+        )
+    pitch, yaw, roll = _turned(told.get("orientation"), name)
+    low, high = told.get("min_depth"), told.get("max_depth")
+    if low is not None and high is not None:
+        sensor = DepthSensor(float(low), float(high), sensor.missing)
+    return Camera(
+        name,
+        kind,
+        shape,
+        told["dtype"],
+        _number(told.get("hfov")),
+        None if told.get("position") is None else tuple(map(float, told["position"])),
+        yaw,
+        abs(pitch) < _LEVEL and abs(roll) < _LEVEL,
+        sensor,
+        kind == DEPTH and bool(told.get("normalize_depth")),
+    )
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(value)
+
+
+def _turned(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
+    """Pitch and roll in radians, yaw in degrees to the left; by the name where it is not told."""
+    if orientation is not None and len(orientation) == 3:
+        pitch, yaw, roll = map(float, orientation)
+        return pitch, round(math.degrees(yaw), 3) % 360, roll
+    by_name = _TURNED.fullmatch(name)
+    return 0.0, float(by_name[1]) % 360 if by_name else 0.0, 0.0
+
+
+@dataclass(frozen=True)
+class Group:
+    """Cameras that are corrupted as one: ``views`` is the view of each, see
+    ``core/observation.py``; own: part of the keys, empty for the panorama that sees most."""
+
+    cameras: tuple[Camera, ...]
+    views: tuple[int, ...]
+    own: str
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Of the array of all views; those without a camera are zero."""
+        return (1 + max(self.views), *self.cameras[0].shape)
+
+
+class Rig:
+    """All cameras of a call.
+
+    Args: told: as the agent's process describes them. missing: metres that a hole of missing data
+    reads. turn: where a growing yaw turns, "left" (Habitat) or "right". Raises ValueError for
+    cameras that cannot be corrupted, and for too many.
+    """
+
+    def __init__(
+        self, told: Sequence[Mapping[str, Any]], missing: float = 0.0, turn: str = "left"
+    ) -> None:
+        if len(told) > MOST:
+            raise ValueError(f"{len(told)} cameras are more than {MOST}.")
+        self.cameras = [read_camera(t, DepthSensor(missing=missing)) for t in told]
+        names = [camera.name for camera in self.cameras]
+        if len(set(names)) < len(names):
+            raise ValueError(f"Two cameras have one name: {', '.join(names)}.")
+        self.groups = [g for kind in CHANNELS for g in _groups(self.cameras, kind, turn)]
+
+    def lay_out(self, kinds: Sequence[str]) -> tuple[dict[str, int], int]:
+        """Return where the frame of each camera of these kinds begins in memory, and the size of
+        all. Raises ValueError for more than ``LARGEST``."""
+        offsets, at = {}, 0
+        for group in self.groups:
+            if group.cameras[0].kind in kinds:
+                step = group.cameras[0].bytes
+                offsets |= {
+                    camera.name: at + view * step
+                    for camera, view in zip(group.cameras, group.views, strict=True)
+                }
+                at += -(-step * group.shape[0] // 64) * 64
+        if at > LARGEST:
+            raise ValueError(f"The frames of a call have {at} bytes, more than {LARGEST}.")
+        return offsets, at
+
+    def corrupt(
+        self,
+        memory: Any,
+        offsets: Mapping[str, int],
+        corruption: Corruption,
+        key: Key,
+        heading: float | None,
+    ) -> list[str]:
+        """Corrupt the frames in ``memory``, in place; return the names of the cameras concerned.
+
+        Raises ValueError if no camera is of the corruption's modality, and as ``corrupt`` does.
+        """
+        if corruption.modality not in CHANNELS:
+            return []
+        groups = [g for g in self.groups if g.cameras[0].kind == corruption.modality]
+        if not groups:
+            raise ValueError(
+                f"{corruption.name!r} corrupts {corruption.modality}, but the agent has no such "
+                f"camera (it has {', '.join(c.name for c in self.cameras) or 'none'}). Leave it "
+                "out: suite=rgb, or conditions=[clean,...]."
+            )
+        for group in groups:
+            views = _views(memory, offsets, group)
+            views[...] = corrupted(group, views, corruption, key, heading)
+        return [camera.name for group in groups for camera in group.cameras]
+
+
+def corrupted(
+    group: Group, views: np.ndarray, corruption: Corruption, key: Key, heading: float | None
+) -> np.ndarray:
+    """Return the views of a group as the corruption leaves them."""
+    first = group.cameras[0]
+    frames: dict[str, Any] = {first.kind: views}
+    if first.kind == DEPTH:
+        frames = {DEPTH: views.astype(np.float32, copy=False)}
+    if heading is not None:
+        frames[POSE] = np.array([0.0, 0.0, heading])
+    if group.own:
+        key = Key(key.seed, f"{key.episode}|{group.own}", key.frame)
+    by = corrupt_normalised if first.normalised else corrupt_observation
+    return by(frames, corruption, key, first.sensor)[first.kind]
+
+
+def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:
+    """[views, ...] in ``memory``: the frames of a group."""
+    first = group.cameras[0]
+    at = offsets[first.name] - group.views[0] * first.bytes
+    count = math.prod(group.shape)
+    return np.frombuffer(memory, first.dtype, count, at).reshape(group.shape)
+
+
+def _groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
+    """The groups of a kind of camera, the one that sees most first."""
+    rings: dict[tuple, dict[int, Camera]] = {}
+    alone = []
+    for camera in (c for c in cameras if c.kind == kind):
+        steps = camera.yaw / VIEW_STEP_DEGREES
+        view = round(steps if turn == "right" else -steps) % VIEWS
+        ring = rings.setdefault(camera.alike(), {})
+        if camera.level and abs(steps - round(steps)) < _LEVEL and view not in ring:
+            ring[view] = camera
+        else:
+            alone.append(camera)
+    found = [(tuple(ring.values()), tuple(ring)) for ring in rings.values() if ring]
+    found += [((camera,), (0,)) for camera in alone]
+    found.sort(key=lambda group: -len(group[0]))
+    return [
+        Group(cameras, views, "" if number == 0 else cameras[0].name)
+        for number, (cameras, views) in enumerate(found)
+    ]

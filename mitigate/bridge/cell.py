@@ -1,0 +1,271 @@
+"""One condition of a run: the user's command under one corruption, in a folder of its own."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shlex
+import signal
+import subprocess
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from omegaconf import DictConfig
+
+from mitigate.bridge import results
+from mitigate.bridge.results import Told
+from mitigate.bridge.server import EVENTS, Condition, Listener
+from mitigate.bridge.subset import Subset
+from mitigate.bridge.words import Words
+from mitigate.core.files import atomic_text
+from mitigate.corruptions import Corruption
+from mitigate.evaluation.rows import Row
+
+DONE, LOG = "done.json", "output.txt"
+TAIL = 12  # lines of the command's output that an error repeats
+
+
+@dataclass
+class Cell:
+    """The command under one condition. ``name`` is the condition's; settings: what its result
+    depends on, by which a finished one is known again."""
+
+    name: str
+    corruption: Corruption
+    repeat: int
+    command: tuple[str, ...]
+    folder: Path
+    condition: Condition
+    label: dict[str, Any]
+    rule: str | None
+    settings: dict[str, Any]
+    patience: float = 25.0
+    listener: Listener | None = None
+    process: subprocess.Popen | None = None
+
+    @property
+    def log(self) -> Path:
+        return self.folder / LOG
+
+    def is_done(self) -> bool:
+        """Whether it ran to its end before. Raises ValueError if it did with other settings."""
+        file = self.folder / DONE
+        if not file.is_file():
+            return False
+        held = json.loads(file.read_text("utf-8"))
+        other = [n for n, value in self.settings.items() if held.get(n) != value]
+        if other:
+            raise ValueError(
+                f"{self.folder} was run with another {', '.join(other)} ({held.get(other[0])!r}, "
+                f"now {self.settings[other[0]]!r}). Name another folder (out=...), or delete it."
+            )
+        return True
+
+    def start(self) -> None:
+        """Start the server and the command; what an earlier, unfinished run told is put aside."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if (self.folder / EVENTS).is_file():
+            os.replace(self.folder / EVENTS, self.folder / f"{EVENTS}.unfinished")
+        self.listener = Listener(self.condition, self.folder, self.patience).__enter__()
+        words = {
+            "{condition}": self.name,
+            "{severity}": f"{self.corruption.severity:g}",
+            "{seed}": str(self.label["seed"]),
+            "{out}": str(self.folder.resolve()),
+        }
+        filled = [_filled(word, words) for word in self.command]
+        with open(self.log, "w", encoding="utf-8") as log:
+            try:
+                self.process = subprocess.Popen(
+                    filled,
+                    stdin=subprocess.DEVNULL,
+                    stdout=log,
+                    stderr=subprocess.STDOUT,
+                    env={**os.environ, **self.listener.environment()},
+                    start_new_session=True,
+                )
+            except OSError as error:
+                self.kill()
+                raise ValueError(f"{filled[0]} cannot be started: {error.strerror}.") from error
+
+    def poll(self) -> str | None:
+        """Return None while it runs, then what went wrong, empty if nothing did."""
+        assert self.process is not None and self.listener is not None
+        status = self.process.poll()
+        if status is None:
+            problem = self._stuck()
+            if problem is None:
+                return None
+            self.kill()
+            return problem
+        self.kill()
+        problem = self._problem(status)
+        if not problem:
+            with atomic_text(self.folder / DONE) as file:
+                json.dump({**self.settings, "episodes_told": len(self.told().ends)}, file)
+        return problem
+
+    def kill(self) -> None:
+        """End the command with all of its processes, and the server."""
+        if self.process is not None:
+            with suppress(ProcessLookupError):
+                os.killpg(self.process.pid, signal.SIGTERM)
+            with suppress(subprocess.TimeoutExpired):
+                self.process.wait(3.0)
+            with suppress(ProcessLookupError):
+                os.killpg(self.process.pid, signal.SIGKILL)
+            self.process.wait()
+        if self.listener is not None:
+            self.listener.__exit__()
+            self.listener = None
+
+    def _stuck(self) -> str | None:
+        """Why a running command will not come to its end, None if it may."""
+        assert self.listener is not None
+        if not self.listener.is_alive():
+            return "the server of frames ended; the command was stopped. Run again."
+        events = self.folder / EVENTS
+        if not events.is_file():
+            return None
+        silent = time.time() - events.stat().st_mtime
+        if silent < self.patience:
+            return None
+        told = self.told()
+        if told.refused:
+            return f"{told.refused[0]}"
+        if told.dropped:
+            return (
+                f"a process of the command ended in the middle of episode {told.dropped[0]}, and "
+                f"nothing was heard of the others for {silent:.0f} s; the command was stopped. "
+                f"The end of its output:\n{self.tail()}"
+            )
+        return None
+
+    def _problem(self, status: int) -> str:
+        told = self.told()
+        if told.refused:
+            return told.refused[0]
+        if status:
+            return f"the command ended with status {status}. The end of {self.log}:\n{self.tail()}"
+        if not told.hellos:
+            return (
+                "the command ended, but no Python process of it loaded the hook. Does a script "
+                "replace PYTHONPATH (let it append), does it run python with -E, -I or -S, or in a "
+                f"container (docs/bridge.md)? The end of {self.log}:\n{self.tail()}"
+            )
+        if not told.ends:
+            return (
+                "the command ended without an episode. Did it find results of an earlier run? Let "
+                "it write to a folder of each condition: {out} or {condition} in the command "
+                f"stands for one. The end of {self.log}:\n{self.tail()}"
+            )
+        return ""
+
+    def tail(self) -> str:
+        """The last lines of the command's output."""
+        lines = self.log.read_text("utf-8", "replace").splitlines() if self.log.is_file() else []
+        return "\n".join(f"  | {line}" for line in lines[-TAIL:])
+
+    def told(self) -> Told:
+        """What its processes told so far."""
+        return results.read(self.folder)
+
+    def rows(self) -> list[Row]:
+        """The result rows."""
+        return results.rows(self.told(), self.corruption, self.label, self.rule)
+
+    def summary(self) -> str:
+        """How far it is: "41 episodes, success 58.5"."""
+        told, found = self.told(), self.rows()
+        own = [row["success"] for row in found if row["rule"] == found[0]["rule"]]
+        rate = f", success {100 * sum(own) / len(own):.1f} ({found[0]['rule']})" if own else ""
+        left = f", {len(told.dropped)} left in the middle" if told.dropped else ""
+        twice = f", {told.again} ended twice (the first counts)" if told.again else ""
+        return f"{len(told.ends)} episodes{rate}{left}{twice}"
+
+
+def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
+    """All conditions of a run, clean first, then repeated clean runs."""
+    from mitigate.evaluation.evaluate import conditions
+
+    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
+    if cfg.corruption is not None:
+        names = [cfg.corruption]
+    found = conditions(
+        ["clean", *(n for n in names if n != "clean")], cfg.severity, cfg.severity_depth
+    )
+    words = _words(cfg, out)
+    keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
+    wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
+    text = shlex.join(command)
+    sha = hashlib.sha256(text.encode()).hexdigest()[:12]
+    made = []
+    for corruption, repeat in wanted:
+        own = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
+        own += f"-again{repeat}" if repeat else ""
+        settings = {
+            "command": text,
+            "seed": cfg.seed,
+            "episodes": cfg.episodes,
+            "turn": cfg.turn,
+            "safeguard": cfg.safeguard,
+            "tokenizer": cfg.tokenizer,
+            "missing": cfg.missing,
+        }
+        condition = Condition(corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep=keep)
+        label = {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
+        if cfg.safeguard != "none":
+            from mitigate.safeguard.guard import label as front
+
+            label["name"] = f"{name}+{front(cfg.safeguard)}"
+        folder = out / "conditions" / own
+        made.append(
+            Cell(
+                own,
+                corruption,
+                repeat,
+                tuple(command),
+                folder,
+                condition,
+                label,
+                cfg.rule,
+                settings,
+                cfg.patience,
+            )
+        )
+    return made
+
+
+def _words(cfg: DictConfig, out: Path) -> Words:
+    from mitigate.bridge.words import tokenizer_of
+    from mitigate.safeguard.guard import open_safeguard
+
+    guard = open_safeguard(cfg.safeguard, log=out / "safeguard.jsonl")
+    return Words(
+        None if cfg.tokenizer is None else tokenizer_of(cfg.tokenizer),
+        None if guard is None else lambda text: guard.canonicalise(text).text,
+        cfg.token_length,
+    )
+
+
+def _filled(word: str, values: dict[str, str]) -> str:
+    for name, value in values.items():
+        word = word.replace(name, value)
+    return word
+
+
+def applicable(corruption: Corruption, clean: Told) -> str:
+    """Return why a corruption cannot reach the agent of a clean run; empty if it can."""
+    kinds = {camera["type"] for camera in clean.cameras}
+    if corruption.modality in ("rgb", "depth") and corruption.modality not in kinds:
+        return f"the agent has no {corruption.modality} camera"
+    if corruption.name == "white_box":
+        return "an agent's system prompt does not pass the bridge"
+    if corruption.modality == "instruction" and not clean.first.get("text"):
+        return "its goals are categories, not instructions"
+    return ""

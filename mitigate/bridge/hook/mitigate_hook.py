@@ -1,0 +1,609 @@
+"""The agent's side of the bridge: corrupts what an unchanged program sees, in its own process.
+
+``mitigate run -- COMMAND`` puts this folder in front of PYTHONPATH, so that every Python process of
+the command loads this file (``sitecustomize.py``), however it was started. Where one imports
+habitat-lab (0.1.5 to 0.3), habitat-sim alone or WMNav, a few of their methods are wrapped: frames
+go to the server through memory that both map, instructions through a socket, and come back
+corrupted. A loop that is not Habitat's calls ``connect``, ``corrupt`` and ``finish`` itself:
+
+    import mitigate_hook
+    episode = mitigate_hook.connect("17", scene="x.glb", instruction="Go to the door.")
+    hear(episode.instruction)
+    act_on(episode.corrupt({"rgb": rgb, "depth": depth}))  # at each step
+    episode.finish(success=True, spl=0.8)
+
+One file for Python 3.6 to 3.13 that needs the standard library and numpy only. If the server
+refuses, dies or is late, the process ends with one paragraph: no agent walks on with clean frames.
+"""
+
+import functools
+import importlib.machinery
+import importlib.util
+import json
+import math
+import mmap
+import os
+import socket
+import struct
+import sys
+import threading
+
+np = None  # numpy, once it is needed: every Python process loads this file, and some have none
+PROTOCOL = 1
+ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
+HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
+MAGIC = b"mtg1"
+LARGEST = 1 << 24  # bytes of a message: an episode with all view points of its goals has 1e6
+STATUS = 97  # what a process that was stopped exits with
+COLOR, DEPTH = "rgb", "depth"  # kinds of camera
+_thread = threading.local()  # .clean: calls whose frames are not the agent's; .walk: of connect
+
+
+# messages ---------------------------------------------------------------------------------------
+
+
+def send(channel, message):
+    """Send a dict of plain data. Raises ValueError if it is too large."""
+    body = json.dumps(message).encode("utf-8")
+    if len(body) > LARGEST:
+        raise ValueError(f"a message of {len(body)} bytes is more than {LARGEST}")
+    channel.sendall(HEADER.pack(MAGIC, len(body)) + body)
+
+
+def receive(channel):
+    """Return the next message, None at the end. Raises ValueError for what is no message."""
+    head = _read(channel, HEADER.size)
+    if head is None:
+        return None
+    magic, size = HEADER.unpack(head)
+    if magic != MAGIC or size > LARGEST:
+        raise ValueError("the other side does not speak this protocol")
+    body = _read(channel, size)
+    if body is None:
+        return None
+    message = json.loads(body.decode("utf-8"))
+    if not isinstance(message, dict):
+        raise ValueError("a message is no JSON object")
+    return message
+
+
+def _read(channel, size):
+    parts, left = [], size
+    while left:
+        part = channel.recv(min(left, 1 << 16))
+        if not part:
+            return None
+        parts.append(part)
+        left -= len(part)
+    return b"".join(parts)
+
+
+def stop(problem):
+    """End this process at once, with one paragraph: an exception might be caught."""
+    sys.stderr.write(
+        f"\nmitigate: {problem} This process ({os.getpid()}) ends here, because it would go on with "
+        "frames that are not corrupted. What was measured so far is kept; see `mitigate run`'s own "
+        "output.\n"
+    )
+    sys.stderr.flush()
+    os._exit(STATUS)
+
+
+class Channel:
+    """A connection to the server, of one environment. All of its failures end in ``stop``."""
+
+    def __init__(self):
+        _load_numpy()
+        self.pid, self.memory, self.layout = os.getpid(), None, {}
+        self.patience = float(os.environ.get(PATIENCE, "25"))
+        try:
+            self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            self.socket.settimeout(self.patience)
+            self.socket.connect(os.environ[ADDRESS])
+        except (OSError, KeyError) as error:
+            stop(f"the server of `mitigate run` cannot be reached ({error}).")
+        self.ask("hello", protocol=PROTOCOL, token=os.environ.get(TOKEN, ""), **_versions())
+
+    def ask(self, kind, **fields):
+        """Send a message and return the answer."""
+        fields["kind"] = kind
+        try:
+            send(self.socket, fields)
+            answer = receive(self.socket)
+        except TimeoutError:
+            stop(f"the server did not answer within {self.patience:g} s.")
+        except (OSError, ValueError) as error:
+            stop(f"the connection to the server broke ({error}).")
+        if answer is None:
+            stop("the server of `mitigate run` is gone.")
+        if "error" in answer:
+            stop(answer["error"])
+        return answer
+
+    def agree(self, cameras):
+        """Tell the server what the cameras are, and map the memory that it gives."""
+        answer = self.ask("spec", cameras=cameras)
+        self.layout = {name: int(at) for name, at in answer["offsets"].items()}
+        self.memory = None
+        if not self.layout:
+            return
+        try:
+            descriptor = os.open(answer["file"], os.O_RDWR)
+            try:
+                self.memory = mmap.mmap(descriptor, int(answer["size"]))
+            finally:
+                os.close(descriptor)
+        except (OSError, ValueError) as error:
+            stop(
+                "the memory for frames, {}, cannot be mapped ({}); a container needs the host's "
+                "/dev/shm (docker: --ipc=host -v /dev/shm:/dev/shm).".format(answer["file"], error)
+            )
+
+    def place(self, camera):
+        """Return the array in the mapped memory where the frame of a camera lies."""
+        count, at = int(np.prod(camera["shape"])), self.layout[camera["name"]]
+        return np.frombuffer(self.memory, camera["dtype"], count, at).reshape(camera["shape"])
+
+
+def _load_numpy():
+    global np
+    import numpy as np
+
+
+def _versions():
+    names = ("habitat", "habitat_sim", "torch")
+    found = {n: str(getattr(sys.modules.get(n), "__version__", "")) for n in names}
+    return {"pid": os.getpid(), "python": sys.version.split()[0], "numpy": np.__version__, **found}
+
+
+# one environment --------------------------------------------------------------------------------
+
+
+class Walk:
+    """One environment: its connection, the episode that is on and how it goes."""
+
+    def __init__(self):
+        self.channel = None
+        self.cameras = None  # what the server was told of them
+        self.sim = self.task = self.episode = None
+        self.begun = False
+        self.put_back = None  # sets the words of the last episode as they were
+        self.clear()
+
+    def clear(self):
+        """Forget how the last episode went."""
+        self.calls = self.steps = 0
+        self.path, self.start = [], None
+
+    def connected(self):
+        """Return the channel; a forked process opens one of its own."""
+        if self.channel is None or self.channel.pid != os.getpid():
+            self.channel, self.cameras = Channel(), None
+        return self.channel
+
+    def begin(self, scene, name, **said):
+        """Begin an episode; the answer holds its words as the agent is to hear them."""
+        self.clear()
+        answer = self.connected().ask("episode", scene=str(scene), id=str(name), **said)
+        self.begun = True
+        return answer
+
+    def corrupt(self, observations, cameras, heading=None):
+        """Replace the frames of ``cameras`` in a dict of observations, in its order.
+
+        ``cameras``: dicts with name, type ("rgb" or "depth") and what else the server is to know
+        of them (``_of_config``).
+        """
+        channel = self.connected()
+        told = [dict(c, **_array(observations[c["name"]], c["name"])) for c in cameras]
+        if told != self.cameras:
+            channel.agree(told)
+            self.cameras = told
+        for camera in told:
+            if camera["name"] in channel.layout:
+                frame = observations[camera["name"]]
+                channel.place(camera)[...] = frame[..., :3] if camera["alpha"] else frame
+        answer = channel.ask("frame", call=self.calls, heading=heading, position=self.position())
+        self.calls += 1
+        for camera in told:
+            if camera["name"] in answer["changed"]:
+                before = observations[camera["name"]]
+                frame = np.empty(before.shape, before.dtype)  # owned, writable, contiguous
+                if camera["alpha"]:
+                    frame[..., 3], frame[..., :3] = before[..., 3], channel.place(camera)
+                else:
+                    frame[...] = channel.place(camera)
+                observations[camera["name"]] = frame
+        return observations
+
+    def position(self):
+        """Return where the agent is, [x, y, z], None if nobody knows."""
+        state = None if self.sim is None else self.sim.get_agent_state()
+        return None if state is None else [float(x) for x in state.position]
+
+    def moved(self):
+        """Count a low-level step, and note where it led."""
+        self.steps += 1
+        here = self.position()
+        if here is not None and (not self.path or here != self.path[-1]):
+            self.path.append(here)
+
+    def end(self, metrics):
+        """Tell how the episode went, once; one without a step did not take place."""
+        if not self.begun:
+            return
+        self.begun = False
+        if self.steps or (self.sim is None and self.calls):
+            said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
+            self.channel.ask("end", path=self.path, **said, **self._distances())
+
+    def _distances(self):
+        """Geodesic metres to the goals from the start and from here, and whether it said STOP."""
+        if self.sim is None or self.episode is None:
+            return {}
+        stopped = getattr(self.task, "is_stop_called", None)
+        return {
+            "start_distance": self.start,
+            "distance": _distance(self.sim, self.path[-1] if self.path else None, self.episode),
+            "stopped": None if stopped is None else bool(stopped),
+        }
+
+
+def _array(frame, name):
+    """Return what the server must know of a frame."""
+    if not isinstance(frame, np.ndarray):
+        stop(
+            f"the camera {name} gives a {type(frame).__name__}, and only numpy arrays can be "
+            "corrupted: set Habitat's "
+            "GPU_GPU (gpu_gpu) to False."
+        )
+    alpha = frame.dtype == np.uint8 and frame.ndim == 3 and frame.shape[-1] == 4
+    shape = [*frame.shape[:-1], 3] if alpha else list(frame.shape)
+    return {"shape": shape, "dtype": frame.dtype.name, "alpha": alpha}
+
+
+def _numbers(metrics, prefix=""):
+    """Return the finite numbers of nested dicts, by dotted name."""
+    found = {}
+    for name, value in dict(metrics or {}).items():
+        if isinstance(value, dict):
+            found.update(_numbers(value, f"{prefix}{name}."))
+            continue
+        known = isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
+        if known and math.isfinite(float(value)):
+            found[prefix + str(name)] = float(value)
+    return found
+
+
+def _distance(sim, position, episode):
+    """Return the geodesic metres to the nearest goal, or place to see it from; None if unknown."""
+    goals = getattr(episode, "goals", None) or []
+    views = [p.agent_state.position for g in goals for p in getattr(g, "view_points", None) or []]
+    ends = [list(map(float, end)) for end in views or [g.position for g in goals]]
+    if not ends or position is None:
+        return None
+    metres = float(sim.geodesic_distance(position, ends))
+    return metres if math.isfinite(metres) else None
+
+
+# habitat-lab ------------------------------------------------------------------------------------
+
+
+def _of_config(sensor):
+    """Return what the server must know of a lab sensor; names are upper case before 0.2.3."""
+    config, known = getattr(sensor, "config", None), {}
+    for option in ("hfov", "min_depth", "max_depth", "normalize_depth", "position", "orientation"):
+        value = getattr(config, option, getattr(config, option.upper(), None))
+        if isinstance(value, (bool, int, float)) or value is None:
+            known[option] = value
+        else:
+            known[option] = [float(x) for x in value]
+    kind = str(getattr(sensor, "sensor_type", "")).rpartition(".")[2].lower()
+    known.update(name=sensor.uuid, type=COLOR if kind == "color" else kind)
+    return known
+
+
+def _heading(state):
+    """Return the agent's heading in radians, counter-clockwise, of its quaternion."""
+    rotation = state.rotation
+    if hasattr(rotation, "imag"):  # numpy-quaternion
+        return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
+    x, y, z, w = rotation
+    return 2 * math.atan2(float(y), float(w))
+
+
+_walks = {}  # id of a simulator's sensor suite, or of a simulator: (it, its walk)
+
+
+def _walk_of(owner):
+    """Return the walk of a sensor suite or simulator."""
+    if id(owner) not in _walks:
+        _walks[id(owner)] = (owner, Walk())  # keeps it, so that no other gets its id
+    return _walks[id(owner)][1]
+
+
+class clean:
+    """Frames taken inside are not what the agent acts on: goal pictures, videos."""
+
+    def __enter__(self):
+        _thread.clean = getattr(_thread, "clean", 0) + 1
+
+    def __exit__(self, *_):
+        _thread.clean -= 1
+
+
+def _is_clean():
+    return getattr(_thread, "clean", 0) > 0
+
+
+def _get_observations(original, suite, *args, **kwargs):
+    """``SensorSuite.get_observations``: of the simulator (frames alone given) or of the task."""
+    if kwargs:
+        with clean():  # a task's sensor may render its goal picture
+            return original(suite, *args, **kwargs)
+    observations = original(suite, *args, **kwargs)
+    cameras = [_of_config(s) for s in suite.sensors.values() if s.uuid in observations]
+    cameras = [camera for camera in cameras if camera["type"] in (COLOR, DEPTH)]
+    if _is_clean() or not cameras:
+        return observations
+    walk = _walk_of(suite)
+    heading = None if walk.sim is None else _heading(walk.sim.get_agent_state())
+    return walk.corrupt(observations, cameras, heading)
+
+
+def _task_reset(original, task, episode, *args, **kwargs):
+    """``EmbodiedTask.reset``: the last episode is over, and the words of the next are corrupted."""
+    sim = task._sim
+    walk = _walk_of(sim.sensor_suite)
+    walk.end(task.measurements.get_metrics() if walk.begun else None)
+    if walk.put_back is not None:
+        walk.put_back()
+    walk.sim, walk.task, walk.episode = sim, task, episode
+    words = getattr(episode, "instruction", None)
+    said = {
+        "text": getattr(words, "instruction_text", None),
+        "tokens": _plain(getattr(words, "instruction_tokens", None)),
+        "language": getattr(words, "language", None),
+        "category": getattr(episode, "object_category", None),
+    }
+    answer = walk.begin(episode.scene_id, episode.episode_id, **said)
+    if words is not None and answer.get("text") is not None:
+        walk.put_back = _say(words, answer)
+    observations = original(task, episode, *args, **kwargs)
+    walk.start = _distance(sim, walk.position(), episode)
+    walk.path = [place for place in [walk.position()] if place is not None]
+    return observations
+
+
+def _say(words, answer):
+    """Put the answer's words into an episode; return what puts back those that were there."""
+    before = {"text": words.instruction_text, "tokens": getattr(words, "instruction_tokens", None)}
+
+    def put(text, tokens):
+        words.instruction_text = text
+        if before["tokens"] is not None:
+            words.instruction_tokens = tokens
+
+    put(answer["text"], answer["tokens"])
+    return functools.partial(put, **before)
+
+
+def _plain(tokens):
+    return None if tokens is None else [t if isinstance(t, str) else int(t) for t in tokens]
+
+
+def _update_measures(original, measurements, *args, **kwargs):
+    """``Measurements.update_measures`` is called once for each low-level step."""
+    result = original(measurements, *args, **kwargs)
+    sim = getattr(kwargs.get("task"), "_sim", None)
+    if sim is not None:
+        _walk_of(sim.sensor_suite).moved()
+    return result
+
+
+def _env_init(original, env, config, dataset=None, *args, **kwargs):
+    """``Env.__init__``: of a dataset that it is given, some episodes may be left out."""
+    return original(env, config, _some(dataset), *args, **kwargs)
+
+
+def _make_dataset(original, *args, **kwargs):
+    """The dataset that ``Env.__init__`` makes where it is given none."""
+    return _some(original(*args, **kwargs))
+
+
+def _some(dataset):
+    """Leave out episodes that the server does not ask for."""
+    if dataset is not None and len(dataset.episodes):
+        scenes = [str(e.scene_id).rpartition("/")[2] for e in dataset.episodes]
+        keys = [f"{s}/{e.episode_id}" for s, e in zip(scenes, dataset.episodes)]
+        keep = Channel().ask("dataset", keys=keys)["keep"]
+        if keep is not None:
+            dataset.episodes = [dataset.episodes[i] for i in keep]
+    return dataset
+
+
+def _env_reset(original, env, *args, **kwargs):
+    """``Env.reset`` loads the next scene, so the last episode is measured before."""
+    _end(env)
+    return original(env, *args, **kwargs)
+
+
+def _env_step(original, env, *args, **kwargs):
+    observations = original(env, *args, **kwargs)
+    if env.episode_over:
+        _end(env)
+    return observations
+
+
+def _env_close(original, env, *args, **kwargs):
+    _end(env)
+    return original(env, *args, **kwargs)
+
+
+def _end(env):
+    suite = getattr(env.sim, "sensor_suite", None)
+    walk = None if suite is None else _walk_of(suite)
+    if walk is not None and walk.begun:
+        walk.end(env.get_metrics())
+
+
+def _env_render(original, env, *args, **kwargs):
+    with clean():
+        return original(env, *args, **kwargs)
+
+
+# habitat-sim without the lab --------------------------------------------------------------------
+
+
+def _sensor_observations(original, sim, *args, **kwargs):
+    """``Simulator.get_sensor_observations``; the lab's simulators go through their suite."""
+    observations = original(sim, *args, **kwargs)
+    if _is_clean() or hasattr(sim, "sensor_suite"):
+        return observations
+    agent = getattr(sim, "_default_agent_id", 0)
+    wanted = args[0] if args else kwargs.get("agent_ids", agent)
+    if isinstance(wanted, int):
+        return _of_agent(sim, observations) if wanted == agent else observations
+    if agent in wanted:  # of several agents, by number; the others are no eyes of the agent
+        observations[agent] = _of_agent(sim, observations[agent])
+    return observations
+
+
+def _of_agent(sim, observations):
+    walk = getattr(_thread, "walk", None)
+    if walk is None:
+        stop(
+            "habitat-sim is used here without habitat-lab, and nobody said which episode it is: "
+            "call mitigate_hook.connect(episode, scene=...) before its first frame."
+        )
+    cameras = [c for c in _of_specifications(sim) if c["name"] in observations]
+    return walk.corrupt(observations, cameras, _heading(sim.get_agent(0).get_state()))
+
+
+def _of_specifications(sim):
+    """Return what the server must know of the cameras of habitat-sim's first agent."""
+    found = []
+    for spec in sim.config.agents[getattr(sim, "_default_agent_id", 0)].sensor_specifications:
+        kind = str(spec.sensor_type).rpartition(".")[2].lower()
+        if kind in ("color", "depth"):
+            camera = {"name": spec.uuid, "type": COLOR if kind == "color" else DEPTH}
+            camera.update(hfov=float(getattr(spec, "hfov", 90)), normalize_depth=False)
+            for option in ("position", "orientation"):
+                camera[option] = [float(x) for x in getattr(spec, option)]
+            found.append(camera)
+    return found
+
+
+# a loop of one's own ----------------------------------------------------------------------------
+
+
+class Episode:
+    """One episode of a loop that is not Habitat's; ``instruction`` is what the agent is told."""
+
+    def __init__(self, walk, name, scene, instruction):
+        self._walk = walk
+        answer = walk.begin(scene, name, text=instruction)
+        self.instruction = answer.get("text", instruction)
+
+    def corrupt(self, observations, heading=None, cameras=None):
+        """Return a dict with the frames of ``rgb*`` (uint8) and ``depth*`` (float32 metres)
+        corrupted. cameras: {name: {"type": "depth", "min_depth": 0.5, "max_depth": 5.0,
+        "normalize_depth": True, "hfov": 79, "orientation": [0, 0.5, 0]}} for other names and for
+        depth that is not metres from 0 to 10; heading: radians, counter-clockwise."""
+        observations, cameras = dict(observations), dict(cameras or {})
+        for name in observations:
+            kind = next((k for k in (COLOR, DEPTH) if str(name).startswith(k)), None)
+            if kind and name not in cameras:
+                cameras[name] = {"type": kind}
+        listed = [dict(cameras[n], name=n) for n in observations if n in cameras]
+        self._walk.steps += 1
+        return self._walk.corrupt(observations, listed, heading)
+
+    def finish(self, **metrics):
+        """Tell how it went: ``success`` (0 or 1) at least; ``spl``, ``distance_to_goal`` ..."""
+        self._walk.end(metrics)
+
+
+def connect(episode, scene="", instruction=None):
+    """Begin an episode under ``mitigate run``. Raises RuntimeError outside of it."""
+    if ADDRESS not in os.environ:
+        raise RuntimeError("Start this program under `mitigate run -- python ...`.")
+    if getattr(_thread, "walk", None) is None:
+        _thread.walk = Walk()
+    return Episode(_thread.walk, str(episode), scene, instruction)
+
+
+# installing -------------------------------------------------------------------------------------
+
+PATCHES = {  # module: ((class, or none for the module's own functions; method; wrapper), ...)
+    "habitat.core.simulator": (("SensorSuite", "get_observations", _get_observations),),
+    "habitat.core.embodied_task": (
+        ("EmbodiedTask", "reset", _task_reset),
+        ("Measurements", "update_measures", _update_measures),
+    ),
+    "habitat.core.env": (
+        ("", "make_dataset", _make_dataset),
+        ("Env", "__init__", _env_init),
+        ("Env", "reset", _env_reset),
+        ("Env", "step", _env_step),
+        ("Env", "close", _env_close),
+        ("Env", "render", _env_render),
+    ),
+    "habitat_sim.simulator": (("Simulator", "get_sensor_observations", _sensor_observations),),
+}
+
+
+def patch(module):
+    """Wrap the methods of a module that was just imported."""
+    _load_numpy()
+    for owner, method, wrapper in PATCHES[module.__name__]:
+        kind = getattr(module, owner, None) if owner else module
+        if kind is None or not hasattr(kind, method):
+            stop(
+                f"{module.__name__} has no {owner} {method}: this version of it is not known to "
+                "the bridge (known: "
+                "habitat-lab 0.1.5 to 0.3)."
+            )
+        setattr(kind, method, _wrapped(getattr(kind, method), wrapper))
+
+
+def _wrapped(original, wrapper):
+    @functools.wraps(original)
+    def method(*args, **kwargs):
+        return wrapper(original, *args, **kwargs)
+
+    return method
+
+
+class Finder:
+    """Has the loaders of the modules in ``PATCHES`` call ``patch`` behind the module's own code."""
+
+    def find_spec(self, name, path=None, target=None):
+        if name not in PATCHES:
+            return None
+        spec = importlib.machinery.PathFinder.find_spec(name, path, target)
+        if spec is not None and spec.loader is not None:
+            run = spec.loader.exec_module
+
+            def exec_module(module):
+                run(module)
+                patch(module)
+
+            spec.loader.exec_module = exec_module
+        return spec
+
+
+def install():
+    """Wrap what this process imports from now on, under ``mitigate run``; else do nothing."""
+    if ADDRESS in os.environ and not any(isinstance(f, Finder) for f in sys.meta_path):
+        sys.meta_path.insert(0, Finder())
+
+
+def run_hidden_sitecustomize(own):
+    """Run the ``sitecustomize`` that the one in the file ``own`` hides, if there is one."""
+    folder = os.path.dirname(os.path.abspath(own))
+    path = [p for p in sys.path if os.path.abspath(p or os.curdir) != folder]
+    spec = importlib.machinery.PathFinder.find_spec("sitecustomize", path)
+    if spec is not None and spec.loader is not None:
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)

@@ -1,0 +1,145 @@
+"""What a command's processes told of their episodes, as result rows."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mitigate.bridge.server import EVENTS
+from mitigate.corruptions import SUITE_VERSION, Corruption
+from mitigate.corruptions.registry import version
+from mitigate.evaluation.metrics import RULES, Rule, path_length, spl
+from mitigate.evaluation.rows import Row
+
+OWN = "own: the agent's Success measure"
+COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: some never say it
+MEASURES = ("path_length", "geodesic_distance", "distance_to_goal", "ndtw", "collisions")
+
+
+@dataclass
+class Told:
+    """What was told under one condition, so far.
+
+    ends: of each episode, by its name; again: episodes that ended once more, of which the first
+    counts; dropped: left in the middle. cameras: as first described; words: what the first episode
+    says. refused: what the server could not do, in words.
+    """
+
+    hellos: list[dict[str, Any]] = field(default_factory=list)
+    cameras: list[dict[str, Any]] = field(default_factory=list)
+    ends: dict[str, dict[str, Any]] = field(default_factory=dict)
+    again: int = 0
+    dropped: list[str] = field(default_factory=list)
+    refused: list[str] = field(default_factory=list)
+    first: dict[str, Any] = field(default_factory=dict)
+
+
+def read(folder: Path) -> Told:
+    """Return what the events in ``folder`` tell; a last line that is not whole is left out."""
+    told = Told()
+    for event in _events(folder / EVENTS):
+        kind, name = event.get("event"), name_of(event.get("scene", ""), event.get("episode", ""))
+        if kind == "hello":
+            told.hellos.append(event)
+        elif kind == "spec":
+            told.cameras = told.cameras or event["cameras"]
+        elif kind == "episode":
+            told.first = told.first or event
+        elif kind == "end":
+            told.again += name in told.ends
+            told.ends.setdefault(name, event)
+        elif kind == "dropped":
+            told.dropped.append(name)
+        elif kind == "refused":
+            told.refused.append(event["problem"])
+    return told
+
+
+def _events(file: Path) -> Iterator[dict[str, Any]]:
+    if not file.is_file():
+        return
+    for line in file.read_text("utf-8").splitlines():
+        try:
+            yield json.loads(line)
+        except ValueError:
+            return
+
+
+def name_of(scene: str, episode: str) -> str:
+    """The name of an episode in rows: ids repeat from scene to scene in ObjectNav's files."""
+    stem = scene.rpartition("/")[2].split(".")[0]
+    return f"{stem}/{episode}" if stem else str(episode)
+
+
+def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | None) -> list[Row]:
+    """Return the rows of one condition, by the agent's own rule of success and by a common one.
+
+    label: what all rows say ("agent", "name", "split", "seed"). rule: of ``RULES``, in place of the
+    agent's Success measure. An agent without either has the common one alone.
+    """
+    found = []
+    common = COMMON["words" if told.first.get("text") else "objects"]
+    for name, end in told.ends.items():
+        row = {
+            "agent": label["agent"],
+            "name": label["name"],
+            "corruption": corruption.name,
+            "severity": corruption.severity,
+            "split": label["split"],
+            "episode_id": name,
+            "seed": label["seed"],
+            "suite": SUITE_VERSION,
+            **version(corruption.name),
+        }
+        for own in _by_rules(end, rule, common):
+            found.append(row | own | _measures(end))
+    return found
+
+
+def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[Row]:
+    """Success and SPL of one episode by each rule that can be applied, each once."""
+    metrics, judged = end.get("metrics", {}), {}
+    if rule is None and "success" in metrics:
+        won = float(metrics["success"]) > 0
+        judged[OWN] = {"success": float(won), "spl": metrics.get("spl", _spl(end, won))}
+    for known in ([RULES[rule]] if rule else []) + [common]:
+        metres = end.get("distance", metrics.get("distance_to_goal"))
+        if metres is not None:
+            won = known.met(float(metres), bool(end.get("stopped")))
+            judged[str(known)] = {"success": float(won), "spl": _spl(end, won)}
+    return [
+        {"rule": name, **values} for name, values in judged.items() if values["spl"] is not None
+    ]
+
+
+def _spl(end: dict[str, Any], won: bool) -> float | None:
+    """SPL by the path that was told; None where the start or the path is not known."""
+    start = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
+    length = _length(end)
+    if not won:
+        return 0.0
+    return None if start is None or length is None else spl(won, float(start), length)
+
+
+def _length(end: dict[str, Any]) -> float | None:
+    path = end.get("path") or []
+    if len(path) > 0:
+        return path_length(np.array(path))
+    return end.get("metrics", {}).get("path_length")
+
+
+def _measures(end: dict[str, Any]) -> dict[str, Any]:
+    metrics = end.get("metrics", {})
+    found: dict[str, Any] = {name: metrics[name] for name in MEASURES if name in metrics}
+    known = {
+        "path_length": _length(end),
+        "geodesic_distance": end.get("start_distance"),
+        "distance_to_goal": end.get("distance"),
+    }
+    found = {name: value for name, value in known.items() if value is not None} | found
+    return found | {"decisions": end.get("calls", 0), "steps": end.get("steps", 0)}

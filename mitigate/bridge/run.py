@@ -1,0 +1,195 @@
+"""Run a program of another project under the suite: ``mitigate run suite=full -- COMMAND``.
+
+The command is run once for each condition, unchanged, clean first; what its processes see and hear
+is corrupted on the way (``hook/mitigate_hook.py``). The rows, and the table with PRS, go to the
+output folder; the same command again goes on where it stopped.
+"""
+
+from __future__ import annotations
+
+import shlex
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from omegaconf import MISSING, DictConfig
+
+from mitigate.core import conf
+from mitigate.core.names import unknown
+
+EVERY = 15.0  # seconds between two lines of progress (ours)
+
+
+@dataclass
+class RunConfig:
+    """Types of ``conf/run.yaml``; the meaning of each entry is written there."""
+
+    name: str | None = None
+    out: str | None = None
+    runs: str = "runs"
+    corruption: str | None = None
+    conditions: list[str] | None = None
+    severity: float = 0.6
+    severity_depth: float | None = None
+    seed: int = 0
+    episodes: int | None = None
+    repeats: int = 1
+    jobs: int = 1
+    split: str = "unnamed"
+    rule: str | None = None
+    safeguard: str = "none"
+    tokenizer: str | None = None
+    token_length: int | None = None
+    missing: float = 0.0
+    turn: str = "left"
+    patience: float = 25.0
+    check: bool = False
+    suite: Any = MISSING
+
+
+ConfigStore.instance().store(name="run_schema", node=RunConfig)
+
+
+def split_command(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the options before ``--`` and the command behind it."""
+    if "--" not in arguments:
+        return list(arguments), []
+    at = list(arguments).index("--")
+    return list(arguments[:at]), list(arguments[at + 1 :])
+
+
+def run(cfg: DictConfig, command: Sequence[str]) -> Path:
+    """Run ``command`` under all conditions; return the output folder.
+
+    Raises ValueError for options that make no sense and, behind all others, for conditions whose
+    command failed.
+    """
+    from mitigate.bridge.cell import Cell, applicable, cells
+
+    _check(cfg, command)
+    name = cfg.name or name_of(command)
+    out = Path(cfg.out or f"{cfg.runs}/run/{name}-s{cfg.severity:g}")
+    made = cells(cfg, command, out, name)
+    clean, others = made[0], made[1:]
+    print(
+        f"run: {shlex.join(command)}\n"
+        f"run: {len(made)} conditions at severity {cfg.severity:g}, rows in {out}",
+        flush=True,
+    )
+    problems = _run_all([clean], 1)
+    if problems:
+        raise ValueError(" ".join(problems))
+    fitting: list[Cell] = []
+    for cell in others:
+        reason = applicable(cell.corruption, clean.told())
+        if reason:
+            print(f"{cell.name}: not applicable, {reason}", flush=True)
+        else:
+            fitting.append(cell)
+    problems = _run_all(fitting, cfg.jobs)
+    write_report([clean, *fitting], cfg, out, name)
+    if problems:
+        raise ValueError("Some conditions failed; run again to go on. " + " ".join(problems))
+    return out
+
+
+def _check(cfg: DictConfig, command: Sequence[str]) -> None:
+    from mitigate.evaluation.metrics import RULES
+
+    if not command:
+        raise ValueError(
+            "No command is given. Write it behind --, as you would type it: mitigate run "
+            "corruption=spatter -- bash run_r2r/main.bash eval 2333"
+        )
+    if cfg.rule is not None and cfg.rule not in RULES:
+        raise ValueError(unknown("rule", cfg.rule, RULES))
+    for option in ("jobs", "repeats"):
+        if cfg[option] < 1:
+            raise ValueError(f"{option}={cfg[option]} is none: give 1 or more.")
+    if cfg.episodes is not None and cfg.episodes < 1:
+        raise ValueError(f"episodes={cfg.episodes} is none: give 1 or more, or null for all.")
+
+
+def name_of(command: Sequence[str]) -> str:
+    """Return a name for a command: of the last folder that its first script lies in, or of the
+    script itself."""
+    scripts = [Path(word) for word in command if word.endswith((".py", ".sh", ".bash"))]
+    return scripts[0].stem if scripts else Path(command[0]).stem
+
+
+def _run_all(waiting: Sequence[Any], jobs: int) -> list[str]:
+    """Run cells, ``jobs`` at a time; return what went wrong."""
+    left, running, problems = list(waiting), [], []
+    spoke = time.monotonic()
+    try:
+        while left or running:
+            while left and len(running) < jobs:
+                cell = left.pop(0)
+                if cell.is_done():
+                    print(f"{cell.name}: done before, {cell.summary()}", flush=True)
+                else:
+                    cell.start()
+                    running.append(cell)
+                    print(f"{cell.name}: started, its output is in {cell.log}", flush=True)
+            time.sleep(0.2)
+            for cell in list(running):
+                problem = cell.poll()
+                if problem is None:
+                    continue
+                running.remove(cell)
+                print(f"{cell.name}: {problem or cell.summary()}", flush=True)
+                problems += [f"{cell.name}: {problem}"] if problem else []
+            if running and time.monotonic() - spoke > EVERY:
+                spoke = time.monotonic()
+                print("\n".join(f"{cell.name}: {cell.summary()}" for cell in running), flush=True)
+    finally:
+        for cell in running:
+            cell.kill()
+    return problems
+
+
+def write_report(made: Sequence[Any], cfg: DictConfig, out: Path, name: str) -> None:
+    """Write ``rows.jsonl``, the table and its pictures, and print the table."""
+    from mitigate.bridge.randomness import randomness
+    from mitigate.evaluation import rows
+    from mitigate.evaluation.evaluate import ROWS, write_table
+
+    found = [row for cell in made if cell.repeat == 0 and cell.is_done() for row in cell.rows()]
+    if not found:
+        raise ValueError(
+            f"No episode told how it went, so there is no table. {out} holds what was seen."
+        )
+    rows.write(out / ROWS, found)
+    write_table([out / ROWS], out)
+    again = [cell.rows() for cell in made if cell.corruption.name == "clean" and cell.is_done()]
+    if len(again) > 1:
+        print(randomness(again), flush=True)
+        (out / "randomness.md").write_text(randomness(again), encoding="utf-8")
+
+
+@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")
+def hydra_main(cfg: DictConfig) -> None:
+    """Hydra's entry."""
+    if cfg.check:
+        from mitigate.bridge.check import check
+
+        check(cfg, _command)
+    else:
+        run(cfg, _command)
+
+
+_command: list[str] = []  # behind --
+
+
+def main() -> None:
+    """Run from the command line."""
+    options, command = split_command(sys.argv[1:])
+    _command[:] = command
+    options = ["check=true" if option == "--check" else option for option in options]
+    sys.argv[1:] = options
+    conf.main(hydra_main, "run")

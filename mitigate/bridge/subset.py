@@ -1,0 +1,65 @@
+"""Which episodes an unchanged program is to run: a few, the same in every condition.
+
+An episode is chosen by a hash of its name, whatever the order and the number of processes. The
+first environments of a run name all that they hold; from these the bound is set that lets as many
+pass as were asked for, and it is kept for all that follows.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from mitigate.core.files import atomic_text
+from mitigate.corruptions import Key
+from mitigate.corruptions.keying import digest, uniform
+
+SETTLED = 4.0  # seconds without another environment, after which all are taken to be known (ours)
+
+
+def place(name: str) -> float:
+    """Where an episode stands in [0, 1): a hash of its name."""
+    return uniform(digest(Key(0, name), "episodes"))
+
+
+@dataclass
+class Subset:
+    """Keeps about ``count`` episodes, named like "scene.glb/17"; its notes are in ``folder``."""
+
+    count: int
+    folder: Path
+    settled: float = SETTLED
+
+    def keep(self, names: list[str]) -> list[int]:
+        """Return the numbers of ``names`` to keep: one at least, as Habitat refuses none."""
+        bound = self._bound()
+        if bound is None:
+            bound = self._agree(names)
+        places = [place(name) for name in names]
+        kept = [i for i, at in enumerate(places) if at <= bound]
+        return kept or [places.index(min(places))]
+
+    def _bound(self) -> float | None:
+        file = self.folder / "episodes.json"
+        return json.loads(file.read_text("utf-8"))["bound"] if file.is_file() else None
+
+    def _agree(self, names: list[str]) -> float:
+        """Add ``names`` to those that are known, wait for others, and set the bound."""
+        known = self.folder / "episodes.txt"
+        with open(known, "a", encoding="utf-8") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            file.write("".join(f"{json.dumps(name)}\n" for name in names))
+        while time.time() - known.stat().st_mtime < self.settled:
+            time.sleep(0.1)
+        with open(known, "r+", encoding="utf-8") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            bound = self._bound()
+            if bound is None:
+                places = sorted(place(json.loads(line)) for line in {*file})
+                bound = places[min(self.count, len(places)) - 1]
+                with atomic_text(self.folder / "episodes.json") as out:
+                    json.dump({"bound": bound, "episodes": self.count, "of": len(places)}, out)
+        return bound

@@ -1,0 +1,94 @@
+"""What an agent is told: its instruction and tokens as a corruption and a safeguard leave them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from mitigate.corruptions import Corruption, Key, corrupt_instruction
+from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
+from mitigate.worlds.episodes import read_extras
+
+ENGLISH = ("en", "en-us", "en-in")
+
+
+@dataclass
+class Words:
+    """Changes the words of episodes.
+
+    tokenizer: for agents that read tokens; None: an agent with tokens is refused where its words
+    change, since it would read the old ones. repair: a safeguard's answer to a text; None: none.
+    length: of padded tokens; None: as the episode's own.
+    """
+
+    tokenizer: Tokenizer | None = None
+    repair: Callable[[str], str] | None = None
+    length: int | None = None
+
+    def heard(self, told: Mapping[str, Any], corruption: Corruption, key: Key) -> dict[str, Any]:
+        """Return ``text`` and ``tokens`` of an episode as the agent is to have them; empty where
+        they stay as they are. Raises ValueError where an agent would not hear the change.
+        """
+        text, tokens = told.get("text"), told.get("tokens")
+        changes = corruption.modality == "instruction"
+        if changes and corruption.name == "white_box":
+            raise ValueError(
+                "white_box is not applicable: it corrupts an agent's system prompt, which does not "
+                "pass the bridge. black_box puts the same sentences in front of the instruction."
+            )
+        if not isinstance(text, str):
+            if changes:
+                what = (
+                    f"an object category ({told['category']})" if told.get("category") else "none"
+                )
+                raise ValueError(
+                    f"{corruption.name} corrupts the words of an instruction, but the episode has "
+                    f"{what}, which agents read by number. Leave it out: suite=full."
+                )
+            return {}
+        if changes and _is_english(told.get("language")):
+            made = corrupt_instruction(
+                text, corruption.name, corruption.severity, key, mask_token=self._mask()
+            )
+        else:
+            made = text
+        if self.repair is not None:
+            made = self.repair(made)
+        if made == text:
+            return {}
+        return {"text": made, "tokens": self._tokens(made, tokens)}
+
+    def _mask(self) -> str:
+        return (self.tokenizer and self.tokenizer.mask_token) or "[MASK]"
+
+    def _tokens(self, text: str, before: list[Any] | None) -> list[int] | None:
+        if before is None:
+            return None
+        if self.tokenizer is None:
+            raise ValueError(
+                "the agent's episodes hold instruction tokens beside the text, and no tokenizer "
+                "was named, so that it would read the old words: tokenizer=bert_config/bert-base-"
+                "uncased (a folder with the tokenizer's files; ETPNav's repository has it), or "
+                "tokenizer=EPISODES.json.gz for R2R-CE's own vocabulary in that file."
+            )
+        return list(self.tokenizer.encode(text, self.length or fixed_length(before))[0])
+
+
+def tokenizer_of(name: str) -> Tokenizer:
+    """Return the tokenizer in a folder or of a hub name, or the vocabulary of an R2R-CE file
+    (``.json``, ``.json.gz``). Raises ValueError or FileNotFoundError if there is none."""
+    if name.endswith((".json", ".json.gz")):
+        return tokenizer_for(VOCABULARY, read_extras(name))
+    return tokenizer_for(name, {})
+
+
+def fixed_length(tokens: list[Any]) -> int | None:
+    """Return the length that a dataset pads its tokens to, None if it does not pad: padding is a
+    token that comes twice and more at the end."""
+    repeated = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
+    return len(tokens) if repeated else None
+
+
+def _is_english(language: str | None) -> bool:
+    return language is None or language.lower() in ENGLISH

@@ -1,0 +1,146 @@
+"""What breaks ends in a named error, soon, and with no clean frame let through."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from mitigate.bridge.hook.mitigate_hook import HEADER, MAGIC, receive, send
+from mitigate.bridge.server import Listener
+
+from .conftest import LAB, condition
+
+
+def start(listener, folder, *options):
+    """Start the stand-in's program under a listener."""
+    environment = {**os.environ, **listener.environment()}
+    environment["PYTHONPATH"] += os.pathsep + str(LAB)
+    return subprocess.Popen(
+        [sys.executable, str(LAB / "agent.py"), str(folder / "seen"), *map(str, options)],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+
+
+def wait_for(folder, word, seconds=20.0):
+    """Wait until the events tell of ``word``."""
+    until = time.monotonic() + seconds
+    events = folder / "events.jsonl"
+    while not (events.is_file() and word in events.read_text()):
+        assert time.monotonic() < until, f"no {word!r} in {seconds} s"
+        time.sleep(0.02)
+
+
+def test_a_killed_server_stops_the_agent(tmp_path):
+    with Listener(condition("spatter"), tmp_path, patience=5.0) as listener:
+        agent = start(listener, tmp_path, "--pause", 0.2, "--steps", 100)
+        wait_for(tmp_path, '"spec"')
+        os.killpg(listener.pid, signal.SIGKILL)
+        output, _ = agent.communicate(timeout=15)
+    assert agent.returncode == 97 and "server" in output
+
+
+def test_a_server_that_does_not_answer_stops_the_agent(tmp_path):
+    with Listener(condition("spatter"), tmp_path, patience=1.0) as listener:
+        agent = start(listener, tmp_path, "--pause", 0.2, "--steps", 100)
+        wait_for(tmp_path, '"spec"')
+        os.killpg(listener.pid, signal.SIGSTOP)
+        output, _ = agent.communicate(timeout=15)
+    assert agent.returncode == 97 and "did not answer within 1 s" in output
+
+
+def test_no_server_stops_the_agent(command, tmp_path):
+    ran = command(condition("spatter"), MITIGATE_BRIDGE=str(tmp_path / "nobody"))
+    assert ran.status == 97 and "cannot be reached" in ran.output
+
+
+def test_a_wrong_token_is_not_served(command):
+    ran = command(condition("spatter"), MITIGATE_TOKEN="guessed")
+    assert ran.status == 97 and "gone" in ran.output
+    assert not ran.told.hellos
+
+
+def test_no_room_for_frames_is_named(command, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "posix_fallocate", full)  # the server is a fork of this process
+    ran = command(condition("spatter"))
+    assert ran.status == 97
+    assert "no room for" in ran.output and "--shm-size" in ran.output
+    assert "no room for" in ran.told.refused[0]
+
+
+def test_an_exception_handler_of_the_agent_cannot_go_on(tmp_path):
+    """WMNav's loop catches every exception and takes the next step."""
+    code = (
+        "import mitigate_hook, numpy\n"
+        "episode = mitigate_hook.connect('7')\n"
+        "try:\n    episode.corrupt({'rgb': numpy.zeros((4, 4, 3))})\n"
+        "except BaseException:\n    pass\n"
+        "print('went on')"
+    )
+    with Listener(condition("spatter"), tmp_path) as listener:
+        ran = subprocess.run(
+            [sys.executable, "-c", code],
+            env={**os.environ, **listener.environment()},
+            capture_output=True,
+            text=True,
+            timeout=20,
+            check=False,
+        )
+    assert ran.returncode == 97 and "must be uint8" in ran.stderr and "went on" not in ran.stdout
+
+
+def test_what_the_server_made_for_a_run_is_removed(command):
+    command(condition("spatter"), "--episodes", 1)
+    with Listener(condition("spatter"), command.__closure__[0].cell_contents / "x") as listener:
+        held = (listener.place, listener.memory)
+        assert all(place.is_dir() for place in held)
+        assert oct(os.stat(listener.address).st_mode & 0o777) == "0o600"
+        assert oct(os.stat(listener.place).st_mode & 0o777) == "0o700"
+    assert not any(place.exists() for place in held)
+
+
+@pytest.fixture
+def pair():
+    """Both ends of a connection."""
+    ends = socket.socketpair()
+    for end in ends:
+        end.settimeout(5.0)
+    yield ends
+    for end in ends:
+        end.close()
+
+
+def test_messages_come_as_they_were_sent(pair):
+    threading.Thread(target=send, args=(pair[0], {"kind": "frame", "call": 3})).start()
+    assert receive(pair[1]) == {"kind": "frame", "call": 3}
+
+
+@pytest.mark.parametrize(
+    "raw",
+    [
+        b"GET / HTTP/1.1\r\n\r\n",
+        HEADER.pack(MAGIC, 1 << 31),
+        HEADER.pack(MAGIC, 2) + b"[]",
+        HEADER.pack(MAGIC, 3) + b"nan",
+    ],
+)
+def test_what_is_no_message_is_refused_before_it_is_read(pair, raw):
+    pair[0].sendall(raw)
+    with pytest.raises(ValueError):
+        receive(pair[1])
+
+
+def test_a_connection_that_ends_in_the_middle_is_an_end(pair):
+    pair[0].sendall(HEADER.pack(MAGIC, 100) + b"{")
+    pair[0].close()
+    assert receive(pair[1]) is None

@@ -1,0 +1,178 @@
+"""``mitigate run`` from the command line, over the stand-in's program."""
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+from dataclasses import dataclass
+
+import pytest
+
+from mitigate.bridge.run import name_of, split_command
+from mitigate.bridge.run import run as run_command
+from mitigate.core.conf import load_config
+from mitigate.evaluation import rows
+
+from .conftest import LAB
+
+AGENT = f"{sys.executable} {LAB / 'agent.py'} {{out}}/seen"
+
+
+@dataclass
+class Ended:
+    """What a run printed, and the error that it ended with, if it did."""
+
+    stdout: str
+    stderr: str = ""
+
+    @property
+    def returncode(self):
+        return int(bool(self.stderr))
+
+
+@pytest.fixture
+def run(capsys, monkeypatch):
+    """Run a command as the command line does, in this process."""
+
+    def call(out, options, command=AGENT, **environment):
+        path = os.pathsep.join([str(LAB), environment.pop("PYTHONPATH", "")])
+        monkeypatch.setenv("PYTHONPATH", path)
+        cfg = load_config("run", [f"out={out}", *options.split()])
+        problem = ""
+        try:
+            run_command(cfg, shlex.split(command))
+        except ValueError as error:
+            problem = str(error)
+        return Ended(capsys.readouterr().out, problem)
+
+    return call
+
+
+def test_it_is_a_command(tmp_path):
+    ran = subprocess.run(
+        [sys.executable, "-m", "mitigate.run", f"out={tmp_path}", "rule=etpnavv", "--", "true"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == 1 and "Did you mean etpnav" in ran.stderr
+
+
+def test_it_measures_a_program_and_goes_on_where_it_stopped(run, tmp_path):
+    first = run(tmp_path / "o", "corruption=spatter name=stand split=toy")
+    assert first.returncode == 0, first.stdout + first.stderr
+    found = rows.read(tmp_path / "o" / "rows.jsonl")
+    assert len(found) == 2 * 4 * 2  # conditions x episodes x rules
+    own = [row for row in found if row["rule"].startswith("own")]
+    assert {row["corruption"] for row in own} == {"clean", "spatter"}
+    assert {row["episode_id"] for row in own} == {"s0/0", "s0/2", "s1/1", "s1/3"}
+    assert sum(row["success"] for row in own) == 4
+    assert {row["name"] for row in own} == {"stand"} and {row["split"] for row in own} == {"toy"}
+    assert "PRS-SR (RGB)" in (tmp_path / "o" / "table.md").read_text()
+    again = run(tmp_path / "o", "conditions=[spatter,flare] name=stand split=toy")
+    assert "clean: done before" in again.stdout and "spatter-s0.6: done before" in again.stdout
+    assert "flare-s0.6: started" in again.stdout
+    other = run(tmp_path / "o", "corruption=spatter name=stand split=toy seed=1")
+    assert other.returncode == 1 and "was run with another seed" in other.stderr
+
+
+def test_some_episodes_are_the_same_ones_in_every_condition(run, tmp_path):
+    ran = run(tmp_path / "o", "corruption=spatter episodes=5", f"{AGENT} --episodes 24 --workers 2")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    found = rows.read(tmp_path / "o" / "rows.jsonl")
+    by = {}
+    for row in found:
+        by.setdefault(row["corruption"], set()).add(row["episode_id"])
+    assert by["clean"] == by["spatter"] and 4 <= len(by["clean"]) <= 6
+    assert json.loads((tmp_path / "o" / "episodes.json").read_text())["of"] == 24
+
+
+def test_repeated_clean_runs_say_how_random_the_agent_is(run, tmp_path):
+    ran = run(tmp_path / "o", "conditions=[clean] repeats=2")
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert "2 clean runs of the same 4 episodes: SR 50.0, 50.0" in ran.stdout
+    assert len(rows.read(tmp_path / "o" / "rows.jsonl")) == 8  # of the first
+
+
+def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
+    program = tmp_path / "rgb_only.py"
+    program.write_text(
+        "import mitigate_hook, numpy\n"
+        "for name in 'ab':\n"
+        "    episode = mitigate_hook.connect(name)\n"
+        "    for step in range(3):\n"
+        "        episode.corrupt({'rgb': numpy.full((8, 8, 3), 90, 'uint8')})\n"
+        "    episode.finish(success=name == 'a', spl=0.5 * (name == 'a'))\n"
+    )
+    ran = run(
+        tmp_path / "o",
+        "conditions=[spatter,multipath,mask,white_box]",
+        f"{sys.executable} {program}",
+    )
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert "multipath-s0.6: not applicable, the agent has no depth camera" in ran.stdout
+    assert "mask-s0.6: not applicable, its goals are categories" in ran.stdout
+    assert "white_box-s0.6: not applicable" in ran.stdout
+    found = rows.read(tmp_path / "o" / "rows.jsonl")
+    assert {row["corruption"] for row in found} == {"clean", "spatter"} and len(found) == 4
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        (f"{sys.executable} -c 'import sys; sys.exit(3)'", "ended with status 3"),
+        (f"{sys.executable} -c 'print(5)'", "no Python process of it loaded the hook"),
+        (f"{sys.executable} -I {LAB / 'agent.py'} x", "status 1"),
+        ("no-such-program", "cannot be started: No such file"),
+        ("", "No command is given"),
+        (f"{AGENT} --episodes 1 --steps 0", "without an episode"),
+    ],
+)
+def test_a_command_that_does_not_work_is_explained(run, tmp_path, command, words):
+    ran = run(tmp_path / "o", "conditions=[clean]", command)
+    assert ran.returncode == 1 and words in ran.stderr, ran.stderr
+
+
+def test_a_worker_that_dies_does_not_hang_the_run(run, tmp_path):
+    ran = run(
+        tmp_path / "o",
+        "conditions=[clean] patience=2",
+        f"{AGENT} --workers 2 --die-at 1 --wait 60",
+    )
+    assert ran.returncode == 1
+    assert "ended in the middle of episode s" in ran.stderr
+
+
+def test_a_refused_condition_says_why(run, tmp_path):
+    ran = run(tmp_path / "o", "corruption=capitalize", f"{AGENT} --tokens")
+    assert ran.returncode == 1 and "no tokenizer was named" in ran.stderr
+    assert (tmp_path / "o" / "rows.jsonl").is_file()  # of clean
+
+
+def test_an_existing_sitecustomize_is_still_run(run, tmp_path):
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own" / "sitecustomize.py").write_text("print('the own one ran')\n")
+    ran = run(tmp_path / "o", "conditions=[clean]", PYTHONPATH=str(tmp_path / "own"))
+    assert ran.returncode == 0, ran.stderr
+    assert "the own one ran" in (tmp_path / "o/conditions/clean/output.txt").read_text()
+
+
+def test_options_and_command_are_told_apart():
+    assert split_command(["suite=full", "--", "bash", "run.sh", "--", "x"]) == (
+        ["suite=full"],
+        ["bash", "run.sh", "--", "x"],
+    )
+    assert split_command(["suite=full"]) == (["suite=full"], [])
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        ("conda run -n etpnav bash run_r2r/main.bash eval 2333", "main"),
+        ("python -m vlfm.run", "python"),
+        ("python main_llm_vis.py --split val", "main_llm_vis"),
+    ],
+)
+def test_a_command_has_a_name(command, name):
+    assert name_of(command.split()) == name
