@@ -49,6 +49,15 @@ class Camera:
     def bytes(self) -> int:
         return math.prod(self.shape) * np.dtype(self.dtype).itemsize
 
+    def read(self, memory: Any, offsets: Mapping[str, int]) -> np.ndarray:
+        """A copy of its frame in ``memory``."""
+        frame = np.frombuffer(memory, self.dtype, math.prod(self.shape), offsets[self.name])
+        return frame.reshape(self.shape).copy()
+
+    def metres(self, depth: np.ndarray) -> np.ndarray:
+        """Its depth in metres."""
+        return self.sensor.to_metres(depth) if self.normalised else depth
+
     def alike(self) -> tuple:
         """What cameras of one panorama have in common."""
         return (self.kind, self.shape, self.dtype, self.hfov, self.place, self.sensor)

@@ -11,13 +11,15 @@ import subprocess
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from omegaconf import DictConfig
 
 from mitigate.bridge import results
+from mitigate.bridge.hook import mitigate_hook
+from mitigate.bridge.recording import Recorder
 from mitigate.bridge.results import Told
 from mitigate.bridge.server import EVENTS, Condition, Listener
 from mitigate.bridge.subset import Subset
@@ -45,6 +47,7 @@ class Cell:
     rule: str | None
     settings: dict[str, Any]
     patience: float = 25.0
+    environment: dict[str, str] = field(default_factory=dict)
     listener: Listener | None = None
     process: subprocess.Popen | None = None
 
@@ -86,7 +89,7 @@ class Cell:
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,
-                    env={**os.environ, **self.listener.environment()},
+                    env={**os.environ, **self.listener.environment(), **self.environment},
                     start_new_session=True,
                 )
             except OSError as error:
@@ -158,6 +161,11 @@ class Cell:
                 "replace PYTHONPATH (let it append), does it run python with -E, -I or -S, or in a "
                 f"container (docs/bridge.md)? The end of {self.log}:\n{self.tail()}"
             )
+        if mitigate_hook.ADAPTERS in self.environment and not told.adapted:
+            return (
+                "the adapters were never put in: no instance of the class that adapters= names was "
+                "called. Which class holds the encoder?"
+            )
         if not told.ends:
             return (
                 "the command ended without an episode. Did it find results of an earlier run? Let "
@@ -199,7 +207,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     found = conditions(
         ["clean", *(n for n in names if n != "clean")], cfg.severity, cfg.severity_depth
     )
-    words = _words(cfg, out)
+    words, environment = _words(cfg, out), _environment(cfg)
     keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
     text = shlex.join(command)
@@ -216,13 +224,18 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
             "safeguard": cfg.safeguard,
             "tokenizer": cfg.tokenizer,
             "missing": cfg.missing,
+            "adapters": cfg.adapters,
         }
         condition = Condition(corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep=keep)
+        if cfg.record is not None:
+            condition.observers.append(Recorder(Path(cfg.record) / own))
         label = {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
         if cfg.safeguard != "none":
             from mitigate.safeguard.guard import label as front
 
-            label["name"] = f"{name}+{front(cfg.safeguard)}"
+            label["name"] += f"+{front(cfg.safeguard)}"
+        if cfg.adapters is not None:
+            label["name"] += "+adapters"
         folder = out / "conditions" / own
         made.append(
             Cell(
@@ -236,6 +249,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
                 cfg.rule,
                 settings,
                 cfg.patience,
+                environment,
             )
         )
     return made
@@ -251,6 +265,26 @@ def _words(cfg: DictConfig, out: Path) -> Words:
         None if guard is None else lambda text: guard.canonicalise(text).text,
         cfg.token_length,
     )
+
+
+def _environment(cfg: DictConfig) -> dict[str, str]:
+    """What the hook must know of adapters. Raises ValueError for what names none."""
+    if cfg.adapters is None:
+        return {}
+    from mitigate.encoders import plain_adapters
+
+    folder, module, place = (*str(cfg.adapters).rsplit(":", 2), "", "")[:3]
+    kind, _, path = place.partition(".")
+    if not kind or not module:
+        raise ValueError(
+            f"adapters={cfg.adapters} must be FOLDER:package.module:Class.attribute, where the "
+            "attribute of the class's instances is the encoder that the adapters were trained for: "
+            "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
+        )
+    plain_adapters.read(folder)
+    told = {"folder": str(Path(folder).resolve()), "file": str(plain_adapters.__file__)}
+    told |= {"module": module, "class": kind, "path": path}
+    return {mitigate_hook.ADAPTERS: json.dumps(told)}
 
 
 def _filled(word: str, values: dict[str, str]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -27,7 +28,7 @@ class Told:
 
     ends: of each episode, by its name; again: episodes that ended once more, of which the first
     counts; dropped: left in the middle. cameras: as first described; words: what the first episode
-    says. refused: what the server could not do, in words.
+    says. refused: what the server could not do, in words. adapted: encoders that got adapters.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
@@ -37,6 +38,7 @@ class Told:
     dropped: list[str] = field(default_factory=list)
     refused: list[str] = field(default_factory=list)
     first: dict[str, Any] = field(default_factory=dict)
+    adapted: list[str] = field(default_factory=list)
 
 
 def read(folder: Path) -> Told:
@@ -55,6 +57,8 @@ def read(folder: Path) -> Told:
             told.ends.setdefault(name, event)
         elif kind == "dropped":
             told.dropped.append(name)
+        elif kind == "adapted":
+            told.adapted.append(event["module"])
         elif kind == "refused":
             told.refused.append(event["problem"])
     return told
@@ -109,7 +113,7 @@ def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[R
         judged[OWN] = {"success": float(won), "spl": metrics.get("spl", _spl(end, won))}
     for known in ([RULES[rule]] if rule else []) + [common]:
         metres = end.get("distance", metrics.get("distance_to_goal"))
-        if metres is not None:
+        if metres is not None and not math.isnan(metres):
             won = known.met(float(metres), bool(end.get("stopped")))
             judged[str(known)] = {"success": float(won), "spl": _spl(end, won)}
     return [
@@ -142,4 +146,5 @@ def _measures(end: dict[str, Any]) -> dict[str, Any]:
         "distance_to_goal": end.get("distance"),
     }
     found = {name: value for name, value in known.items() if value is not None} | found
+    found = {name: value for name, value in found.items() if math.isfinite(value)}
     return found | {"decisions": end.get("calls", 0), "steps": end.get("steps", 0)}

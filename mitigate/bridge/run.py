@@ -48,6 +48,8 @@ class RunConfig:
     missing: float = 0.0
     turn: str = "left"
     patience: float = 25.0
+    record: str | None = None
+    adapters: str | None = None
     check: bool = False
     suite: Any = MISSING
 

@@ -35,6 +35,7 @@ from mitigate.corruptions.suite import corrupt
 HOOK = Path(mitigate_hook.__file__).parent
 MEMORY = Path("/dev/shm")  # Linux; elsewhere the folder for temporary files
 EVENTS = "events.jsonl"
+KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted")  # of messages, after "hello"
 
 
 @dataclass
@@ -42,8 +43,8 @@ class Condition:
     """What a command meets: the corruption, its seed, and how it is applied.
 
     repeat: number of this run of the same condition; part of the keys where it is not 0. missing:
-    metres that a hole reads. turn: where a growing yaw turns. observers: told of every frame,
-    before its corruption (recording).
+    metres that a hole reads. turn: where a growing yaw turns. observers: told of every episode
+    and frame, before its corruption (``recording.py``).
     """
 
     corruption: Corruption
@@ -53,7 +54,7 @@ class Condition:
     missing: float = 0.0
     turn: str = "left"
     keep: Callable[[list[str]], list[int]] | None = None
-    observers: list[Callable[..., Any]] = field(default_factory=list)
+    observers: list[Any] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
         """Names the draw: seed, scene file and episode id, number of the call."""
@@ -185,9 +186,7 @@ class Connection:
         if not self._greet():
             return
         self.channel.settimeout(None)
-        kinds = {
-            n: getattr(self, f"on_{n}") for n in ("spec", "episode", "frame", "end", "dataset")
-        }
+        kinds = {kind: getattr(self, f"on_{kind}") for kind in KINDS}
         while (message := self._next()) is not None:
             try:
                 answer = kinds[message.get("kind")](message)
@@ -225,10 +224,8 @@ class Connection:
         self._drop_memory()
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn)
-        kinds = [condition.corruption.modality]
-        if condition.observers:
-            kinds = ["rgb", "depth"]
-        self.offsets, size = self.rig.lay_out(kinds)
+        wanted = (condition.corruption.modality, *(k for o in condition.observers for k in o.kinds))
+        self.offsets, size = self.rig.lay_out(wanted)
         note(self.folder, event="spec", cameras=message["cameras"])
         if not size:
             return {"offsets": {}}
@@ -303,3 +300,8 @@ class Connection:
         """The episodes of an environment: answer which it is to keep, all if None."""
         keep = self.condition.keep
         return {"keep": None if keep is None else keep([str(k) for k in message["keys"]])}
+
+    def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:
+        """Adapters were put into an encoder."""
+        note(self.folder, event="adapted", module=str(message["module"]))
+        return {}

@@ -17,6 +17,7 @@ from typing import Any, NoReturn, TextIO
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 CHUNK = 1 << 16  # characters read at a time (ours)
+RECORDING = "recording.json"  # in the folder of a recording by `mitigate run record=FOLDER`
 LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (ours)
 
 

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import cv2
 import numpy as np
 
-from mitigate.core.files import find
+from mitigate.core.files import RECORDING, find
 from mitigate.core.names import unknown
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.seeding import generator
@@ -109,8 +109,9 @@ class FolderFrames:
     """The PNG (and JPEG, and NPY depth) files of a folder and the folders in it.
 
     Args:
-        path: the folder. sensor: "rgb" or "depth". Each folder with frames in it is a scene; of a
-            single one, each ``block`` frames in the order of their names are. held_out: share of
+        path: the folder. sensor: "rgb" or "depth". Each folder with frames in it is a scene (of a
+            recording by ``mitigate run``, each of its scenes); of a single one, each ``block``
+            frames in the order of their names are. held_out: share of
             the scenes that are unseen; one whose path begins with "val" or "test" is, if there is
             one, and then no other.
         size: pixels of a side to which all are resized when they are read; None: as they are, which
@@ -162,10 +163,12 @@ class FolderFrames:
     def _found(self) -> dict[str, list[Path]]:
         """The files of each scene, in the order of their names."""
         plan = make_plan(self.path, self.path / ".none", self.sensor, "folder")
+        recorded = (self.path / RECORDING).is_file()  # <scene>/<episode>/<camera>/000000.png
         scenes: dict[str, list[Path]] = {}
         for frame in plan.frames:
             if frame.path.as_posix() not in plan.left_out:
-                scenes.setdefault(frame.episode, []).append(self.path / frame.path)
+                scene = frame.path.parts[0] if recorded else frame.episode
+                scenes.setdefault(scene, []).append(self.path / frame.path)
         if not scenes:
             other = told(plan.other_files) or "none"
             raise FileNotFoundError(

@@ -31,6 +31,7 @@ import threading
 np = None  # numpy, once it is needed: every Python process loads this file, and some have none
 PROTOCOL = 1
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
+ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, module, class, path
 HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
 MAGIC = b"mtg1"
 LARGEST = 1 << 24  # bytes of a message: an episode with all view points of its goals has 1e6
@@ -81,7 +82,7 @@ def _read(channel, size):
 def stop(problem):
     """End this process at once, with one paragraph: an exception might be caught."""
     sys.stderr.write(
-        f"\nmitigate: {problem} This process ({os.getpid()}) ends here, because it would go on with "
+        f"\nmitigate: {problem} This process ({os.getpid()}) ends here, as it would go on with "
         "frames that are not corrupted. What was measured so far is kept; see `mitigate run`'s own "
         "output.\n"
     )
@@ -173,7 +174,7 @@ class Walk:
     def clear(self):
         """Forget how the last episode went."""
         self.calls = self.steps = 0
-        self.path, self.start = [], None
+        self.path, self.actions, self.start = [], [], None
 
     def connected(self):
         """Return the channel; a forked process opens one of its own."""
@@ -221,9 +222,10 @@ class Walk:
         state = None if self.sim is None else self.sim.get_agent_state()
         return None if state is None else [float(x) for x in state.position]
 
-    def moved(self):
-        """Count a low-level step, and note where it led."""
+    def moved(self, action=None):
+        """Count a low-level step, and note what it was and where it led."""
         self.steps += 1
+        self.actions.append(_action(action))
         here = self.position()
         if here is not None and (not self.path or here != self.path[-1]):
             self.path.append(here)
@@ -235,7 +237,8 @@ class Walk:
         self.begun = False
         if self.steps or (self.sim is None and self.calls):
             said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
-            self.channel.ask("end", path=self.path, **said, **self._distances())
+            said.update(path=self.path, actions=self.actions, **self._distances())
+            self.channel.ask("end", **said)
 
     def _distances(self):
         """Geodesic metres to the goals from the start and from here, and whether it said STOP."""
@@ -249,13 +252,21 @@ class Walk:
         }
 
 
+def _action(action):
+    """Return an action as Habitat gets it (a number, a name, or a dict of one) as plain data."""
+    if isinstance(action, dict):
+        action = action.get("action")
+    if action is None:
+        return None
+    return int(action) if isinstance(action, (int, np.integer)) else str(action)
+
+
 def _array(frame, name):
     """Return what the server must know of a frame."""
     if not isinstance(frame, np.ndarray):
         stop(
             f"the camera {name} gives a {type(frame).__name__}, and only numpy arrays can be "
-            "corrupted: set Habitat's "
-            "GPU_GPU (gpu_gpu) to False."
+            "corrupted: set Habitat's GPU_GPU (gpu_gpu) to False."
         )
     alpha = frame.dtype == np.uint8 and frame.ndim == 3 and frame.shape[-1] == 4
     shape = [*frame.shape[:-1], 3] if alpha else list(frame.shape)
@@ -276,21 +287,26 @@ def _numbers(metrics, prefix=""):
 
 
 def _distance(sim, position, episode):
-    """Return the geodesic metres to the nearest goal, or place to see it from; None if unknown."""
+    """Return the geodesic metres to the nearest goal, or place to see it from, infinite out of
+    reach; None if unknown."""
     goals = getattr(episode, "goals", None) or []
     views = [p.agent_state.position for g in goals for p in getattr(g, "view_points", None) or []]
     ends = [list(map(float, end)) for end in views or [g.position for g in goals]]
     if not ends or position is None:
         return None
-    metres = float(sim.geodesic_distance(position, ends))
-    return metres if math.isfinite(metres) else None
+    return float(sim.geodesic_distance(position, ends))
 
 
 # habitat-lab ------------------------------------------------------------------------------------
 
 
+_described = {}  # id of a sensor: (it, what the server must know); a config's options are slow
+
+
 def _of_config(sensor):
     """Return what the server must know of a lab sensor; names are upper case before 0.2.3."""
+    if id(sensor) in _described:
+        return _described[id(sensor)][1]
     config, known = getattr(sensor, "config", None), {}
     for option in ("hfov", "min_depth", "max_depth", "normalize_depth", "position", "orientation"):
         value = getattr(config, option, getattr(config, option.upper(), None))
@@ -300,6 +316,7 @@ def _of_config(sensor):
             known[option] = [float(x) for x in value]
     kind = str(getattr(sensor, "sensor_type", "")).rpartition(".")[2].lower()
     known.update(name=sensor.uuid, type=COLOR if kind == "color" else kind)
+    _described[id(sensor)] = (sensor, known)
     return known
 
 
@@ -397,7 +414,7 @@ def _update_measures(original, measurements, *args, **kwargs):
     result = original(measurements, *args, **kwargs)
     sim = getattr(kwargs.get("task"), "_sim", None)
     if sim is not None:
-        _walk_of(sim.sensor_suite).moved()
+        _walk_of(sim.sensor_suite).moved(kwargs.get("action"))
     return result
 
 
@@ -494,6 +511,71 @@ def _of_specifications(sim):
     return found
 
 
+# WMNav ------------------------------------------------------------------------------------------
+
+
+def _wmnav_episode(original, env, number, *args, **kwargs):
+    """``Env._run_episode`` of WMNav, which has no lab: its simulators last for an episode each."""
+    _thread.walk = walk = getattr(_thread, "walk", None) or Walk()
+    told = env.all_episodes[number]
+    answer = walk.begin(told["scene_id"], told["episode_id"], text=told["object_category"])
+    begin = env._initialize_episode
+
+    def initialize(*numbers):
+        observations = begin(*numbers)
+        env.current_episode["object"] = answer.get("text") or env.current_episode["object"]
+        return observations
+
+    env._initialize_episode = initialize
+    try:
+        result = original(env, number, *args, **kwargs)
+    finally:
+        del env._initialize_episode
+    said = {"success": env.wandb_log_data["goal_reached"], "spl": env.wandb_log_data["spl"]}
+    said["distance_to_goal"] = env.path_calculator.geodesic_distance
+    said["path_length"] = env.agent_distance_traveled
+    said["geodesic_distance"] = told["info"]["geodesic_distance"]
+    walk.end(said)
+    return result
+
+
+# adapters in the agent's own encoder ------------------------------------------------------------
+
+
+def _adapted(folder, file, path):
+    """Return what wraps the ``forward`` of an encoder's class: at an instance's first call, by when
+    its weights are loaded, adapters go into its module ``path``."""
+
+    def forward(original, encoder, *args, **kwargs):
+        if not getattr(encoder, "_mitigate_adapted", False):
+            encoder._mitigate_adapted = True
+            _adapt(encoder, folder, file, path)
+        return original(encoder, *args, **kwargs)
+
+    return forward
+
+
+def _adapt(encoder, folder, file, path):
+    module = encoder
+    for name in filter(None, path.split(".")):
+        if not hasattr(module, name):
+            there = ", ".join(n for n, _ in module.named_children()) or "none"
+            stop(
+                f"adapters= names {path} in {type(encoder).__name__}, but there is no {name}: its "
+                f"modules there are {there}."
+            )
+        module = getattr(module, name)
+    spec = importlib.util.spec_from_file_location("mitigate_plain_adapters", file)
+    plain_adapters = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(plain_adapters)
+    half = any(str(p.dtype).endswith("16") for p in module.parameters())
+    try:
+        plain_adapters.attach(module, folder, check=not half)
+    except (ValueError, OSError) as error:
+        stop(f"the adapters do not fit {type(encoder).__name__}: {error}")
+    Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}", checked=not half)
+
+
 # a loop of one's own ----------------------------------------------------------------------------
 
 
@@ -550,6 +632,7 @@ PATCHES = {  # module: ((class, or none for the module's own functions; method; 
         ("Env", "render", _env_render),
     ),
     "habitat_sim.simulator": (("Simulator", "get_sensor_observations", _sensor_observations),),
+    "WMNav_env": (("Env", "_run_episode", _wmnav_episode),),
 }
 
 
@@ -561,8 +644,7 @@ def patch(module):
         if kind is None or not hasattr(kind, method):
             stop(
                 f"{module.__name__} has no {owner} {method}: this version of it is not known to "
-                "the bridge (known: "
-                "habitat-lab 0.1.5 to 0.3)."
+                "the bridge (known: habitat-lab 0.1.5 to 0.3), or adapters= is wrong."
             )
         setattr(kind, method, _wrapped(getattr(kind, method), wrapper))
 
@@ -595,8 +677,13 @@ class Finder:
 
 def install():
     """Wrap what this process imports from now on, under ``mitigate run``; else do nothing."""
-    if ADDRESS in os.environ and not any(isinstance(f, Finder) for f in sys.meta_path):
-        sys.meta_path.insert(0, Finder())
+    if ADDRESS not in os.environ or any(isinstance(f, Finder) for f in sys.meta_path):
+        return
+    if os.environ.get(ADAPTERS):
+        told = json.loads(os.environ[ADAPTERS])
+        wrapper = _adapted(told["folder"], told["file"], told["path"])
+        PATCHES[told["module"]] = ((told["class"], "forward", wrapper),)
+    sys.meta_path.insert(0, Finder())
 
 
 def run_hidden_sitecustomize(own):

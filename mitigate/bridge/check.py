@@ -1,0 +1,185 @@
+"""``mitigate run --check -- COMMAND``: look at the first frames of a program, and stop it.
+
+Says what it sees and hears, which conditions of the suite apply, and draws what it would see.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from omegaconf import DictConfig
+
+from mitigate.bridge.cameras import Group, Rig, corrupted
+from mitigate.bridge.cell import applicable, cells
+from mitigate.bridge.results import Told
+from mitigate.core.files import write_atomically
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions import Corruption, Key
+from mitigate.corruptions.gallery import depth_picture
+
+SHOWN = 4  # cameras of a panorama in a row of the sheet
+SIDE, TITLE, LABEL = 160, 24, 170  # pixels: height of a picture, of a title, width of the names
+LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
+
+
+@dataclass
+class FirstLook:
+    """Keeps the frames of the first call in a file."""
+
+    file: Path
+    kinds: tuple[str, ...] = (RGB, DEPTH)
+
+    def episode(self, told: Mapping[str, Any]) -> None:
+        """Nothing: the events tell of it."""
+
+    def frame(
+        self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
+    ) -> None:
+        """Write the frames, once."""
+        if not self.file.is_file():
+            frames = {camera.name: camera.read(memory, offsets) for camera in rig.cameras}
+            heading = told.get("heading")
+            frames[".heading"] = np.array([] if heading is None else [heading])
+            write_atomically(self.file, lambda path: _save(path, frames))
+
+    def end(self, told: Mapping[str, Any]) -> None:
+        """Nothing: one look is enough."""
+
+
+def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
+    with open(path, "wb") as file:
+        np.savez(file, **frames)
+
+
+def check(cfg: DictConfig, command: Sequence[str]) -> Path:
+    """Run ``command`` up to its first frames; return the path of the sheet.
+
+    Raises ValueError if it ends before, or shows nothing within ``LATE`` seconds.
+    """
+    from mitigate.bridge.run import name_of
+
+    out = Path(cfg.out or f"{cfg.runs}/run/{cfg.name or name_of(command)}-check")
+    made = cells(cfg, command, out, "check")
+    cell, file = made[0], out / "first.npz"
+    cell.folder = out / "check"
+    file.unlink(missing_ok=True)
+    cell.condition.observers.append(FirstLook(file))
+    print(f"check: started, its output is in {cell.log}", flush=True)
+    cell.start()
+    try:
+        _wait(cell, file)
+    finally:
+        cell.kill()
+    told = cell.told()
+    rig = Rig(told.cameras, cfg.missing, cfg.turn)
+    print("\n".join(described(told, rig)))
+    fitting = []
+    for other in made[1:]:
+        reason = applicable(other.corruption, told)
+        print(f"  {other.name}: {f'not applicable, {reason}' if reason else 'applies'}")
+        if not reason and other.corruption.modality in (RGB, DEPTH):
+            fitting.append(other.corruption)
+    with np.load(file, allow_pickle=False) as frames:
+        picture = sheet(rig, dict(frames), fitting, told.first, cfg.seed)
+    path = out / "sheet.png"
+    write_atomically(path, lambda p: p.write_bytes(cv2.imencode(".png", picture[..., ::-1])[1]))
+    print(f"wrote {path}: what the agent would see at its first frame", flush=True)
+    return path
+
+
+def _wait(cell: Any, file: Path) -> None:
+    began = spoke = time.monotonic()
+    while not file.is_file():
+        time.sleep(0.1)
+        problem = cell.poll()
+        if problem is not None:
+            raise ValueError(problem or "the command ended before its first frame.")
+        if time.monotonic() - began > LATE:
+            raise ValueError(f"no frame came within {LATE:g} s. Its output:\n{cell.tail()}")
+        if time.monotonic() - spoke > 10:
+            spoke = time.monotonic()
+            print(f"check: no frame after {spoke - began:.0f} s", flush=True)
+
+
+def described(told: Told, rig: Rig) -> list[str]:
+    """Return lines that say what the program is, sees and hears."""
+    hello = told.hellos[0] if told.hellos else {}
+    versions = {"Python": hello.get("python"), "numpy": hello.get("numpy")}
+    versions |= {n: hello.get(n.replace("-", "_")) for n in ("habitat", "habitat-sim", "torch")}
+    lines = ["program: " + ", ".join(f"{n} {v}" for n, v in versions.items() if v)]
+    for group in rig.groups:
+        first = group.cameras[0]
+        size = " x ".join(map(str, first.shape))
+        what = f"  {first.kind}: " + ", ".join(camera.name for camera in group.cameras)
+        many = f", {len(group.cameras)} as one panorama" if len(group.cameras) > 1 else ""
+        hfov = "" if first.hfov is None else f", hfov {first.hfov:g}"
+        lines.append(f"{what}; {size} {first.dtype}{hfov}{many}{_range(group)}")
+    first, said = told.first, []
+    if first:
+        said.append(f"episode {first['episode']} of {first['scene']}")
+        if first.get("category"):
+            said.append(f"goal category {first['category']!r}")
+        said.append(f"instruction {first['text']!r}" if first.get("text") else "no instruction")
+    return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(said), "conditions:"]
+
+
+def _range(group: Group) -> str:
+    first = group.cameras[0]
+    if first.kind != DEPTH:
+        return ""
+    unit = "0 to 1 for" if first.normalised else "metres,"
+    return f", {unit} {first.sensor.z_min:g} to {first.sensor.z_max:g} m"
+
+
+def sheet(
+    rig: Rig,
+    frames: Mapping[str, np.ndarray],
+    corruptions: Sequence[Corruption],
+    first: Mapping[str, Any],
+    seed: int,
+) -> np.ndarray:
+    """Return uint8 RGB: a row for clean and each corruption, with the cameras of its modality."""
+    scene = str(first.get("scene", "")).rpartition("/")[2]
+    key = Key(seed, f"{scene}/{first.get('episode', '')}", 0)
+    heading = frames[".heading"]
+    by_kind = {group.cameras[0].kind: group for group in reversed(rig.groups)}
+    rows = [("clean", kind, None) for kind in by_kind]
+    rows += [(c.name, c.modality, c) for c in corruptions]
+    drawn = []
+    for name, kind, corruption in rows:
+        group = by_kind[kind]
+        views = np.zeros(group.shape, group.cameras[0].dtype)
+        for camera, view in zip(group.cameras, group.views, strict=True):
+            views[view] = frames[camera.name]
+        if corruption is not None:
+            at = float(heading[0]) if heading.size else None
+            views = corrupted(group, views, corruption, key, at)
+        drawn.append(_row(name, group, views))
+    wide = max(row.shape[1] for row in drawn)
+    return np.vstack(
+        [
+            np.pad(row, ((0, 4), (0, wide - row.shape[1]), (0, 0)), constant_values=255)
+            for row in drawn
+        ]
+    )
+
+
+def _row(name: str, group: Group, views: np.ndarray) -> np.ndarray:
+    cells = [np.full((SIDE, LABEL, 3), 255, np.uint8)]
+    place = (6, SIDE // 2)
+    cv2.putText(cells[0], name, place, cv2.FONT_HERSHEY_SIMPLEX, 0.5, (0, 0, 0), 1, cv2.LINE_AA)
+    for camera, view in list(zip(group.cameras, group.views, strict=True))[:SHOWN]:
+        frame = views[view]
+        if camera.kind == DEPTH:
+            metres = camera.metres(frame.reshape(frame.shape[:2]).astype(np.float32))
+            frame = depth_picture(metres, camera.sensor.z_max)
+        scale = SIDE / frame.shape[0]
+        size = (round(frame.shape[1] * scale), SIDE)
+        cells.append(cv2.resize(frame, size, interpolation=cv2.INTER_AREA))
+    return np.hstack(cells)

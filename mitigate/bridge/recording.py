@@ -1,0 +1,97 @@
+"""Writes what an agent saw, heard and did: clean frames, poses, actions and measures as files.
+
+A recording is a folder ``<scene>/<episode>/`` for each episode, with ``<camera>/000000.png`` for
+each call (RGB, or depth as 16-bit millimetres), ``episode.json``, ``steps.jsonl`` (a line a call)
+and ``end.json``. ``mitigate corrupt``, ``recipe=encoder`` (env=frames) and ``mitigate replay`` read
+it.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+
+from mitigate.bridge.cameras import Camera, Rig
+from mitigate.core.files import RECORDING, atomic_text, write_bytes
+from mitigate.core.observation import DEPTH, RGB
+
+KINDS = (RGB, DEPTH)
+MILLIMETRES, MOST = 1000.0, 65535  # of a count of 16-bit depth; its largest one
+_PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
+
+
+def plain(name: str) -> str:
+    """Return ``name`` as a part of a path: what comes from outside names no other folder."""
+    return _PLAIN.sub("-", name).lstrip(".") or "unnamed"
+
+
+@dataclass
+class Recorder:
+    """Writes what passes into ``folder``; of an episode that comes again the later one stays."""
+
+    folder: Path
+    here: Path | None = None
+    cameras: list[Mapping[str, Any]] = field(default_factory=list)
+
+    @property
+    def kinds(self) -> tuple[str, ...]:
+        """Of the cameras that it needs to see."""
+        return KINDS
+
+    def episode(self, told: Mapping[str, Any]) -> None:
+        """Begin the folder of an episode."""
+        scene = str(told["scene"]).rpartition("/")[2].split(".")[0]
+        self.here = self.folder / plain(scene) / plain(str(told["id"]))
+        self.here.mkdir(parents=True, exist_ok=True)
+        note = {"unit": 1 / MILLIMETRES, "depth": "16-bit PNG", "frames": "clean"}
+        with atomic_text(self.folder / RECORDING) as file:
+            json.dump(note, file)
+        said = ("scene", "id", "text", "tokens", "language", "category")
+        with atomic_text(self.here / "episode.json") as file:
+            json.dump({name: told.get(name) for name in said}, file, ensure_ascii=False)
+        (self.here / "steps.jsonl").write_text("", encoding="utf-8")
+
+    def frame(
+        self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
+    ) -> None:
+        """Write the clean frames of a call, and where the agent was."""
+        if self.here is None:
+            return
+        for camera in rig.cameras:
+            frame = camera.read(memory, offsets)
+            write_bytes(
+                self.here / plain(camera.name) / f"{int(told['call']):06d}.png", png(camera, frame)
+            )
+        line = {name: told.get(name) for name in ("call", "position", "heading")}
+        with open(self.here / "steps.jsonl", "a", encoding="utf-8") as file:
+            file.write(json.dumps(line) + "\n")
+
+    def end(self, told: Mapping[str, Any]) -> None:
+        """Write how the episode went."""
+        if self.here is not None:
+            said = {name: value for name, value in told.items() if name != "kind"}
+            with atomic_text(self.here / "end.json") as file:
+                json.dump(said, file)
+        self.here = None
+
+
+def png(camera: Camera, frame: np.ndarray) -> bytes:
+    """Return a frame as a PNG file: RGB, or depth in millimetres, 0 where there is none."""
+    if camera.kind == RGB:
+        picture = frame[..., ::-1]
+    else:
+        metres = camera.metres(frame.reshape(frame.shape[:2]).astype(np.float32))
+        valid = np.isfinite(metres) & (metres > 0)
+        counts = np.rint(np.where(valid, metres, 0) * MILLIMETRES)
+        picture = np.clip(counts, valid, MOST).astype(np.uint16)
+    done, encoded = cv2.imencode(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    if not done:
+        raise ValueError(f"The frame of the camera {camera.name!r} cannot be written as PNG.")
+    return encoded.tobytes()

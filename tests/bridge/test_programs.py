@@ -1,0 +1,154 @@
+"""Programs without habitat-lab, loops of one's own, and adapters in an agent's encoder."""
+
+import hashlib
+import json
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import torch
+from torch import nn
+
+from mitigate.agents.adapters import insert_adapters, save_adapters
+from mitigate.bridge.results import OWN, read, rows
+from mitigate.bridge.run import run as run_command
+from mitigate.bridge.server import Listener
+from mitigate.core.conf import load_config
+from mitigate.corruptions import Corruption, Key, corrupt
+from tests.encoders.test_token_adapters import shaken
+
+from .conftest import LAB, condition
+
+
+def python(listener, code, *arguments):
+    """Run code as a program of the user's."""
+    environment = {**os.environ, **listener.environment()}
+    environment["PYTHONPATH"] += os.pathsep + str(LAB)
+    return subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=30,
+        check=False,
+    )
+
+
+WMNAV = "import sys, WMNav_env; WMNav_env.WMNavEnv().run_experiment(sys.argv[1])"
+
+
+def test_wmnav_is_corrupted_and_measured_without_a_lab(tmp_path):
+    with Listener(condition("low_light"), tmp_path) as listener:
+        ran = python(listener, WMNAV, tmp_path / "seen.json")
+    assert ran.returncode == 0 and "went on" not in ran.stdout, ran.stdout
+    seen = json.loads((tmp_path / "seen.json").read_text())
+    assert len(seen) == 6
+    assert all(colour[0] < 130 and colour[3] == 255 for colour, _ in seen)
+    told = read(tmp_path)
+    assert sorted(told.ends) == ["x0/0", "x0/1", "x1/2"]
+    label = {"agent": "a", "name": "wmnav", "split": "s", "seed": 0}
+    found = rows(told, Corruption("low_light", 0.6), label, None)
+    own = [row for row in found if row["rule"] == OWN]
+    assert [(row["success"], row["spl"]) for row in own] == [(1.0, 0.75)] * 3
+
+
+def test_wmnav_hears_the_corrupted_category(tmp_path):
+    with Listener(condition("black_box", 0.2), tmp_path) as listener:
+        python(listener, WMNAV, tmp_path / "seen.json")
+    words = [object_ for _, object_ in json.loads((tmp_path / "seen.json").read_text())]
+    assert all(word.endswith(" chair") and len(word) > 12 for word in words)
+
+
+def test_habitat_sim_alone_must_be_told_its_episodes(tmp_path):
+    code = "import habitat_sim; habitat_sim.Simulator().get_sensor_observations()"
+    with Listener(condition("spatter"), tmp_path) as listener:
+        ran = python(listener, code)
+    assert ran.returncode == 97 and "mitigate_hook.connect(" in ran.stdout
+
+
+LOOP = """
+import hashlib, json, sys, numpy, mitigate_hook
+episode = mitigate_hook.connect("17", scene="a/x.glb", instruction="Go to the door.")
+rgb = (numpy.arange(16 * 20 * 3) % 251).reshape(16, 20, 3).astype("uint8")
+shown = [episode.corrupt({"rgb": rgb, "other": 5}, heading=0.3) for _ in range(2)]
+assert list(shown[0]) == ["rgb", "other"] and shown[0]["other"] == 5
+print(episode.instruction, *[hashlib.sha256(s["rgb"].tobytes()).hexdigest() for s in shown])
+episode.finish(success=True, spl=0.5)
+"""
+
+
+def test_a_loop_of_ones_own_takes_three_calls(tmp_path):
+    with Listener(condition("low_light_noise"), tmp_path) as listener:
+        ran = python(listener, LOOP)
+    assert ran.returncode == 0, ran.stdout
+    rgb = (np.arange(16 * 20 * 3) % 251).reshape(16, 20, 3).astype("uint8")
+    frames = [
+        corrupt(rgb, "low_light_noise", 0.6, key=Key(0, "x.glb/17", n), heading=0.3)
+        for n in range(2)
+    ]
+    wanted = " ".join(hashlib.sha256(frame.tobytes()).hexdigest() for frame in frames)
+    assert ran.stdout.strip() == f"Go to the door. {wanted}"
+    assert read(tmp_path).ends["x/17"]["metrics"] == {"success": 1.0, "spl": 0.5}
+
+
+def test_outside_of_a_run_connect_says_so():
+    from mitigate.bridge.hook import mitigate_hook
+
+    with pytest.raises(RuntimeError, match="mitigate run"):
+        mitigate_hook.connect("1")
+
+
+ENCODER = """
+import hashlib, sys, torch, mitigate_hook
+from torch import nn
+class Encoder(nn.Module):
+    def __init__(self):
+        super().__init__()
+        self.model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.ReLU(), nn.Conv2d(8, 8, 3))
+    def forward(self, frames):
+        return self.model(frames)
+"""
+PROGRAM = """
+import sys, numpy, torch, mitigate_hook, their_encoder
+encoder = their_encoder.Encoder().eval()
+encoder.load_state_dict(torch.load(sys.argv[1], weights_only=True))
+episode = mitigate_hook.connect("1")
+rgb = episode.corrupt({"rgb": numpy.full((9, 9, 3), 90, "uint8")})["rgb"]
+with torch.no_grad():
+    features = encoder(torch.from_numpy(rgb).permute(2, 0, 1)[None] / 255)
+torch.save(features, sys.argv[2])
+episode.finish(success=1, spl=1.0)
+"""
+
+
+def test_adapters_go_into_an_agents_own_encoder(tmp_path, monkeypatch):
+    (tmp_path / "their_encoder.py").write_text(ENCODER)
+    (tmp_path / "program.py").write_text(PROGRAM)
+    torch.manual_seed(0)
+    model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.ReLU(), nn.Conv2d(8, 8, 3)).eval()
+    torch.save({f"model.{n}": t for n, t in model.state_dict().items()}, tmp_path / "w.pt")
+    frames = torch.full((1, 3, 9, 9), 90 / 255)
+    with torch.no_grad():
+        before = model(frames)
+        insert_adapters(model, ["2"], run=lambda n: model(frames.expand(n, -1, -1, -1)))
+        save_adapters(shaken(model), tmp_path / "adapters")
+        wanted = model(frames)
+    monkeypatch.chdir(tmp_path)
+    command = [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
+
+    def features(name, place):
+        options = [f"out={tmp_path / name}", "conditions=[clean]"]
+        options += [f"adapters={tmp_path / 'adapters'}:{place}"] if place else []
+        run_command(load_config("run", options), command)
+        return torch.load(tmp_path / name / "conditions/clean/features.pt", weights_only=True)
+
+    assert torch.equal(features("plain", ""), before)
+    adapted = features("adapted", "their_encoder:Encoder.model")
+    assert torch.equal(adapted, wanted) and not torch.equal(adapted, before)
+    with pytest.raises(ValueError, match="there is no visual: its modules there are model"):
+        features("wrong", "their_encoder:Encoder.visual")
+    with pytest.raises(ValueError, match="must be FOLDER:package.module:Class.attribute"):
+        features("unclear", "Encoder")

@@ -1,0 +1,50 @@
+"""What a recording of a program holds, and who reads it."""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+
+from mitigate.bridge.cameras import read_camera
+from mitigate.bridge.recording import Recorder, plain, png
+from mitigate.corruptions import DepthSensor
+from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
+
+from .conftest import condition
+
+
+def test_clean_frames_poses_actions_and_measures_are_written(command, tmp_path):
+    folder = tmp_path / "recording"
+    met = condition("low_light", observers=[Recorder(folder)])
+    seen = command(met, "--cameras", 2, "--steps", 3).seen()
+    clean = command(condition(), "--cameras", 2, "--steps", 3).seen()
+    assert seen["0", 1]["frames"]["rgb"] != clean["0", 1]["frames"]["rgb"]
+    episode = folder / "s0" / "0"
+    assert json.loads((episode / "episode.json").read_text())["text"] == "Walk to the door 0."
+    steps = [json.loads(line) for line in (episode / "steps.jsonl").read_text().splitlines()]
+    assert [step["call"] for step in steps] == [0, 1, 2, 3]
+    assert steps[2]["position"] == [0.0, 0.0, -0.5]
+    end = json.loads((episode / "end.json").read_text())
+    assert end["actions"] == [1, 1, 0] and end["metrics"]["success"] == 1.0
+    for camera in ("rgb", "rgb_30", "depth", "depth_30"):
+        assert len(list((episode / camera).glob("*.png"))) == 4
+    depth = cv2.imread(str(episode / "depth" / "000000.png"), cv2.IMREAD_UNCHANGED)
+    assert depth.dtype == np.uint16 and 900 < depth.min() < depth.max() < 9100  # millimetres
+    frames = FolderFrames(str(folder), held_out=0.5)
+    assert list(frames.scenes(TRAIN)) == ["s0"] and list(frames.scenes(UNSEEN)) == ["s1"]
+
+
+@pytest.mark.parametrize("name", ["../../etc/passwd", "..", "a/b", "", "x\n.y"])
+def test_names_from_outside_stay_in_the_folder(name):
+    made = plain(name)
+    assert made and "/" not in made and not made.startswith(".") and "\n" not in made
+
+
+def test_depth_is_written_in_millimetres_and_holes_stay_holes():
+    told = {"name": "depth", "type": "depth", "shape": [2, 2, 1], "dtype": "float32"}
+    told |= {"min_depth": 0.5, "max_depth": 5.0, "normalize_depth": True}
+    camera = read_camera(told, DepthSensor())
+    frame = np.array([[0.0, 1.0], [0.5, np.nan]], np.float32)[:, :, None]
+    counts = cv2.imdecode(np.frombuffer(png(camera, frame), np.uint8), cv2.IMREAD_UNCHANGED)
+    assert counts.tolist() == [[0, 5000], [2750, 0]]
