@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
 from mitigate.core import observation
 from mitigate.corruptions.depth import DepthSensor
@@ -28,14 +29,18 @@ def corrupt_normalised(
     check_sensor(sensor)
     if corruption.modality != "depth" or observation.DEPTH not in obs:
         return corrupt_observation(obs, corruption, key, sensor)
-    clean = np.asarray(obs[observation.DEPTH])
-    valid = _valid(clean)
-    metres = np.where(valid, sensor.to_metres(clean), np.float32(0))
+    clean = np.ascontiguousarray(_checked(np.asarray(obs[observation.DEPTH])))
+    metres, range_ = np.empty_like(clean), _range(sensor)
+    most = _to_metres(clean.reshape(-1), *range_, metres.reshape(-1))
+    if most > 1.0:
+        raise ValueError(
+            f"Normalised depth must be in 0-1, but this frame reaches {most:g}. Is it in metres? "
+            "Then say normalised=False, or call corrupt_observation."
+        )
     corrupted = corrupt_observation({**obs, observation.DEPTH: metres}, corruption, key, sensor)
-    return {
-        **corrupted,
-        observation.DEPTH: _normalise(corrupted[observation.DEPTH], metres, clean, sensor),
-    }
+    made, out = np.ascontiguousarray(corrupted[observation.DEPTH]), np.empty_like(clean)
+    _normalise(made.reshape(-1), metres.reshape(-1), clean.reshape(-1), *range_, out.reshape(-1))
+    return {**corrupted, observation.DEPTH: out}
 
 
 def check_sensor(sensor: DepthSensor) -> None:
@@ -46,26 +51,42 @@ def check_sensor(sensor: DepthSensor) -> None:
         )
 
 
-def _valid(clean: np.ndarray) -> np.ndarray:
+def _checked(clean: np.ndarray) -> np.ndarray:
     if clean.dtype != np.float32:
         raise ValueError(
             f"Normalised depth must be float32 in 0-1, but this frame is {clean.dtype}. Convert it "
             "first: depth.astype(np.float32)."
         )
-    valid = (clean > 0) & (clean < np.inf)
-    most = float(clean[valid].max(initial=0.0))
-    if most > 1.0:
-        raise ValueError(
-            f"Normalised depth must be in 0-1, but this frame reaches {most:g}. Is it in metres? "
-            "Then say normalised=False, or call corrupt_observation."
-        )
-    return valid
+    return clean
 
 
-def _normalise(
-    corrupted: np.ndarray, metres: np.ndarray, clean: np.ndarray, sensor: DepthSensor
-) -> np.ndarray:
+def _range(sensor: DepthSensor) -> tuple[np.float32, np.float32]:
+    """Nearest depth and extent of the range, in metres."""
+    return np.float32(sensor.z_min), np.float32(sensor.z_max - sensor.z_min)
+
+
+@njit(cache=True)
+def _to_metres(clean, z_min, span, out):
+    """Metres of valid depth, 0 for the rest; returns the largest valid value."""
+    most = np.float32(0)
+    for i in range(clean.size):
+        value = clean[i]
+        if value > 0 and value < np.inf:
+            out[i] = z_min + value * span
+            most = max(most, value)
+        else:
+            out[i] = 0
+    return most
+
+
+@njit(cache=True)
+def _normalise(corrupted, metres, clean, z_min, span, out):
     """Back to [0, 1]; where ``corrupted`` still is ``metres``, the clean values themselves."""
-    unit = (corrupted - np.float32(sensor.z_min)) / np.float32(sensor.z_max - sensor.z_min)
-    read = np.where(corrupted > 0, np.clip(unit, LEAST, 1), np.float32(0))
-    return np.where(corrupted == metres, clean, read).astype(np.float32)
+    for i in range(clean.size):
+        depth = corrupted[i]
+        if depth == metres[i]:
+            out[i] = clean[i]
+        elif depth > 0:
+            out[i] = min(max((depth - z_min) / span, LEAST), np.float32(1))
+        else:
+            out[i] = 0
