@@ -71,6 +71,12 @@ COMMANDS = {
         "write the agent of a run as a hardened checkpoint",
         "runs/ts_distill-s0.6-seed0 mine",
     ),
+    "export-scene": Command(
+        "mitigate.worlds.apartments.export_command",
+        "write apartments and their episodes for Habitat",
+        "habitat/ split=val_unseen scenes=3",
+        "files",
+    ),
     "doctor": Command("mitigate.core.doctor", "say what this machine has and what is missing", ""),
 }
 

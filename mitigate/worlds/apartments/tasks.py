@@ -78,7 +78,7 @@ def _draw_vln(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int]
         if (p.category, p.colour) == (piece.category, piece.colour)
         and apartment.rooms[p.room].kind == kind
     ]
-    cells = _beside(apartment, target)
+    cells = view_cells(apartment, target)
     if len(twins) > 1 or not len(cells):
         return [], target
     return [int(rng.choice(cells))], target
@@ -87,11 +87,11 @@ def _draw_vln(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int]
 def _draw_ogn(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
     category = str(rng.choice(sorted({p.category for p in apartment.furniture})))
     same = [i for i, p in enumerate(apartment.furniture) if p.category == category]
-    cells = [_beside(apartment, i) for i in same]
+    cells = [view_cells(apartment, i) for i in same]
     return [int(c[len(c) // 2]) for c in cells if len(c)], same[0]
 
 
-def _beside(apartment: Apartment, instance: int) -> np.ndarray:
+def view_cells(apartment: Apartment, instance: int) -> np.ndarray:
     """Free cells of the same room within 0.8 m of a piece of furniture."""
     space, piece = apartment.space, apartment.furniture[instance]
     xy = (space.cells[:, ::-1] + 0.5) * 0.1
@@ -181,7 +181,7 @@ def view_field(episode: Episode) -> np.ndarray:
 @lru_cache(maxsize=64)
 def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
     apartment = apartment_of(scene_id)
-    beside = np.unique(np.concatenate([_beside(apartment, thing) for thing in things]))
+    beside = np.unique(np.concatenate([view_cells(apartment, thing) for thing in things]))
     return apartment.space.distances(list(beside))
 
 

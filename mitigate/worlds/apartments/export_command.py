@@ -1,0 +1,216 @@
+"""Write apartments for Habitat: mitigate export-scene OUT split=val_unseen scenes=3
+
+  OUT      folder for scenes, episodes and configs
+  split    train, val_seen or val_unseen (default)
+  scenes   how many of its apartments (null: all of the shipped episode list; of train: 100)
+  task     vln, ogn or both (default)
+
+OUT/scenes/apartments/<split>/<seed>.glb      the apartments, z up, unlit
+OUT/datasets/vln/<split>.json.gz              the shipped episodes as habitat-lab's R2RVLN-v1 and
+                                              VLN-CE read them: words of the file's own vocabulary
+OUT/datasets/objectnav/<split>/...            as ObjectNav-v1 reads them, with view points
+OUT/navmesh.json                              the agent's size, for Simulator.recompute_navmesh
+
+The same command again writes the same bytes. How to use it: docs/habitat.md.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from mitigate.core.files import atomic_text, write_bytes
+from mitigate.core.names import unknown
+from mitigate.worlds.apartments.apartment import apartment_of
+from mitigate.worlds.apartments.furniture import CATEGORIES
+from mitigate.worlds.apartments.gltf import glb
+from mitigate.worlds.apartments.navigation import RADIUS
+from mitigate.worlds.apartments.palette import SPLITS
+from mitigate.worlds.apartments.renderer import EYE
+from mitigate.worlds.apartments.tasks import (
+    fixed_episodes,
+    landmarks,
+    load_episodes,
+    to_vlnce,
+    view_cells,
+)
+from mitigate.worlds.episodes import Episode, to_json
+
+TRAIN = 100  # apartments of train that are written if nothing is said (ours)
+PER_APARTMENT = 10  # episodes of one apartment in the lists
+NAVMESH = {  # of habitat_sim.NavMeshSettings; the agent is lifted by cell_height
+    "agent_radius": RADIUS,
+    "agent_height": 1.5,
+    "agent_max_climb": 0.05,
+    "cell_size": 0.03,
+    "cell_height": 0.05,
+    "include_static_objects": False,
+    "camera_height": EYE,
+}
+PAD, UNKNOWN = "<pad>", "<unk>"
+TOKENS = 200  # of an instruction, padded, as in R2R-CE's files
+DEFAULTS = {"split": "val_unseen", "scenes": "null", "task": "both"}
+ALLOWED = {"split": SPLITS, "task": ("vln", "ogn", "both")}
+
+
+def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> list[Path]:
+    """Write apartments and their episodes to ``out``; return the paths of the episode lists."""
+    listed: dict[str, list[Episode]] = {task: _episodes(split, task, scenes) for task in tasks}
+    places = sorted({e.scene_id for episodes in listed.values() for e in episodes})
+    for number, scene in enumerate(places):
+        write_bytes(out / "scenes" / f"{scene}.glb", glb(apartment_of(scene).faces))
+        print(f"scene {number + 1}/{len(places)}: {scene}", flush=True)
+    with atomic_text(out / "navmesh.json") as file:
+        json.dump(NAVMESH, file, indent=1)
+    written = []
+    if "vln" in listed:
+        written.append(write_vln(out, split, listed["vln"]))
+    if "ogn" in listed:
+        written.append(write_objectnav(out, split, listed["ogn"]))
+    return written
+
+
+def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
+    """The shipped list of a split, of its first ``scenes`` apartments; train has none shipped."""
+    if split == "train":
+        return list(fixed_episodes(split, task, PER_APARTMENT * (scenes or TRAIN)))
+    found = load_episodes(split, task)
+    kept = sorted({episode.scene_id for episode in found})[:scenes]
+    return [episode for episode in found if episode.scene_id in kept]
+
+
+def write_vln(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
+    """Write episodes as R2R-CE's files are: tokens by the vocabulary that the file holds."""
+    words = sorted({w for e in episodes for w in _words(e.instruction.text)})
+    vocabulary = [PAD, UNKNOWN, *words]
+    numbers = {word: number for number, word in enumerate(vocabulary)}
+    listed = []
+    for episode in episodes:
+        tokens = [numbers[word] for word in _words(episode.instruction.text)][:TOKENS]
+        made = to_json(episode)
+        made["scene_id"] = f"{episode.scene_id}.glb"
+        made["instruction"] = {
+            "instruction_text": episode.instruction.text,
+            "instruction_tokens": tokens + [0] * (TOKENS - len(tokens)),
+        }
+        listed.append(made)
+    stored = {
+        "word_list": vocabulary,
+        "word2idx_dict": numbers,
+        "stoi": numbers,
+        "itos": vocabulary,
+        "num_vocab": len(vocabulary),
+        "PAD_INDEX": 0,
+        "UNK_INDEX": 1,
+    }
+    path = out / "datasets" / "vln" / f"{split}.json.gz"
+    with atomic_text(path) as file:
+        json.dump({"episodes": listed, "instruction_vocab": stored}, file)
+    return path
+
+
+def _words(text: str) -> list[str]:
+    return re.findall(r"[a-z]+|[^\w\s]", text.lower())
+
+
+def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
+    """Write episodes as HM3D's ObjectNav files are: a file of each scene beside an empty one."""
+    ids = {category: number for number, category in enumerate(CATEGORIES)}
+    known = {
+        "category_to_task_category_id": ids,
+        "category_to_scene_annotation_category_id": ids,
+    }
+    by_scene: dict[str, list[Episode]] = defaultdict(list)
+    for episode in episodes:
+        by_scene[episode.scene_id].append(episode)
+    folder = out / "datasets" / "objectnav" / split
+    for scene, own in by_scene.items():
+        name = f"{scene}.glb"
+        goals = {
+            f"{Path(name).name}_{episode.info['category']}": _goals(episode) for episode in own
+        }
+        listed = [_objectnav(episode, name) for episode in own]
+        with atomic_text(folder / "content" / f"{Path(scene).name}.json.gz") as file:
+            json.dump({"episodes": listed, "goals_by_category": goals, **known}, file)
+    path = folder / f"{split}.json.gz"
+    with atomic_text(path) as file:
+        json.dump({"episodes": [], **known}, file)
+    return path
+
+
+def _objectnav(episode: Episode, scene: str) -> dict[str, Any]:
+    made = to_json(episode)
+    return {
+        **{name: made[name] for name in ("episode_id", "start_position", "start_rotation")},
+        "scene_id": scene,
+        "info": {"geodesic_distance": episode.geodesic_distance},
+        "goals": [],
+        "object_category": episode.info["category"],
+    }
+
+
+def _goals(episode: Episode) -> list[dict[str, Any]]:
+    """All things of the category, each with the free cells beside it as view points."""
+    apartment, found = apartment_of(episode.scene_id), []
+    for thing in landmarks(episode):
+        piece = apartment.furniture[thing]
+        x0, y0, x1, y1 = piece.rect
+        views = [
+            {"agent_state": {"position": to_vlnce(xy), "rotation": [0.0, 0.0, 0.0, 1.0]}}
+            for xy in map(apartment.space.centre, view_cells(apartment, thing))
+        ]
+        found.append(
+            {
+                "position": to_vlnce(((x0 + x1) / 2, (y0 + y1) / 2)),
+                "object_id": thing,
+                "object_name": f"{piece.category}_{thing}",
+                "object_category": piece.category,
+                "view_points": [{**view, "iou": 1.0} for view in views],
+            }
+        )
+    return found
+
+
+def parse(arguments: Sequence[str]) -> tuple[Path, str, int | None, tuple[str, ...]]:
+    """OUT, split, scenes and tasks. Raises ValueError in one paragraph for what cannot be read."""
+    options, paths = dict(DEFAULTS), []
+    for argument in arguments:
+        name, equals, value = argument.partition("=")
+        if equals and name.isidentifier():
+            if name not in DEFAULTS:
+                raise ValueError(unknown("option", name, DEFAULTS))
+            options[name] = value
+        elif argument.startswith("-"):
+            raise ValueError(f"There is no option {argument}: write key=value, or --help.")
+        else:
+            paths.append(argument)
+    if len(paths) != 1:
+        raise ValueError(f"One folder is needed, OUT, but there are {len(paths)}. See --help.")
+    for name, allowed in ALLOWED.items():
+        if options[name] not in allowed:
+            raise ValueError(unknown(name, options[name], allowed))
+    if options["scenes"] != "null" and not options["scenes"].isdecimal():
+        raise ValueError(f"scenes={options['scenes']} must be a whole number, or null for all.")
+    scenes = None if options["scenes"] == "null" else max(1, int(options["scenes"]))
+    tasks = ("vln", "ogn") if options["task"] == "both" else (options["task"],)
+    return Path(paths[0]), options["split"], scenes, tasks
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run from the command line; return the exit status."""
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments or "--help" in arguments or "-h" in arguments:
+        print(__doc__)
+        return 0 if arguments else 2
+    try:
+        written = export(*parse(arguments))
+    except (OSError, ValueError) as error:
+        print(f"export-scene: {error}", file=sys.stderr)
+        return 2
+    print("\n".join(f"wrote {path}" for path in written))
+    return 0
