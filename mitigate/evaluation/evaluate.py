@@ -60,6 +60,14 @@ class WeightsConfig:
 
 
 @dataclass
+class FinetuneConfig:
+    """How recipes teach a policy that is trained already, for the chosen kind of agent."""
+
+    lr: float = 4e-4
+    follow_oracle: float = 0.25
+
+
+@dataclass
 class EvaluateConfig:
     """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
 
@@ -77,6 +85,7 @@ class EvaluateConfig:
     out: str | None = None
     agent: Any = MISSING
     weights: WeightsConfig = field(default_factory=WeightsConfig)
+    finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
     env: Any = MISSING
     suite: Any = field(default=MISSING)
 

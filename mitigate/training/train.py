@@ -29,7 +29,14 @@ from mitigate.core.files import atomic_text
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
 from mitigate.corruptions import Corruption
-from mitigate.evaluation.evaluate import EvaluationConfig, WeightsConfig, conditions, episodes, load
+from mitigate.evaluation.evaluate import (
+    EvaluationConfig,
+    FinetuneConfig,
+    WeightsConfig,
+    conditions,
+    episodes,
+    load,
+)
 from mitigate.training.batches import MOST, Workers
 from mitigate.training.ranks import Ranks
 from mitigate.training.stages import nothing_to_do, plain, train_stage, trainer_settings
@@ -85,6 +92,7 @@ class TrainConfig:
     report: str = "mitigate.evaluation.evaluate.report_before_after"
     agent: Any = MISSING
     weights: WeightsConfig = field(default_factory=WeightsConfig)
+    finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
     env: Any = MISSING
     schedule: Any = MISSING
     suite: Any = MISSING

@@ -1,0 +1,64 @@
+"""The hook's file under the Python versions of the field's agents.
+
+``tools/pythons.sh FOLDER`` makes an environment with numpy of each that is installed; the tests
+find them by the variable ``MITIGATE_PYTHONS`` (CI sets it). Without it they are skipped.
+"""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from .conftest import condition
+
+VERSIONS = ("3.6", "3.8", "3.9", "3.11", "3.13")
+HOOK = Path("mitigate/bridge/hook").resolve()
+
+
+@pytest.fixture(params=VERSIONS)
+def python(request):
+    """The interpreter of a version."""
+    folder = os.environ.get("MITIGATE_PYTHONS")
+    if folder is None:
+        pytest.skip("MITIGATE_PYTHONS is not set: tools/pythons.sh makes what it names")
+    found = Path(folder) / request.param / "bin" / "python"
+    if not found.is_file():
+        pytest.skip(f"Python {request.param} is not installed here")
+    return str(found)
+
+
+def test_every_file_of_the_hook_compiles(python, tmp_path):
+    for file in sorted(HOOK.glob("*.py")):
+        code = f"compile(open({str(file)!r}).read(), {file.name!r}, 'exec')"
+        subprocess.run([python, "-c", code], check=True)
+
+
+def test_workers_see_what_ours_see(python, command):
+    ours = command(condition("low_light_noise"), "--cameras", 12).seen()
+    options = ("--cameras", 12, "--workers", 2, "--start", "forkserver")
+    ran = command(condition("low_light_noise"), *options, python=python)
+    assert ran.status == 0, ran.output
+    seen = ran.seen()
+    assert {place: look["frames"]["rgb"] for place, look in seen.items()} == {
+        place: look["frames"]["rgb"] for place, look in ours.items()
+    }
+    assert len(ran.told.ends) == 4
+
+
+def test_a_python_without_numpy_is_left_alone(python, tmp_path):
+    """Every Python of a command loads the hook; most never meet a camera."""
+    ran = subprocess.run(
+        [python, "-S", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import sitecustomize",
+         str(HOOK)],
+        env={"MITIGATE_BRIDGE": "nowhere"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )  # fmt: skip
+    assert ran.stderr == ""
+
+
+def test_python_2_passes_by():
+    guard = (HOOK / "sitecustomize.py").read_text().splitlines()
+    assert "if sys.version_info >= (3, 6):" in guard and "import mitigate_hook" not in guard
