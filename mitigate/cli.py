@@ -71,7 +71,7 @@ COMMANDS = {
         "write the agent of a run as a hardened checkpoint",
         "runs/ts_distill-s0.6-seed0 mine",
     ),
-    "export-scene": Command(
+    "export_scene": Command(
         "mitigate.worlds.apartments.export_command",
         "write apartments and their episodes for Habitat",
         "habitat/ split=val_unseen scenes=3",
@@ -90,6 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if name in ("", "-h", "--help", "help"):
         print(usage())
         sys.exit(0 if name else 2)
+    name = name.replace("-", "_")
     if name not in COMMANDS:
         sys.exit(f"mitigate: {unknown('command', name, COMMANDS)} See mitigate --help.")
     sys.argv = [f"mitigate {name}", *options]

@@ -49,3 +49,9 @@ def test_a_missing_package_says_what_to_install(monkeypatch):
             monkeypatch.delitem(sys.modules, module)
     with pytest.raises(SystemExit, match=r"needs tqdm.*pip install 'mitigate\[files\]'"):
         cli.main(["corrupt", "--list"])
+
+
+def test_a_dash_in_a_command_is_an_underscore(capsys):
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["export-scene", "--help"])
+    assert ended.value.code == 0 and "OUT/scenes/apartments" in capsys.readouterr().out

@@ -10,6 +10,7 @@ import pytest
 from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 
+from mitigate.bridge import run as bridge_run
 from mitigate.core import conf
 from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
@@ -18,7 +19,9 @@ from mitigate.training import table1, table2, train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 
 YAMLS = sorted(path.relative_to(conf.CONF) for path in conf.CONF.rglob("*.yaml"))
-PRIMARY = tuple(module.__name__.split(".")[-1] for module in (train, evaluate, table1, table2))
+PRIMARY = tuple(
+    module.__name__.split(".")[-1] for module in (train, evaluate, table1, table2, bridge_run)
+)
 GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
 

@@ -1,0 +1,110 @@
+"""Apartments as files for Habitat."""
+
+import gzip
+import json
+import struct
+
+import numpy as np
+import pytest
+
+from mitigate.worlds.apartments.apartment import Apartment
+from mitigate.worlds.apartments.export_command import main, parse
+from mitigate.worlds.apartments.gltf import glb
+from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.episodes import read_episodes
+
+
+def chunks(data):
+    """The JSON document and the binary part of a GLB file."""
+    magic, version, length = struct.unpack_from("<4sII", data)
+    assert (magic, version, length) == (b"glTF", 2, len(data))
+    size, kind = struct.unpack_from("<I4s", data, 12)
+    assert kind == b"JSON"
+    document = json.loads(data[20 : 20 + size])
+    binary, kind = struct.unpack_from("<I4s", data, 20 + size)
+    assert kind == b"BIN\0" and 0 <= binary - document["buffers"][0]["byteLength"] < 4
+    return document, data[28 + size :]
+
+
+def accessor(document, binary, number, dtype, width):
+    told = document["accessors"][number]
+    view = document["bufferViews"][told["bufferView"]]
+    raw = binary[view["byteOffset"] : view["byteOffset"] + view["byteLength"]]
+    return np.frombuffer(raw, dtype).reshape(told["count"], width)
+
+
+def test_a_glb_holds_every_face_with_its_colours():
+    faces = Apartment(7).faces
+    document, binary = chunks(glb(faces))
+    corners, colours, triangles = [], [], 0
+    for primitive in document["meshes"][0]["primitives"]:
+        own = primitive["attributes"]
+        corners.append(accessor(document, binary, own["POSITION"], np.float32, 3))
+        colours.append(accessor(document, binary, own["COLOR_0"], np.uint8, 4))
+        index = accessor(document, binary, primitive["indices"], np.uint32, 1)
+        triangles += len(index) // 3
+        assert index.max() == len(corners[-1]) - 1
+        material = document["materials"][primitive["material"]]
+        assert "KHR_materials_unlit" in material["extensions"]
+    assert triangles == 2 * len(faces.corners)
+    found = np.concatenate(corners)
+    assert sorted(map(tuple, found)) == sorted(map(tuple, faces.corners.reshape(-1, 3)))
+    assert np.concatenate(colours)[:, 3].min() == 255
+
+
+def test_a_glb_is_the_same_bytes_each_time():
+    assert glb(Apartment(7).faces) == glb(Apartment(7).faces)
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    out = tmp_path_factory.mktemp("exported")
+    assert main([str(out), "split=val_unseen", "scenes=2"]) == 0
+    return out
+
+
+def test_route_episodes_are_as_vln_ce_files_are(exported):
+    path = exported / "datasets" / "vln" / "val_unseen.json.gz"
+    stored = json.loads(gzip.decompress(path.read_bytes()))
+    assert len(stored["episodes"]) == 20
+    words = stored["instruction_vocab"]["word_list"]
+    for episode in stored["episodes"]:
+        assert set(episode["instruction"]) == {"instruction_text", "instruction_tokens"}
+        tokens = episode["instruction"]["instruction_tokens"]
+        assert len(tokens) == 200 and max(tokens) < len(words) and 1 not in tokens
+        assert (exported / "scenes" / episode["scene_id"]).is_file()
+    ours = {episode.episode_id: episode for episode in load_episodes("val_unseen")}
+    for episode in read_episodes(path):
+        assert episode.start_position == ours[episode.episode_id].start_position
+
+
+def test_object_goals_have_view_points(exported):
+    folder = exported / "datasets" / "objectnav" / "val_unseen"
+    assert (
+        json.loads(gzip.decompress((folder / "val_unseen.json.gz").read_bytes()))["episodes"] == []
+    )
+    files = sorted((folder / "content").glob("*.json.gz"))
+    assert len(files) == 2
+    for file in files:
+        stored = json.loads(gzip.decompress(file.read_bytes()))
+        for episode in stored["episodes"]:
+            name = episode["scene_id"].rpartition("/")[2]
+            goals = stored["goals_by_category"][f"{name}_{episode['object_category']}"]
+            assert goals and all(goal["view_points"] for goal in goals)
+            assert episode["object_category"] in stored["category_to_task_category_id"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ([], "One folder is needed"),
+        (["a", "b"], "One folder is needed"),
+        (["a", "splitt=train"], "There is no option 'splitt'"),
+        (["a", "split=test"], "There is no split 'test'"),
+        (["a", "scenes=-1"], "must be a whole number"),
+        (["a", "--all"], "no option --all"),
+    ],
+)
+def test_wrong_arguments_are_explained(arguments, words):
+    with pytest.raises(ValueError, match=words):
+        parse(arguments)
