@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Makes environments with numpy in FOLDER/3.6, FOLDER/3.8 ... of the Pythons that pyenv or the
-# system has, for tests/bridge/test_pythons.py: tools/pythons.sh FOLDER
+# Makes environments for tests/bridge: tools/pythons.sh FOLDER
+# FOLDER/3.6, FOLDER/3.8 ...: numpy, for each of the Pythons that pyenv or the system has;
+# FOLDER/lab: habitat-lab 0.3, without the parts of it that need habitat-sim.
 set -euo pipefail
 folder=${1:?Name a folder for the environments.}
 for version in 3.6 3.8 3.9 3.11 3.13; do
@@ -13,3 +14,12 @@ for version in 3.6 3.8 3.9 3.11 3.13; do
   mv "$folder/.$version" "$folder/$version"
   echo "Python $version: $("$folder/$version/bin/python" -c 'import numpy; print("numpy", numpy.__version__)')"
 done
+if [ ! -x "$folder/lab/bin/python" ] && [ -x "$folder/3.11/bin/python" ]; then
+  rm -rf "$folder/.lab"
+  "$folder/3.11/bin/python" -m venv "$folder/.lab"
+  pip=("$folder/.lab/bin/python" -m pip install --quiet --disable-pip-version-check)
+  "${pip[@]}" numpy==1.26.4 numba scipy hydra-core omegaconf attrs tqdm imageio imageio-ffmpeg \
+    'opencv-python-headless<5' numpy-quaternion cloudpickle gym-notices
+  "${pip[@]}" --no-deps gym==0.23.0 habitat-lab==0.3.320260507 # as they pin more than they need
+  mv "$folder/.lab" "$folder/lab"
+fi

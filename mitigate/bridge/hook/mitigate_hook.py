@@ -371,6 +371,8 @@ def _get_observations(original, suite, *args, **kwargs):
 def _task_reset(original, task, episode, *args, **kwargs):
     """``EmbodiedTask.reset``: the last episode is over, and the words of the next are corrupted."""
     sim = task._sim
+    if getattr(getattr(sim, "config", None), "enable_batch_renderer", False):
+        stop("frames of Habitat's batch renderer pass no sensor: set enable_batch_renderer=False.")
     walk = _walk_of(sim.sensor_suite)
     walk.end(task.measurements.get_metrics() if walk.begun else None)
     if walk.put_back is not None:
