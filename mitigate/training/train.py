@@ -138,7 +138,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     agent.cpu().eval()
     checkpoint.save_agent(agent, folder / "agent")
     with atomic_text(folder / "agent" / "config.yaml") as file:
-        file.write(OmegaConf.to_yaml({"agent": _written(cfg.agent, agent)}))
+        file.write(OmegaConf.to_yaml({"agent": written(cfg.agent, agent)}))
     OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
     if cfg.evaluation.enabled:
         base = None
@@ -228,7 +228,7 @@ def default_folder(cfg: DictConfig, variant: str = "") -> str:
     return f"{cfg.runs}/{cfg.name}-s{cfg.severity:g}{depth}-seed{cfg.seed}{end}"
 
 
-def _written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
+def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
     """What lies beside the weights of ``agent``: its config, with what it says itself
     (``settings()``, such as its vocabulary). Which classes are inside it is for the reader's own
     config to say."""

@@ -47,8 +47,8 @@ NAVMESH = {  # of habitat_sim.NavMeshSettings; the agent is lifted by cell_heigh
     "agent_radius": RADIUS,
     "agent_height": 1.5,
     "agent_max_climb": 0.05,
-    "cell_size": 0.03,
-    "cell_height": 0.05,
+    "cell_size": 0.02,
+    "cell_height": 0.01,
     "include_static_objects": False,
     "camera_height": EYE,
 }

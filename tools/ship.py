@@ -1,0 +1,43 @@
+"""Write a run's agent as shipped weights, rounded to float16: tools/ship.py RUN/agent FOLDER KIND
+
+    python tools/ship.py runs/da_per_episode-s0.6-seed0-agent-recurrent/agent \
+        checkpoints/recurrent/teacher recurrent
+
+FOLDER gets ``model.safetensors`` with its sha256 and ``config.yaml``. Prints the agent's sha before
+it was rounded, which rows of the run carry, and after, which rows of the shipped weights carry.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from omegaconf import OmegaConf
+
+from mitigate.core import build, checkpoint, conf
+from mitigate.core.files import atomic_text
+from mitigate.core.identity import identity
+from mitigate.evaluation.evaluate import load
+from mitigate.training.train import written
+
+
+def main() -> None:
+    """Run from the command line."""
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    source, folder, kind = sys.argv[1], Path(sys.argv[2]), sys.argv[3]
+    cfg = conf.load_config("train", [f"agent={kind}"])
+    node, sensors = cfg.agent, build.maker(cfg.env.world)().sensors
+    agent = load(node, source)
+    file = checkpoint.save_weights(agent, folder, half=True)
+    with atomic_text(folder / "config.yaml") as text:
+        text.write(OmegaConf.to_yaml({"agent": written(node, agent)}))
+    for path in folder.iterdir():
+        path.chmod(0o644)
+    shipped = load(node, str(folder))
+    print(f"wrote {file}, {file.stat().st_size / 1e6:.1f} MB")
+    print(f"sha {identity(agent, sensors)} before rounding, {identity(shipped, sensors)} after")
+
+
+if __name__ == "__main__":
+    main()
