@@ -178,6 +178,7 @@ class Connection:
         self.offsets: dict[str, int] = {}
         self.scene = self.episode = ""
         self.open = False
+        self.calls = 0  # of this episode
         self.worked = 0.0  # seconds in corruptions, of this episode
 
     def serve(self) -> None:
@@ -198,7 +199,7 @@ class Connection:
             send(self.channel, answer)
             if "error" in answer:
                 return
-        if self.open:
+        if self.open and self.calls > 1:  # after one it was only reset
             note(self.folder, event="dropped", scene=self.scene, episode=self.episode)
 
     def _next(self) -> dict[str, Any] | None:
@@ -252,7 +253,7 @@ class Connection:
     def on_episode(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """An episode begins: answer with its words as the agent is to hear them."""
         self.scene, self.episode, self.open = str(message["scene"]), str(message["id"]), True
-        self.worked = 0.0
+        self.worked, self.calls = 0.0, 0
         key = self.condition.key(self.scene, self.episode, 0)
         heard = self.condition.words.heard(message, self.condition.corruption, key)
         for observer in self.condition.observers:
@@ -277,6 +278,7 @@ class Connection:
             None if heading is None else float(heading),
         )
         self.worked += time.perf_counter() - began
+        self.calls += 1
         return {"changed": changed}
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,0 +1,62 @@
+"""A panorama of cameras for habitat-lab 0.3, whose camera configs carry no name of their own.
+
+    from habitat.config import read_write
+    from mitigate.worlds.habitat_lab import panorama
+
+    with read_write(config):
+        config.habitat.simulator.agents.main_agent.sim_sensors = panorama(rgb=224, depth=256)
+
+gives the observations of ETPNav: ``rgb``, ``rgb_30``, ... ``rgb_330`` and ``depth``, ``depth_30``,
+... Needs habitat-lab.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from habitat.config.default_structured_configs import (
+    HabitatSimDepthSensorConfig,
+    HabitatSimRGBSensorConfig,
+)
+
+from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS, Z_MAX
+
+
+@dataclass
+class NamedRGBSensorConfig(HabitatSimRGBSensorConfig):
+    """An RGB camera whose entry in observations is ``uuid``."""
+
+    uuid: str = "rgb"
+
+
+@dataclass
+class NamedDepthSensorConfig(HabitatSimDepthSensorConfig):
+    """A depth camera whose entry in observations is ``uuid``."""
+
+    uuid: str = "depth"
+
+
+def panorama(rgb: int = 224, depth: int = 256, height: float = 1.25) -> dict[str, Any]:
+    """Return sensors by name: 12 RGB and 12 depth cameras of as many pixels, each 30 degrees to the
+    left of the one before, ``height`` metres above the floor."""
+    found = {}
+    for kind, name, size in (
+        (NamedRGBSensorConfig, "rgb", rgb),
+        (NamedDepthSensorConfig, "depth", depth),
+    ):
+        for k in range(VIEWS):
+            angle = VIEW_STEP_DEGREES * k
+            uuid = f"{name}_{angle:g}" if k else name
+            found[uuid] = kind(
+                uuid=uuid,
+                width=size,
+                height=size,
+                hfov=int(HFOV_DEGREES),
+                position=[0.0, height, 0.0],
+                orientation=[0.0, math.radians(angle), 0.0],
+            )
+            if kind is NamedDepthSensorConfig:
+                found[uuid].max_depth = Z_MAX
+    return found
