@@ -58,7 +58,7 @@ def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
 
 
 def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
-    more = "+columns.recurrent_ts=[agent=recurrent,recipe=ts_distill]"
+    more = '+columns.recurrent_ts=["agent=recurrent","recipe=ts_distill"]'
     cfg = conf.load_config("table1", [f"out={tmp_path}", "split=val_unseen_ogn", more])
     made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in table2.cells(cfg)}
     (plain,), (shipped,) = made["recurrent"], made["recurrent_da"]
