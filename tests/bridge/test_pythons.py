@@ -5,10 +5,13 @@ find them by the variable ``MITIGATE_PYTHONS`` (CI sets it). Without it they are
 """
 
 import os
+import signal
 import subprocess
 from pathlib import Path
 
 import pytest
+
+from mitigate.bridge.server import Listener
 
 from .conftest import condition
 
@@ -62,3 +65,18 @@ def test_a_python_without_numpy_is_left_alone(python, tmp_path):
 def test_python_2_passes_by():
     guard = (HOOK / "sitecustomize.py").read_text().splitlines()
     assert "if sys.version_info >= (3, 6):" in guard and "import mitigate_hook" not in guard
+
+
+def test_a_server_that_does_not_answer_is_named_by_every_python(python, tmp_path):
+    code = "import mitigate_hook; mitigate_hook.connect('1')"
+    with Listener(condition(), tmp_path, patience=1.0) as listener:
+        os.killpg(listener.pid, signal.SIGSTOP)
+        ran = subprocess.run(
+            [python, "-c", code],
+            env={**os.environ, **listener.environment()},
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=20,
+            check=False,
+        )
+    assert ran.returncode == 97 and "did not answer within 1 s" in ran.stderr

@@ -111,7 +111,7 @@ class Channel:
         try:
             send(self.socket, fields)
             answer = receive(self.socket)
-        except TimeoutError:
+        except socket.timeout:  # no TimeoutError before Python 3.10
             stop(f"the server did not answer within {self.patience:g} s.")
         except (OSError, ValueError) as error:
             stop(f"the connection to the server broke ({error}).")
@@ -136,8 +136,8 @@ class Channel:
                 os.close(descriptor)
         except (OSError, ValueError) as error:
             stop(
-                "the memory for frames, {}, cannot be mapped ({}); a container needs the host's "
-                "/dev/shm (docker: --ipc=host -v /dev/shm:/dev/shm).".format(answer["file"], error)
+                f"the memory for frames, {answer['file']}, cannot be mapped ({error}); a container "
+                "needs the host's /dev/shm (docker: --ipc=host -v /dev/shm:/dev/shm)."
             )
 
     def place(self, camera):
