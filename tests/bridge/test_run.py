@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import pytest
 
-from mitigate.bridge.run import name_of, split_command
+from mitigate.bridge.run import name_of, options_text, split_command
 from mitigate.bridge.run import run as run_command
 from mitigate.core.conf import load_config
 from mitigate.evaluation import rows
@@ -156,6 +156,10 @@ def test_an_existing_sitecustomize_is_still_run(run, tmp_path):
     ran = run(tmp_path / "o", "conditions=[clean]", PYTHONPATH=str(tmp_path / "own"))
     assert ran.returncode == 0, ran.stderr
     assert "the own one ran" in (tmp_path / "o/conditions/clean/output.txt").read_text()
+
+
+def test_help_says_what_every_option_means():
+    assert options_text().count("\n") > 20 and "tokenizer: null  # for agents" in options_text()
 
 
 def test_options_and_command_are_told_apart():
