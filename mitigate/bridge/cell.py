@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import hashlib
 import json
 import os
@@ -13,14 +14,14 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from omegaconf import DictConfig
 
 from mitigate.bridge import results
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.recording import Recorder
-from mitigate.bridge.results import Told
+from mitigate.bridge.results import Told, without_path
 from mitigate.bridge.server import EVENTS, Condition, Listener
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.words import Words
@@ -49,6 +50,7 @@ class Cell:
     patience: float = 25.0
     environment: dict[str, str] = field(default_factory=dict)
     listener: Listener | None = None
+    lock: TextIO | None = None
     process: subprocess.Popen | None = None
 
     @property
@@ -72,6 +74,15 @@ class Cell:
     def start(self) -> None:
         """Start the server and the command; what an earlier, unfinished run told is put aside."""
         self.folder.mkdir(parents=True, exist_ok=True)
+        self.lock = open(self.folder / "lock", "w", encoding="utf-8")  # noqa: SIM115
+        try:
+            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            self.lock.close()
+            raise ValueError(
+                f"Another run is at work in {self.folder}: wait for it, or name another folder "
+                "(out=...)."
+            ) from error
         if (self.folder / EVENTS).is_file():
             os.replace(self.folder / EVENTS, self.folder / f"{EVENTS}.unfinished")
         self.listener = Listener(self.condition, self.folder, self.patience).__enter__()
@@ -115,17 +126,24 @@ class Cell:
 
     def kill(self) -> None:
         """End the command with all of its processes, and the server."""
-        if self.process is not None:
-            with suppress(ProcessLookupError):
-                os.killpg(self.process.pid, signal.SIGTERM)
-            with suppress(subprocess.TimeoutExpired):
-                self.process.wait(3.0)
-            with suppress(ProcessLookupError):
-                os.killpg(self.process.pid, signal.SIGKILL)
-            self.process.wait()
-        if self.listener is not None:
-            self.listener.__exit__()
-            self.listener = None
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C changes nothing
+        try:
+            if self.process is not None:
+                with suppress(ProcessLookupError):
+                    os.killpg(self.process.pid, signal.SIGTERM)
+                with suppress(subprocess.TimeoutExpired):
+                    self.process.wait(3.0)
+                with suppress(ProcessLookupError):
+                    os.killpg(self.process.pid, signal.SIGKILL)
+                self.process.wait()
+            if self.listener is not None:
+                self.listener.__exit__()
+                self.listener = None
+        finally:
+            signal.signal(signal.SIGINT, before)
+            if self.lock is not None:
+                self.lock.close()
+                self.lock = None
 
     def _stuck(self) -> str | None:
         """Why a running command will not come to its end, None if it may."""
@@ -141,10 +159,10 @@ class Cell:
         told = self.told()
         if told.refused:
             return f"{told.refused[0]}"
-        if told.dropped:
+        if told.lost and told.connected < 1:
             return (
-                f"a process of the command ended in the middle of episode {told.dropped[0]}, and "
-                f"nothing was heard of the others for {silent:.0f} s; the command was stopped. "
+                f"a process of the command ended in the middle of episode {told.lost[0]}, and "
+                f"nothing was heard of any other for {silent:.0f} s; the command was stopped. "
                 f"The end of its output:\n{self.tail()}"
             )
         return None
@@ -172,6 +190,12 @@ class Cell:
                 "it write to a folder of each condition: {out} or {condition} in the command "
                 f"stands for one. The end of {self.log}:\n{self.tail()}"
             )
+        if told.lost:
+            return (
+                f"the command ended, but {len(told.lost)} episodes were left in the middle, such "
+                f"as {told.lost[0]}: a process of it died, or its loop gave up. Run again; the "
+                f"condition is measured anew. The end of {self.log}:\n{self.tail()}"
+            )
         return ""
 
     def tail(self) -> str:
@@ -192,7 +216,8 @@ class Cell:
         told, found = self.told(), self.rows()
         own = [row["success"] for row in found if row["rule"] == found[0]["rule"]]
         rate = f", success {100 * sum(own) / len(own):.1f} ({found[0]['rule']})" if own else ""
-        left = f", {len(told.dropped)} left in the middle" if told.dropped else ""
+        left = f", {len(told.lost)} left in the middle" if told.lost else ""
+        left += f", {n} without a path: SPL is success" if (n := without_path(told)) else ""
         twice = f", {told.again} ended twice (the first counts)" if told.again else ""
         return f"{len(told.ends)} episodes{rate}{left}{twice}"
 
@@ -205,7 +230,9 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     if cfg.corruption is not None:
         names = [cfg.corruption]
     found = conditions(
-        ["clean", *(n for n in names if n != "clean")], cfg.severity, cfg.severity_depth
+        ["clean", *(n for n in dict.fromkeys(names) if n != "clean")],
+        cfg.severity,
+        cfg.severity_depth,
     )
     words, environment = _words(cfg, out), _environment(cfg)
     keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
@@ -225,6 +252,8 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
             "tokenizer": cfg.tokenizer,
             "missing": cfg.missing,
             "adapters": cfg.adapters,
+            "token_length": cfg.token_length,
+            "record": cfg.record,
         }
         condition = Condition(corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep=keep)
         if cfg.record is not None:

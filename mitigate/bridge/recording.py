@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -49,7 +50,8 @@ class Recorder:
         """Begin the folder of an episode."""
         scene = str(told["scene"]).rpartition("/")[2].split(".")[0]
         self.here = self.folder / plain(scene) / plain(str(told["id"]))
-        self.here.mkdir(parents=True, exist_ok=True)
+        shutil.rmtree(self.here, ignore_errors=True)  # of an earlier run
+        self.here.mkdir(parents=True)
         note = {"unit": 1 / MILLIMETRES, "depth": "16-bit PNG", "frames": "clean"}
         with atomic_text(self.folder / RECORDING) as file:
             json.dump(note, file)

@@ -29,6 +29,7 @@ class Told:
     ends: of each episode, by its name; again: episodes that ended once more, of which the first
     counts; dropped: left in the middle. cameras: as first described; words: what the first episode
     says. refused: what the server could not do, in words. adapted: encoders that got adapters.
+    connected: environments that are there now.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
@@ -39,6 +40,12 @@ class Told:
     refused: list[str] = field(default_factory=list)
     first: dict[str, Any] = field(default_factory=dict)
     adapted: list[str] = field(default_factory=list)
+    connected: int = 0
+
+    @property
+    def lost(self) -> list[str]:
+        """Episodes that were left in the middle, and did not end later."""
+        return sorted(set(self.dropped) - self.ends.keys())
 
 
 def read(folder: Path) -> Told:
@@ -48,13 +55,21 @@ def read(folder: Path) -> Told:
         kind, name = event.get("event"), name_of(event.get("scene", ""), event.get("episode", ""))
         if kind == "hello":
             told.hellos.append(event)
+            told.connected += 1
+        elif kind == "bye":
+            told.connected -= 1
         elif kind == "spec":
             told.cameras = told.cameras or event["cameras"]
         elif kind == "episode":
             told.first = told.first or event
         elif kind == "end":
-            told.again += name in told.ends
-            told.ends.setdefault(name, event)
+            held = told.ends.setdefault(name, event)
+            told.again += held is not event
+            if held["scene"] != event["scene"]:
+                told.refused.append(
+                    f"two scenes have one file name, {held['scene']} and {event['scene']}: "
+                    "episodes are told apart by it. Rename the scenes' files."
+                )
         elif kind == "dropped":
             told.dropped.append(name)
         elif kind == "adapted":
@@ -76,7 +91,8 @@ def _events(file: Path) -> Iterator[dict[str, Any]]:
 
 def name_of(scene: str, episode: str) -> str:
     """The name of an episode in rows: ids repeat from scene to scene in ObjectNav's files."""
-    stem = scene.rpartition("/")[2].split(".")[0]
+    stem = scene.rpartition("/")[2]
+    stem = stem.removesuffix(".glb").removesuffix(".basis")
     return f"{stem}/{episode}" if stem else str(episode)
 
 
@@ -116,18 +132,26 @@ def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[R
         if metres is not None and not math.isnan(metres):
             won = known.met(float(metres), bool(end.get("stopped")))
             judged[str(known)] = {"success": float(won), "spl": _spl(end, won)}
-    return [
-        {"rule": name, **values} for name, values in judged.items() if values["spl"] is not None
-    ]
+    return [{"rule": name, **values} for name, values in judged.items()]
 
 
-def _spl(end: dict[str, Any], won: bool) -> float | None:
-    """SPL by the path that was told; None where the start or the path is not known."""
+def _spl(end: dict[str, Any], won: bool) -> float:
+    """SPL by the path that was told; where start or path is not known, the success itself, as if
+    the way had been the shortest (:func:`without_path` counts these)."""
     start = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
     length = _length(end)
     if not won:
         return 0.0
-    return None if start is None or length is None else spl(won, float(start), length)
+    return 1.0 if start is None or length is None else spl(won, float(start), length)
+
+
+def without_path(told: Told) -> int:
+    """How many episodes tell neither SPL nor a path to compute it by."""
+    known = ("spl", "path_length")
+    return sum(
+        not any(n in end.get("metrics", {}) for n in known) and not end.get("path")
+        for end in told.ends.values()
+    )
 
 
 def _length(end: dict[str, Any]) -> float | None:

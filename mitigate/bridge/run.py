@@ -8,6 +8,7 @@ output folder; the same command again goes on where it stopped.
 from __future__ import annotations
 
 import shlex
+import signal
 import sys
 import time
 from collections.abc import Sequence
@@ -113,6 +114,10 @@ def _check(cfg: DictConfig, command: Sequence[str]) -> None:
     for option in ("jobs", "repeats"):
         if cfg[option] < 1:
             raise ValueError(f"{option}={cfg[option]} is none: give 1 or more.")
+    if not 1 <= cfg.patience <= 3600:
+        raise ValueError(f"patience={cfg.patience:g} must be 1 to 3600 seconds.")
+    if cfg.severity == 0 or cfg.severity_depth == 0:
+        raise ValueError("severity=0 changes nothing: for clean runs alone, conditions=[clean].")
     if cfg.episodes is not None and cfg.episodes < 1:
         raise ValueError(f"episodes={cfg.episodes} is none: give 1 or more, or null for all.")
 
@@ -153,6 +158,10 @@ def _run_all(waiting: Sequence[Any], jobs: int) -> list[str]:
         for cell in running:
             cell.kill()
     return problems
+
+
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
 
 
 def write_report(made: Sequence[Any], cfg: DictConfig, out: Path, name: str) -> None:
@@ -203,6 +212,8 @@ def main() -> None:
         print(f"{__doc__}\nOptions, with what they are if nothing is said:\n\n{options_text()}")
         return
     _command[:] = command
+    for ended in (signal.SIGTERM, signal.SIGHUP):  # of timeout, SLURM, a terminal: as Ctrl-C
+        signal.signal(ended, _interrupt)
     options = ["check=true" if option == "--check" else option for option in options]
     sys.argv[1:] = options
     conf.main(hydra_main, "run")

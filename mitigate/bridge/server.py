@@ -107,6 +107,10 @@ class Listener:
             with suppress(ChildProcessError):
                 os.waitpid(self.pid, 0)
             self.pid = 0
+        self._forget()
+
+    def _forget(self) -> None:
+        """Delete what it made."""
         shutil.rmtree(self.place, ignore_errors=True)
         shutil.rmtree(self.memory, ignore_errors=True)
 
@@ -127,9 +131,18 @@ class Listener:
         }
 
     def _accept(self, listening: socket.socket) -> None:
+        parent = os.getppid()
         warm(self.condition.corruption)
+        listening.settimeout(1.0)
         while True:
-            channel, _ = listening.accept()
+            try:
+                channel, _ = listening.accept()
+            except TimeoutError:
+                if os.getppid() != parent:  # killed without a chance to end us
+                    self._forget()
+                    os.killpg(0, signal.SIGKILL)
+                continue
+            channel.setblocking(True)
             if os.fork() == 0:
                 listening.close()
                 try:
@@ -191,22 +204,28 @@ class Connection:
         while (message := self._next()) is not None:
             try:
                 answer = kinds[message.get("kind")](message)
-            except (ValueError, KeyError, TypeError, OSError) as error:
+                os.utime(self.folder / EVENTS)  # a sign of life
+            except Exception as error:  # whatever it is, the agent must be told
                 problem = str(error) if isinstance(error, ValueError) else repr(error)
                 note(self.folder, event="refused", problem=problem, trace=traceback.format_exc())
                 answer = {"error": problem}
-            os.utime(self.folder / EVENTS)  # a sign of life
             send(self.channel, answer)
             if "error" in answer:
                 return
-        if self.open and self.calls > 1:  # after one it was only reset
-            note(self.folder, event="dropped", scene=self.scene, episode=self.episode)
+        self._leave()
+        note(self.folder, event="bye")
 
     def _next(self) -> dict[str, Any] | None:
         try:
             return receive(self.channel)
         except (OSError, ValueError):
             return None
+
+    def _leave(self) -> None:
+        """Note an episode that was left in the middle; after one call it was only reset."""
+        if self.open and self.calls > 1:
+            note(self.folder, event="dropped", scene=self.scene, episode=self.episode)
+        self.open = False
 
     def _greet(self) -> bool:
         hello = self._next() or {}
@@ -252,20 +271,23 @@ class Connection:
 
     def on_episode(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """An episode begins: answer with its words as the agent is to hear them."""
+        self._leave()
         self.scene, self.episode, self.open = str(message["scene"]), str(message["id"]), True
         self.worked, self.calls = 0.0, 0
         key = self.condition.key(self.scene, self.episode, 0)
         heard = self.condition.words.heard(message, self.condition.corruption, key)
         for observer in self.condition.observers:
             observer.episode(message)
-        told = {n: message.get(n) for n in ("scene", "text", "category", "language")}
-        note(self.folder, event="episode", episode=self.episode, heard=heard.get("text"), **told)
+        told = {n: message.get(n) for n in ("text", "category", "language")}
+        told |= {"scene": self.scene, "heard": heard.get("text")}
+        note(self.folder, event="episode", episode=self.episode, **told)
         return heard
 
     def on_frame(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """The frames of a call lie in memory: corrupt them there, answer which were."""
         self._drop_memory()
-        assert self.rig is not None
+        if self.rig is None:
+            raise ValueError("a frame came before its cameras were described.")
         began = time.perf_counter()
         for observer in self.condition.observers:
             observer.frame(message, self.rig, self.memory, self.offsets)
@@ -285,6 +307,13 @@ class Connection:
         """How the episode went."""
         told = ("metrics", "steps", "calls", "path", "start_distance", "distance", "stopped")
         said = {name: message[name] for name in told if message.get(name) is not None}
+        if not isinstance(said.get("metrics", {}), dict):
+            raise ValueError("the metrics of an episode are no names and numbers.")
+        if self.calls == 0:
+            raise ValueError(
+                f"episode {self.episode} ended, and none of its frames came by: its program has "
+                "frames that the bridge does not see."
+            )
         for observer in self.condition.observers:
             observer.end(message)
         note(

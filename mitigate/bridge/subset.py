@@ -44,7 +44,15 @@ class Subset:
 
     def _bound(self) -> float | None:
         file = self.folder / "episodes.json"
-        return json.loads(file.read_text("utf-8"))["bound"] if file.is_file() else None
+        if not file.is_file():
+            return None
+        held = json.loads(file.read_text("utf-8"))
+        if held["episodes"] != self.count:
+            raise ValueError(
+                f"{self.folder} is of a run with episodes={held['episodes']}, and this one asks "
+                f"for {self.count}. Name another folder (out=...), or delete this one."
+            )
+        return held["bound"]
 
     def _agree(self, names: list[str]) -> float:
         """Add ``names`` to those that are known, wait for others, and set the bound."""

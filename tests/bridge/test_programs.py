@@ -94,6 +94,49 @@ def test_a_loop_of_ones_own_takes_three_calls(tmp_path):
     assert read(tmp_path).ends["x/17"]["metrics"] == {"success": 1.0, "spl": 0.5}
 
 
+BEGIN = "import numpy, mitigate_hook\nrgb = numpy.full((16, 16, 3), 90, 'uint8')\n"
+
+
+@pytest.mark.parametrize(
+    ("loop", "words"),
+    [
+        ("a = mitigate_hook.connect('a'); b = mitigate_hook.connect('b'); a.corrupt({'rgb': rgb})",
+         "episode a was left for another one"),
+        ("mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb})",
+         "the entry left of an observation may be a frame"),
+        ("mitigate_hook.connect('a').corrupt({'rgb': rgb}, heading='north')",
+         "a frame could not be corrupted"),
+        ("mitigate_hook.connect('a').corrupt({'rgb': rgb}, cameras={'rgb': 5})", ""),
+    ],
+)  # fmt: skip
+def test_no_mistake_in_a_loop_lets_a_clean_frame_through(tmp_path, loop, words):
+    code = f"{BEGIN}try:\n    {loop}\nexcept AttributeError:\n    raise\nprint('went on')"
+    with Listener(condition("spatter"), tmp_path) as listener:
+        ran = python(listener, code)
+    assert ran.returncode != 0 and words in ran.stdout and "went on" not in ran.stdout
+
+
+def test_a_numpy_heading_and_an_entry_to_leave_alone_are_taken(tmp_path):
+    code = BEGIN + (
+        "seen = mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb}, "
+        "heading=numpy.float32(0.3), cameras={'left': {'type': 'other'}})\n"
+        "print((seen['rgb'] != rgb).any(), (seen['left'] == rgb).all())"
+    )
+    with Listener(condition("spatter"), tmp_path) as listener:
+        assert python(listener, code).stdout.strip() == "True True"
+
+
+def test_an_episode_that_is_never_finished_is_counted(tmp_path):
+    code = BEGIN + (
+        "for name in 'ab':\n    episode = mitigate_hook.connect(name)\n"
+        "    for _ in range(3): episode.corrupt({'rgb': rgb})\n"
+        "episode.finish(success=1, spl=1.0)"
+    )
+    with Listener(condition("spatter"), tmp_path) as listener:
+        python(listener, code)
+    assert read(tmp_path).lost == ["a"] and list(read(tmp_path).ends) == ["b"]
+
+
 def test_outside_of_a_run_connect_says_so():
     from mitigate.bridge.hook import mitigate_hook
 

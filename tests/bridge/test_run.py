@@ -1,10 +1,12 @@
 """``mitigate run`` from the command line, over the stand-in's program."""
 
+import fcntl
 import json
 import os
 import shlex
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 
 import pytest
@@ -142,6 +144,54 @@ def test_a_worker_that_dies_does_not_hang_the_run(run, tmp_path):
     )
     assert ran.returncode == 1
     assert "ended in the middle of episode s" in ran.stderr
+
+
+def test_a_condition_that_lost_an_episode_is_not_done(run, tmp_path):
+    """The command ends well, but one of its workers was killed."""
+    out = tmp_path / "o"
+    ran = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
+    assert ran.returncode == 1 and "1 episodes were left in the middle, such as s0/2" in ran.stderr
+    assert not (out / "conditions" / "clean" / "done.json").exists()
+
+
+def test_two_runs_do_not_share_a_folder(run, tmp_path):
+    folder = tmp_path / "o" / "conditions" / "clean"
+    folder.mkdir(parents=True)
+    with open(folder / "lock", "w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        ran = run(tmp_path / "o", "conditions=[clean]")
+    assert ran.returncode == 1 and "Another run is at work in" in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [("patience=0", "patience=0 must be"), ("severity=0", "severity=0 changes nothing")],
+)
+def test_options_that_make_no_sense_are_refused(run, tmp_path, options, words):
+    assert words in run(tmp_path / "o", options).stderr
+
+
+def test_a_terminated_run_leaves_nothing_behind(tmp_path):
+    command = [sys.executable, "-m", "mitigate.run", f"out={tmp_path / 'o'}", "conditions=[clean]"]
+    agent = [sys.executable, str(LAB / "agent.py"), str(tmp_path / "seen"), "--pause", "5"]
+    process = subprocess.Popen(
+        [*command, "--", *agent],
+        env={**os.environ, "PYTHONPATH": str(LAB)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    events = tmp_path / "o" / "conditions" / "clean" / "events.jsonl"
+    for _ in range(400):
+        if events.is_file() and '"spec"' in events.read_text():
+            break
+        time.sleep(0.05)
+    pid = json.loads(events.read_text().splitlines()[0])["agent_pid"]
+    process.terminate()
+    process.communicate(timeout=20)
+    assert process.returncode == 130
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(pid), 0)
 
 
 def test_a_refused_condition_says_why(run, tmp_path):

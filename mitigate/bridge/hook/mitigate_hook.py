@@ -113,8 +113,8 @@ class Channel:
             answer = receive(self.socket)
         except socket.timeout:  # no TimeoutError before Python 3.10
             stop(f"the server did not answer within {self.patience:g} s.")
-        except (OSError, ValueError) as error:
-            stop(f"the connection to the server broke ({error}).")
+        except Exception as error:  # whatever it is, the agent might catch it
+            stop(f"the connection to the server broke ({type(error).__name__}: {error}).")
         if answer is None:
             stop("the server of `mitigate run` is gone.")
         if "error" in answer:
@@ -168,6 +168,7 @@ class Walk:
         self.cameras = None  # what the server was told of them
         self.sim = self.task = self.episode = None
         self.begun = False
+        self.current = None  # of connect: the episode that is on
         self.put_back = None  # sets the words of the last episode as they were
         self.clear()
 
@@ -195,7 +196,14 @@ class Walk:
         ``cameras``: dicts with name, type ("rgb" or "depth") and what else the server is to know
         of them (``_of_config``).
         """
+        try:
+            return self._corrupt(observations, cameras, heading)
+        except Exception as error:  # the agent might catch it, and act on what it gave
+            stop(f"a frame could not be corrupted ({type(error).__name__}: {error}).")
+
+    def _corrupt(self, observations, cameras, heading):
         channel = self.connected()
+        heading = None if heading is None else float(heading)
         told = [dict(c, **_array(observations[c["name"]], c["name"])) for c in cameras]
         if told != self.cameras:
             channel.agree(told)
@@ -585,7 +593,8 @@ class Episode:
     """One episode of a loop that is not Habitat's; ``instruction`` is what the agent is told."""
 
     def __init__(self, walk, name, scene, instruction):
-        self._walk = walk
+        self._walk, self._name = walk, name
+        walk.current = self
         answer = walk.begin(scene, name, text=instruction)
         self.instruction = answer.get("text", instruction)
 
@@ -594,18 +603,39 @@ class Episode:
         corrupted. cameras: {name: {"type": "depth", "min_depth": 0.5, "max_depth": 5.0,
         "normalize_depth": True, "hfov": 79, "orientation": [0, 0.5, 0]}} for other names and for
         depth that is not metres from 0 to 10; heading: radians, counter-clockwise."""
+        self._check()
         observations, cameras = dict(observations), dict(cameras or {})
-        for name in observations:
+        for name, value in observations.items():
             kind = next((k for k in (COLOR, DEPTH) if str(name).startswith(k)), None)
             if kind and name not in cameras:
                 cameras[name] = {"type": kind}
+            if name not in cameras and _looks_like_a_frame(value):
+                stop(
+                    f"the entry {name} of an observation may be a frame {value.shape}, and nobody "
+                    "said what it is: pass cameras={name: {'type': 'rgb'}} (or 'depth'), or "
+                    "{'type': 'other'} to leave it as it is."
+                )
+        cameras = {n: c for n, c in cameras.items() if c.get("type") in (COLOR, DEPTH)}
         listed = [dict(cameras[n], name=n) for n in observations if n in cameras]
         self._walk.steps += 1
         return self._walk.corrupt(observations, listed, heading)
 
-    def finish(self, **metrics):
-        """Tell how it went: ``success`` (0 or 1) at least; ``spl``, ``distance_to_goal`` ..."""
-        self._walk.end(metrics)
+    def finish(self, success, spl, **metrics):
+        """Tell how it went: ``success`` (0 or 1), ``spl`` (0 to 1), ``distance_to_goal`` ..."""
+        self._check()
+        self._walk.end(dict(metrics, success=success, spl=spl))
+
+    def _check(self):
+        if self._walk.current is not self:
+            stop(
+                f"episode {self._name} was left for another one: of one thread, an episode is over "
+                "when the next one begins. Walk side by side in threads or processes."
+            )
+
+
+def _looks_like_a_frame(value):
+    shape = getattr(value, "shape", ())
+    return len(shape) in (2, 3) and min(shape[:2]) > 8 and shape[2:] in ((), (1,), (3,), (4,))
 
 
 def connect(episode, scene="", instruction=None):

@@ -25,7 +25,7 @@ def walk(out, worker, options):
         note(seen, env, observations)
         env.render()
         for step in range(options["steps"]):
-            if options["die_at"] == step:
+            if options["die_at"] == step and options["die_worker"] in (-1, worker):
                 os.kill(os.getpid(), signal.SIGKILL)
             time.sleep(options["pause"])
             last = step == options["steps"] - 1
@@ -63,6 +63,7 @@ def main():
     parser.add_argument("--steps", type=int, default=3)
     parser.add_argument("--episodes", type=int, default=4)
     parser.add_argument("--die-at", type=int, default=-1)
+    parser.add_argument("--die-worker", type=int, default=-1)
     parser.add_argument("--pause", type=float, default=0.0)
     parser.add_argument("--wait", type=float, default=0.0, help="seconds at the end")
     for flag in ("--tokens", "--no-stop", "--teleport"):
