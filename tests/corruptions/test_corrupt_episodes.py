@@ -117,7 +117,8 @@ def test_a_named_tokenizer_gives_its_tokens_and_its_mask(tmp_path):
         run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
         for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
             text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))
-            assert tokens == (tokenizer(text)["input_ids"] + [0] * 40)[:40]
+            cut = tokenizer(text, truncation=True, max_length=40)["input_ids"]
+            assert tokens == (cut + [0] * 40)[:40] and 3 in tokens  # the end mark stays
 
 
 def test_other_languages_pass_through_and_are_counted(tmp_path):
