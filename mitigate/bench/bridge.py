@@ -19,8 +19,9 @@ from typing import Any
 import numpy as np
 
 from mitigate.bench.timing import machine
+from mitigate.bridge.connection import Condition
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.server import Condition, Listener
+from mitigate.bridge.server import Listener
 from mitigate.bridge.words import Words
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key

@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 import fcntl
-import hashlib
 import json
 import os
-import shlex
 import signal
 import subprocess
 import time
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TextIO
 
-from omegaconf import DictConfig
-
 from mitigate.bridge import results
+from mitigate.bridge.connection import EVENTS, Condition
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.recording import Recorder
 from mitigate.bridge.results import Told, without_path
-from mitigate.bridge.server import EVENTS, Condition, Listener
-from mitigate.bridge.subset import Subset
-from mitigate.bridge.words import Words
+from mitigate.bridge.server import Listener
 from mitigate.core.files import atomic_text
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
@@ -222,113 +215,7 @@ class Cell:
         return f"{len(told.ends)} episodes{rate}{left}{twice}"
 
 
-def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
-    """All conditions of a run, clean first, then repeated clean runs."""
-    from mitigate.evaluation.evaluate import conditions
-
-    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
-    if cfg.corruption is not None:
-        names = [cfg.corruption]
-    found = conditions(
-        ["clean", *(n for n in dict.fromkeys(names) if n != "clean")],
-        cfg.severity,
-        cfg.severity_depth,
-    )
-    words, environment = _words(cfg, out), _environment(cfg)
-    keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
-    wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
-    text = shlex.join(command)
-    sha = hashlib.sha256(text.encode()).hexdigest()[:12]
-    made = []
-    for corruption, repeat in wanted:
-        own = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
-        own += f"-again{repeat}" if repeat else ""
-        settings = {
-            "command": text,
-            "seed": cfg.seed,
-            "episodes": cfg.episodes,
-            "turn": cfg.turn,
-            "safeguard": cfg.safeguard,
-            "tokenizer": cfg.tokenizer,
-            "missing": cfg.missing,
-            "adapters": cfg.adapters,
-            "token_length": cfg.token_length,
-            "record": cfg.record,
-        }
-        condition = Condition(corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep=keep)
-        if cfg.record is not None:
-            condition.observers.append(Recorder(Path(cfg.record) / own))
-        label = {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
-        if cfg.safeguard != "none":
-            from mitigate.safeguard.guard import label as front
-
-            label["name"] += f"+{front(cfg.safeguard)}"
-        if cfg.adapters is not None:
-            label["name"] += "+adapters"
-        folder = out / "conditions" / own
-        made.append(
-            Cell(
-                own,
-                corruption,
-                repeat,
-                tuple(command),
-                folder,
-                condition,
-                label,
-                cfg.rule,
-                settings,
-                cfg.patience,
-                environment,
-            )
-        )
-    return made
-
-
-def _words(cfg: DictConfig, out: Path) -> Words:
-    from mitigate.bridge.words import tokenizer_of
-    from mitigate.safeguard.guard import open_safeguard
-
-    guard = open_safeguard(cfg.safeguard, log=out / "safeguard.jsonl")
-    return Words(
-        None if cfg.tokenizer is None else tokenizer_of(cfg.tokenizer),
-        None if guard is None else lambda text: guard.canonicalise(text).text,
-        cfg.token_length,
-    )
-
-
-def _environment(cfg: DictConfig) -> dict[str, str]:
-    """What the hook must know of adapters. Raises ValueError for what names none."""
-    if cfg.adapters is None:
-        return {}
-    from mitigate.encoders import plain_adapters
-
-    folder, module, place = (*str(cfg.adapters).rsplit(":", 2), "", "")[:3]
-    kind, _, path = place.partition(".")
-    if not kind or not module:
-        raise ValueError(
-            f"adapters={cfg.adapters} must be FOLDER:package.module:Class.attribute, where the "
-            "attribute of the class's instances is the encoder that the adapters were trained for: "
-            "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
-        )
-    plain_adapters.read(folder)
-    told = {"folder": str(Path(folder).resolve()), "file": str(plain_adapters.__file__)}
-    told |= {"module": module, "class": kind, "path": path}
-    return {mitigate_hook.ADAPTERS: json.dumps(told)}
-
-
 def _filled(word: str, values: dict[str, str]) -> str:
     for name, value in values.items():
         word = word.replace(name, value)
     return word
-
-
-def applicable(corruption: Corruption, clean: Told) -> str:
-    """Return why a corruption cannot reach the agent of a clean run; empty if it can."""
-    kinds = {camera["type"] for camera in clean.cameras}
-    if corruption.modality in ("rgb", "depth") and corruption.modality not in kinds:
-        return f"the agent has no {corruption.modality} camera"
-    if corruption.name == "white_box":
-        return "an agent's system prompt does not pass the bridge"
-    if corruption.modality == "instruction" and not clean.first.get("text"):
-        return "its goals are categories, not instructions"
-    return ""

@@ -9,14 +9,14 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import cv2
 import numpy as np
 from omegaconf import DictConfig
 
 from mitigate.bridge.cameras import Group, Rig, corrupted
-from mitigate.bridge.cell import applicable, cells
+from mitigate.bridge.conditions import applicable, cells
 from mitigate.bridge.results import Told
 from mitigate.core.files import write_atomically
 from mitigate.core.observation import DEPTH, RGB
@@ -33,7 +33,7 @@ class FirstLook:
     """Keeps the frames of the first call in a file."""
 
     file: Path
-    kinds: tuple[str, ...] = (RGB, DEPTH)
+    kinds: ClassVar = (RGB, DEPTH)
 
     def episode(self, told: Mapping[str, Any]) -> None:
         """Nothing: the events tell of it."""

@@ -2,8 +2,7 @@
 
 A recording is a folder ``<scene>/<episode>/`` for each episode, with ``<camera>/000000.png`` for
 each call (RGB, or depth as 16-bit millimetres), ``episode.json``, ``steps.jsonl`` (a line a call)
-and ``end.json``. ``mitigate corrupt``, ``recipe=encoder`` (env=frames) and ``mitigate replay`` read
-it.
+and ``end.json``. ``mitigate corrupt`` and ``recipe=encoder`` (env=frames) read it.
 """
 
 from __future__ import annotations
@@ -12,18 +11,18 @@ import json
 import re
 import shutil
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import cv2
 import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
+from mitigate.bridge.results import stem_of
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.observation import DEPTH, RGB
 
-KINDS = (RGB, DEPTH)
 MILLIMETRES, MOST = 1000.0, 65535  # of a count of 16-bit depth; its largest one
 _PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
 
@@ -39,17 +38,11 @@ class Recorder:
 
     folder: Path
     here: Path | None = None
-    cameras: list[Mapping[str, Any]] = field(default_factory=list)
-
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        """Of the cameras that it needs to see."""
-        return KINDS
+    kinds: ClassVar = (RGB, DEPTH)  # of the cameras that it needs to see
 
     def episode(self, told: Mapping[str, Any]) -> None:
         """Begin the folder of an episode."""
-        scene = str(told["scene"]).rpartition("/")[2].split(".")[0]
-        self.here = self.folder / plain(scene) / plain(str(told["id"]))
+        self.here = self.folder / plain(stem_of(str(told["scene"]))) / plain(str(told["id"]))
         shutil.rmtree(self.here, ignore_errors=True)  # of an earlier run
         self.here.mkdir(parents=True)
         note = {"unit": 1 / MILLIMETRES, "depth": "16-bit PNG", "frames": "clean"}

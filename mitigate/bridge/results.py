@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.bridge.server import EVENTS
+from mitigate.bridge.connection import EVENTS
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 from mitigate.evaluation.metrics import RULES, Rule, path_length, spl
@@ -27,7 +27,7 @@ class Told:
     """What was told under one condition, so far.
 
     ends: of each episode, by its name; again: episodes that ended once more, of which the first
-    counts; dropped: left in the middle. cameras: as first described; words: what the first episode
+    counts; dropped: left in the middle. cameras: as first described; first: what the first episode
     says. refused: what the server could not do, in words. adapted: encoders that got adapters.
     connected: environments that are there now.
     """
@@ -91,9 +91,13 @@ def _events(file: Path) -> Iterator[dict[str, Any]]:
 
 def name_of(scene: str, episode: str) -> str:
     """The name of an episode in rows: ids repeat from scene to scene in ObjectNav's files."""
-    stem = scene.rpartition("/")[2]
-    stem = stem.removesuffix(".glb").removesuffix(".basis")
+    stem = stem_of(scene)
     return f"{stem}/{episode}" if stem else str(episode)
+
+
+def stem_of(scene: str) -> str:
+    """The name of a scene: of its file, without its folder and what a GLB file ends in."""
+    return scene.rpartition("/")[2].removesuffix(".glb").removesuffix(".basis")
 
 
 def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | None) -> list[Row]:
@@ -138,20 +142,22 @@ def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[R
 def _spl(end: dict[str, Any], won: bool) -> float:
     """SPL by the path that was told; where start or path is not known, the success itself, as if
     the way had been the shortest (:func:`without_path` counts these)."""
-    start = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
-    length = _length(end)
+    start, length = _start(end), _length(end)
     if not won:
         return 0.0
     return 1.0 if start is None or length is None else spl(won, float(start), length)
 
 
 def without_path(told: Told) -> int:
-    """How many episodes tell neither SPL nor a path to compute it by."""
-    known = ("spl", "path_length")
+    """How many episodes tell neither SPL nor the start and path to compute it by."""
     return sum(
-        not any(n in end.get("metrics", {}) for n in known) and not end.get("path")
+        "spl" not in end.get("metrics", {}) and (_start(end) is None or _length(end) is None)
         for end in told.ends.values()
     )
+
+
+def _start(end: dict[str, Any]) -> float | None:
+    return end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
 
 
 def _length(end: dict[str, Any]) -> float | None:

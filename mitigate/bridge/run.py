@@ -72,7 +72,8 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     Raises ValueError for options that make no sense and, behind all others, for conditions whose
     command failed.
     """
-    from mitigate.bridge.cell import Cell, applicable, cells
+    from mitigate.bridge.cell import Cell
+    from mitigate.bridge.conditions import applicable, cells
 
     _check(cfg, command)
     name = cfg.name or name_of(command)
@@ -95,7 +96,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
         else:
             fitting.append(cell)
     problems = _run_all(fitting, cfg.jobs)
-    write_report([clean, *fitting], cfg, out, name)
+    write_report([clean, *fitting], out)
     if problems:
         raise ValueError("Some conditions failed; run again to go on. " + " ".join(problems))
     return out
@@ -123,8 +124,7 @@ def _check(cfg: DictConfig, command: Sequence[str]) -> None:
 
 
 def name_of(command: Sequence[str]) -> str:
-    """Return a name for a command: of the last folder that its first script lies in, or of the
-    script itself."""
+    """Return a name for a command: of its first script, or of the program."""
     scripts = [Path(word) for word in command if word.endswith((".py", ".sh", ".bash"))]
     return scripts[0].stem if scripts else Path(command[0]).stem
 
@@ -164,7 +164,7 @@ def _interrupt(*_: object) -> None:
     raise KeyboardInterrupt
 
 
-def write_report(made: Sequence[Any], cfg: DictConfig, out: Path, name: str) -> None:
+def write_report(made: Sequence[Any], out: Path) -> None:
     """Write ``rows.jsonl``, the table and its pictures, and print the table."""
     from mitigate.bridge.randomness import randomness
     from mitigate.evaluation import rows

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from mitigate.bridge.connection import Condition
 from mitigate.bridge.results import read
-from mitigate.bridge.server import Condition, Listener
+from mitigate.bridge.server import Listener
 from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption
 
