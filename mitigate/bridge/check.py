@@ -98,7 +98,7 @@ def _wait(cell: Any, file: Path) -> None:
     while not file.is_file():
         time.sleep(0.1)
         problem = cell.poll()
-        if problem is not None:
+        if problem is not None and not file.is_file():  # a short program may be over by now
             raise ValueError(problem or "the command ended before its first frame.")
         if time.monotonic() - began > LATE:
             raise ValueError(f"no frame came within {LATE:g} s. Its output:\n{cell.tail()}")

@@ -9,8 +9,10 @@ import sys
 import time
 from dataclasses import dataclass
 
+import cv2
 import pytest
 
+from mitigate.bridge.check import check
 from mitigate.bridge.run import name_of, options_text, split_command
 from mitigate.bridge.run import run as run_command
 from mitigate.core.conf import load_config
@@ -210,6 +212,18 @@ def test_an_existing_sitecustomize_is_still_run(run, tmp_path):
 
 def test_help_says_what_every_option_means():
     assert options_text().count("\n") > 20 and "tokenizer: null  # for agents" in options_text()
+
+
+def test_a_check_says_what_the_program_sees_and_draws_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("PYTHONPATH", str(LAB))
+    cfg = load_config("run", [f"out={tmp_path}", "conditions=[spatter,multipath,white_box]"])
+    sheet = check(cfg, shlex.split(f"{AGENT} --cameras 2"))
+    said = capsys.readouterr().out
+    assert "rgb: rgb, rgb_30; 32 x 32 x 3 uint8, hfov 90, 2 as one panorama" in said
+    assert "depth: depth, depth_30" in said and "0 to 1 for 0 to 10 m" in said
+    assert "instruction 'Walk to the door 0.'" in said
+    assert "white_box-s0.6: not applicable" in said and "spatter-s0.6: applies" in said
+    assert cv2.imread(str(sheet)).shape[0] == 4 * 164  # clean of each kind, and two corruptions
 
 
 def test_options_and_command_are_told_apart():
