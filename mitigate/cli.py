@@ -55,6 +55,11 @@ COMMANDS = {
         "run an agent of another project, unchanged, under every corruption",
         "severity=0.6 episodes=100 -- conda run -n etpnav bash run_r2r/main.bash eval 2333",
     ),
+    "replay": Command(
+        "mitigate.replay.replay",
+        "take agents along recorded drives (folders, ROS bags, MCAP) and compare their decisions",
+        "drive.mcap agents=[checkpoints/recurrent/base] instruction='\"walk to the door\"'",
+    ),
     "corrupt": Command(
         "mitigate.corruptions.frames_command",
         "corrupt a folder of recorded frames",
@@ -65,6 +70,11 @@ COMMANDS = {
         "mitigate.corruptions.episodes_command",
         "corrupt the instructions of an R2R-CE or RxR-CE file",
         "val_unseen.json.gz out.json.gz family=mask severity=0.5",
+    ),
+    "export_drive": Command(
+        "mitigate.replay.export_drive",
+        "write an oracle's walks as recorded drives, to try replay on",
+        "drives/ episodes=3 form=mcap",
     ),
     "export": Command(
         "mitigate.shipping.export",

@@ -23,6 +23,10 @@ class Agent(Protocol):
     """What can be evaluated: any object that turns observations into low-level actions.
 
     An agent that works with a prompt has it in an attribute ``system_prompt``, read at ``reset``.
+    ``views`` (attribute, optional): 12 for a panorama, 1 for a camera ahead.
+    ``taken(action)`` (optional): somebody else drives, and took ``action`` after the agent's last
+    answer; what it planned is forgotten.
+    ``aim`` (attribute, optional): the point [2] of the plan that it is walking to, or None.
     """
 
     def reset(self, instruction: str) -> None: ...

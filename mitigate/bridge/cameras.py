@@ -142,11 +142,20 @@ class Rig:
     ) -> None:
         if len(told) > MOST:
             raise ValueError(f"{len(told)} cameras are more than {MOST}.")
+        self.turn = turn
         self.cameras = [read_camera(t, DepthSensor(missing=missing)) for t in told]
         names = [camera.name for camera in self.cameras]
         if len(set(names)) < len(names):
             raise ValueError(f"Two cameras have one name: {', '.join(names)}.")
         self.groups = [g for kind in CHANNELS for g in _groups(self.cameras, kind, turn)]
+
+    def told(self) -> dict[str, dict[str, Any]]:
+        """Kind, field of view and yaw (degrees to the right) of each camera, by name."""
+        sign = 1 if self.turn == "right" else -1
+        return {
+            camera.name: {"kind": camera.kind, "hfov": camera.hfov, "yaw": sign * camera.yaw % 360}
+            for camera in self.cameras
+        }
 
     def lay_out(self, kinds: Sequence[str]) -> tuple[dict[str, int], int]:
         """Return where the frame of each camera of these kinds begins in memory, and the size of

@@ -1,8 +1,9 @@
 """Writes what an agent saw, heard and did: clean frames, poses, actions and measures as files.
 
 A recording is a folder ``<scene>/<episode>/`` for each episode, with ``<camera>/000000.png`` for
-each call (RGB, or depth as 16-bit millimetres), ``episode.json``, ``steps.jsonl`` (a line a call)
-and ``end.json``. ``mitigate corrupt`` and ``recipe=encoder`` (env=frames) read it.
+each call (RGB, or depth as 16-bit millimetres), ``cameras.json``, ``episode.json``,
+``steps.jsonl`` (a line a call) and ``end.json``. ``mitigate corrupt``, ``mitigate replay`` and
+``recipe=encoder`` (env=frames) read it.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from mitigate.bridge.results import stem_of
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.observation import DEPTH, RGB
 
+CAMERAS = "cameras.json"
 MILLIMETRES, MOST = 1000.0, 65535  # of a count of 16-bit depth; its largest one
 _PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
 
@@ -59,6 +61,9 @@ class Recorder:
         """Write the clean frames of a call, and where the agent was."""
         if self.here is None:
             return
+        if not (self.here / CAMERAS).is_file():
+            with atomic_text(self.here / CAMERAS) as file:
+                json.dump({plain(name): told for name, told in rig.told().items()}, file)
         for camera in rig.cameras:
             frame = camera.read(memory, offsets)
             write_bytes(

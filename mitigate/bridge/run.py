@@ -194,14 +194,6 @@ def hydra_main(cfg: DictConfig) -> None:
         run(cfg, _command)
 
 
-def options_text() -> str:
-    """Every option of ``conf/run.yaml`` with its comment."""
-    lines = (conf.CONF / "run.yaml").read_text(encoding="utf-8").splitlines()
-    suites = ", ".join(sorted(path.stem for path in (conf.CONF / "suite").glob("*.yaml")))
-    kept = [line for line in lines if line and line[0].isalpha() and "#" in line]
-    return "\n".join(["suite: full  # " + suites, *kept])
-
-
 _command: list[str] = []  # behind --
 
 
@@ -209,7 +201,8 @@ def main() -> None:
     """Run from the command line."""
     options, command = split_command(sys.argv[1:])
     if {"--help", "-h"} & set(options):
-        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n\n{options_text()}")
+        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
+        print(conf.options_text("run"))
         return
     _command[:] = command
     for ended in (signal.SIGTERM, signal.SIGHUP):  # of timeout, SLURM, a terminal: as Ctrl-C

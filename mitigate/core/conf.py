@@ -85,6 +85,21 @@ def load_config(
         return compose(primary, list(overrides))
 
 
+def options_text(primary: str, suites: bool = True) -> str:
+    """Every option of ``conf/<primary>.yaml`` with its comment, and the suites that there are."""
+    own, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
+    kept = [line for line in own.splitlines() if re.match(r" *\w+:.*#", line)]
+    names = ", ".join(sorted(path.stem for path in (CONF / "suite").glob("*.yaml")))
+    return "\n".join([f"suite: full  # {names}"] * suites + kept)
+
+
+def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
+    """A command line's words without "=" (paths), and Hydra's options."""
+    words = list(arguments)
+    options = [word for word in words if "=" in word or word.startswith("-")]
+    return [word for word in words if word not in options], options
+
+
 def _unknown_key(key: str, primary: str) -> str:
     cfg = load_config(primary)
     parent = key.rpartition(".")[0]

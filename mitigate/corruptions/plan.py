@@ -80,9 +80,9 @@ def _files(source: Path, out: Path, plan: Plan) -> Iterator[Path]:
 
     for folder, folders, files in os.walk(source, onerror=complain, followlinks=True):
         here = Path(folder).relative_to(source)
-        for name in sorted((name for name in files if name[0] != "."), key=_natural):
+        for name in sorted((name for name in files if name[0] != "."), key=natural):
             yield here / name
-        seen = sorted((name for name in folders if name[0] != "."), key=_natural)
+        seen = sorted((name for name in folders if name[0] != "."), key=natural)
         barred = {name: _barred(source, here / name, out) for name in seen}
         plan.left_out |= {f"{(here / n).as_posix()}/": why for n, why in barred.items() if why}
         folders[:] = [name for name in seen if not barred[name]]
@@ -97,6 +97,6 @@ def _barred(source: Path, folder: Path, out: Path) -> str:
     return "leads back to a folder that it lies in" if real in around else ""
 
 
-def _natural(name: str) -> tuple:
+def natural(name: str) -> tuple:
     parts = re.split(r"([0-9]+)", name)
     return tuple(int(p) if i % 2 else p for i, p in enumerate(parts)), name

@@ -34,7 +34,7 @@ def run_episode(
     """
     met = Corrupted(world, corruption, seed)
     observation = met.reset(episode)
-    with _instructed(agent, episode, corruption, seed, repaired or {}):
+    with instructed(agent, episode, corruption, seed, repaired):
         while not met.done:
             observation = met.step(agent.act(observation))
     found = {**met.measures(), "decisions": met.looks}
@@ -51,10 +51,15 @@ def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
 
 
 @contextmanager
-def _instructed(
-    agent: Agent, episode: Episode, corruption: Corruption, seed: int, repaired: Mapping[str, str]
+def instructed(
+    agent: Agent,
+    episode: Episode,
+    corruption: Corruption,
+    seed: int,
+    repaired: Mapping[str, str] | None = None,
 ) -> Iterator[None]:
-    """Reset the agent with the instruction, and the prompt, that the corruption leaves it."""
+    """Reset the agent with the instruction, and the prompt, that the corruption leaves it; within
+    the block it has that prompt. ``repaired`` as :func:`run_episode`."""
     text, key = instruction(episode, corruption, seed), Key(seed, episode.episode_id)
     prompt = getattr(agent, "system_prompt", None)
     try:
@@ -63,7 +68,7 @@ def _instructed(
             if isinstance(injected, NotApplicable):
                 raise ValueError(f"{corruption.name!r} is not applicable: {injected.reason}.")
             agent.system_prompt = injected  # type: ignore[attr-defined]
-        agent.reset(repaired.get(text, text))
+        agent.reset((repaired or {}).get(text, text))
         yield
     finally:
         if prompt is not None:

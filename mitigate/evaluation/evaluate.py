@@ -157,12 +157,14 @@ def _check_list(note: Path, source: str) -> None:
 
 def name_of(weights: str) -> str:
     """Return the name of weights by their path: of the run, for a run's ``agent`` folder; of the
-    kind of agent, for its shipped base weights (``checkpoints/frontier/base``)."""
+    kind of agent, for its shipped weights (``checkpoints/frontier/base``: frontier, and
+    ``.../teacher``: frontier_teacher)."""
     path = Path(weights.removesuffix(".safetensors"))
     while path.name in ("model", "agent", "run"):
         path = path.parent
-    if path.name == "base" and path.parent.parent.name == "checkpoints":
-        path = path.parent
+    if path.parent.parent.name == "checkpoints" and path.parent.name != "hardened":
+        kind = path.parent.name
+        return kind if path.name == "base" else f"{kind}_{path.name}"
     return path.name or "agent"
 
 

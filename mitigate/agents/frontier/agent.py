@@ -68,6 +68,7 @@ class FrontierAgent(nn.Module):
     Raises ValueError for an unknown name in ``blind``.
     """
 
+    views = 1
     encoders: ClassVar = {RGB: camera.ENCODERS[RGB]}
     labels: ClassVar = {RGB: camera.LABELS[RGB]}
 
@@ -133,6 +134,17 @@ class FrontierAgent(nn.Module):
         action = LEFT if self.actions <= TURNS else self._walk(pose)
         self._before = pose[:2] if action == FORWARD else None
         return action
+
+    def taken(self, action: int) -> None:
+        """Somebody else drives: forget the route, and plan anew at the next step."""
+        self._planned = 0
+        if action != FORWARD:
+            self._before = None
+
+    @property
+    def aim(self) -> np.ndarray | None:
+        """Where the leg that it walks ends, plan metres [2], or None."""
+        return self.controller.route[-1] if self.controller.route else None
 
     def _look(self, observation: Mapping[str, np.ndarray], pose: np.ndarray) -> None:
         """Lay what is seen over the map."""

@@ -42,6 +42,7 @@ class RecurrentAgent(nn.Module):
     Raises ValueError for an unknown name in ``sensors`` or ``blind``, and for no sensor.
     """
 
+    views = 1
     actions = ACTIONS
     loss_weights = learning.LOSS_WEIGHTS
 
@@ -145,3 +146,7 @@ class RecurrentAgent(nn.Module):
         action = int(self.policy.answer(self._state.hidden)[0].argmax())
         self._odometer.add(action)
         return action
+
+    def taken(self, action: int) -> None:
+        """Somebody else drives: count what was done in place of the last answer."""
+        self._odometer.correct(action)

@@ -59,6 +59,8 @@ class TopologicalAgent(nn.Module):
     Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
     """
 
+    views = VIEWS
+
     def __init__(
         self,
         width: int = 128,
@@ -208,6 +210,7 @@ class TopologicalAgent(nn.Module):
         self.decisions = 0
         self._views: list[Tensor] = []
         self._stop_scores: list[tuple[float, int]] = []
+        self._chosen: int | None = None  # the ghost that it walks to
         self._final = False
         with torch.inference_mode():
             self._text = self.planner.read(self.tokens([instruction]))
@@ -227,12 +230,25 @@ class TopologicalAgent(nn.Module):
             action = self.controller.action(checked.pose(observation))
         return action
 
+    def taken(self, action: int) -> None:
+        """Somebody else drives: forget the route, and decide anew at the next step."""
+        self.controller, self._chosen = Controller(), None
+        self.decisions, self._final = 0, False  # the limit is of its own walks
+
+    @property
+    def aim(self) -> np.ndarray | None:
+        """Where its route ends, plan metres [2], or None."""
+        return self.controller.route[-1] if self.controller.route else None
+
     @torch.inference_mode()
     def _decide(self, observation: Mapping[str, np.ndarray]) -> bool:
         """Take one decision: start a route and return True, or return False to stop."""
         views, waypoints = self._see(*checked.frames(observation))
         self._views.append(self.planner.look(views))
         pose = checked.pose(observation).astype(np.float64)
+        if self._chosen is not None:
+            self.map.arrive(self._chosen)
+            self._chosen = None
         self.map.add(pose, waypoints)
         decision = self.map.decision(pose)
         logits = self.planner(
@@ -247,7 +263,7 @@ class TopologicalAgent(nn.Module):
             return self._give_up()
         ghost = decision.ghosts[best - 1 - len(decision.nodes)]
         self.controller.follow(self.map.route(ghost))
-        self.map.arrive(ghost)
+        self._chosen = ghost
         return True
 
     def _see(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[Tensor, np.ndarray]:

@@ -1,0 +1,200 @@
+"""Write an oracle's walks as drives, to try ``mitigate replay`` on: ``mitigate export_drive OUT``.
+
+OUT is a folder; each episode becomes a drive in it, as one RGB-D camera of 90 degrees would have
+recorded it: a folder of frames, or a bag of ROS 1 or of ROS 2 (MCAP).
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cv2
+import hydra
+import numpy as np
+from hydra.core.config_store import ConfigStore
+from omegaconf import MISSING, DictConfig
+
+from mitigate.core import conf
+from mitigate.core.files import atomic_text, write_bytes
+from mitigate.core.names import unknown
+from mitigate.core.observation import DEPTH, POSE, RGB
+
+FORMS = ("frames", "bag", "mcap")
+SECOND = 1_000_000_000  # nanoseconds; a step takes one
+TOPICS = {
+    RGB: "/camera/color/image_raw",
+    DEPTH: "/camera/aligned_depth_to_color/image_raw",
+    "info": "/camera/color/camera_info",
+    POSE: "/odom",
+}
+
+
+@dataclass
+class DriveConfig:
+    """Types of ``conf/export_drive.yaml``; the meaning of each entry is written there."""
+
+    split: str = "val_unseen"
+    episodes: int = 3
+    form: str = "frames"
+    env: Any = MISSING
+
+
+ConfigStore.instance().store(name="export_drive_schema", node=DriveConfig)
+
+
+def run(cfg: DictConfig, out: Path) -> list[Path]:
+    """Write the drives of ``cfg`` into ``out`` and return their paths.
+
+    Raises ValueError for an unknown form or split, and for a world without an expert or with more
+    than one camera.
+    """
+    from mitigate.core import build
+    from mitigate.core.progress import Progress
+    from mitigate.evaluation.evaluate import episodes
+
+    if cfg.form not in FORMS:
+        raise ValueError(unknown("form", cfg.form, FORMS))
+    world = build.maker(cfg.env.world)()
+    if len(world.sensors[RGB].shape) != 3:
+        raise ValueError("A drive has one camera: set env.views=1.")
+    chosen, written = episodes(cfg.env, cfg.split, cfg.episodes), []
+    with Progress("export_drive", len(chosen), unit="drive") as progress:
+        for episode in chosen:
+            path = out / episode.episode_id.replace("/", "-")
+            steps = list(oracle(world, episode))
+            if cfg.form == "frames":
+                write_frames(path, steps, episode.instruction.text)
+            else:
+                path = write_bag(path, steps, cfg.form)
+                write_bytes(path.with_suffix(".txt"), episode.instruction.text.encode())
+            written.append(path)
+            progress.advance(note=path.name)
+    return written
+
+
+def oracle(world: Any, episode: Any) -> Iterator[dict[str, np.ndarray]]:
+    """What there is to see at each step of the expert's walk, the last one included."""
+    from mitigate.worlds.world import expert_of
+
+    observation = world.reset(episode)
+    while not world.done:
+        yield {name: np.asarray(observation[name]).copy() for name in (RGB, DEPTH, POSE)}
+        observation = world.step(expert_of(world).action())
+
+
+def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], words: str) -> None:
+    """Write a drive as a folder: ``rgb/``, ``depth/``, ``poses.csv`` and ``instruction.txt``."""
+    for number, step in enumerate(steps):
+        write_bytes(path / RGB / f"{number:06d}.png", _png(step[RGB][..., ::-1]))
+        write_bytes(path / DEPTH / f"{number:06d}.png", _png(millimetres(step[DEPTH])))
+    write_bytes(path / "instruction.txt", words.encode())
+    with atomic_text(path / "poses.csv") as file:
+        file.write("x,y,heading\n")
+        file.writelines(",".join(f"{float(v):.6f}" for v in step[POSE]) + "\n" for step in steps)
+
+
+def millimetres(depth: np.ndarray) -> np.ndarray:
+    """Metres [H, W, 1] as uint16 [H, W], 0 where there is no reading."""
+    return np.clip(np.rint(depth[..., 0] * 1000), 0, 65535).astype(np.uint16)
+
+
+def _png(picture: np.ndarray) -> bytes:
+    done, encoded = cv2.imencode(".png", picture)
+    assert done
+    return encoded.tobytes()
+
+
+def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> Path:
+    """Write a drive as a bag and return its path: one step a second, odometry in REP 103's axes.
+
+    Raises ValueError if there is one already.
+    """
+    from rosbags.rosbag1 import Writer as Writer1
+    from rosbags.rosbag2 import StoragePlugin
+    from rosbags.rosbag2 import Writer as Writer2
+    from rosbags.typesys import Stores, get_typestore
+
+    path = path.with_suffix(".bag") if form == "bag" else path
+    if path.exists():
+        raise ValueError(f"{path} is there already: name another folder, or delete it.")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    old = form == "bag"
+    store = get_typestore(Stores.ROS1_NOETIC if old else Stores.ROS2_HUMBLE)
+    writer = Writer1(path) if old else Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP)
+    with writer:
+        made = {}
+        for number, step in enumerate(steps):
+            for name, message in messages(store, step, number, old):
+                kind = message.__msgtype__
+                if name not in made:
+                    made[name] = writer.add_connection(TOPICS[name], kind, typestore=store)
+                raw = (store.serialize_ros1 if old else store.serialize_cdr)(message, kind)
+                writer.write(made[name], number * SECOND, raw)
+    return path
+
+
+def messages(
+    store: Any, step: dict[str, np.ndarray], number: int, old: bool
+) -> Iterator[tuple[str, Any]]:
+    """The ROS messages of a step: odometry, CameraInfo, RGB and depth."""
+    types = store.types
+    time = types["builtin_interfaces/msg/Time"](sec=number, nanosec=0)
+    extra = {"seq": number} if old else {}
+    header = types["std_msgs/msg/Header"](stamp=time, frame_id="camera", **extra)
+    yield POSE, _odometry(types, header, step[POSE])
+    height, width = step[RGB].shape[:2]
+    k = np.array([width / 2, 0, width / 2, 0, width / 2, height / 2, 0, 0, 1.0])
+    roi = types["sensor_msgs/msg/RegionOfInterest"](0, 0, 0, 0, False)
+    matrices = (np.zeros(5), k, np.eye(3).ravel(), np.zeros(12))
+    info = types["sensor_msgs/msg/CameraInfo"]
+    yield "info", info(header, height, width, "plumb_bob", *matrices, 0, 0, roi)
+    image = types["sensor_msgs/msg/Image"]
+    yield RGB, image(header, height, width, "rgb8", 0, width * 3, step[RGB].ravel())
+    counts = millimetres(step[DEPTH])
+    yield DEPTH, image(header, height, width, "16UC1", 0, width * 2, counts.ravel().view(np.uint8))
+
+
+def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
+    """Odometry at a plan pose: ROS's yaw is the heading, a quarter turn on."""
+    half = (float(pose[2]) + np.pi / 2) / 2
+    z, w = float(np.sin(half)), float(np.cos(half))
+    point = types["geometry_msgs/msg/Point"](float(pose[0]), float(pose[1]), 0.0)
+    turned = types["geometry_msgs/msg/Quaternion"](0.0, 0.0, z, w)
+    still = types["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
+    covariance = np.zeros(36)
+    place = types["geometry_msgs/msg/Pose"](point, turned)
+    return types["nav_msgs/msg/Odometry"](
+        header,
+        "base_link",
+        types["geometry_msgs/msg/PoseWithCovariance"](place, covariance),
+        types["geometry_msgs/msg/TwistWithCovariance"](
+            types["geometry_msgs/msg/Twist"](still, still), covariance
+        ),
+    )
+
+
+_out: list[str] = []  # the folder of the command line
+
+
+@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="export_drive")
+def hydra_main(cfg: DictConfig) -> None:
+    """Hydra's entry."""
+    if len(_out) != 1:
+        raise ValueError(f"One folder is needed, OUT, but there are {len(_out)}. See --help.")
+    written = run(cfg, Path(_out[0]))
+    print("\n".join(f"wrote {path}" for path in written))
+
+
+def main() -> None:
+    """Run from the command line."""
+    arguments = sys.argv[1:]
+    if not arguments or {"--help", "-h"} & set(arguments):
+        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
+        print(conf.options_text("export_drive", suites=False))
+        sys.exit(0 if arguments else 2)
+    _out[:], sys.argv[1:] = conf.paths_and_options(arguments)
+    conf.main(hydra_main, "export_drive")

@@ -1,0 +1,250 @@
+"""Take agents along recorded drives: ``mitigate replay DRIVE agents=[checkpoints/recurrent/base]``.
+
+DRIVE is a folder of frames or a bag of ROS 1, ROS 2 or MCAP; several may be given. Each agent sees
+the drive as it was and under each corruption, and says at each step what it would do. Written are
+every decision (``decisions.jsonl``), how many of them a corruption changes (``table.md``,
+``changes.png``), and pictures of some that it changed.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import hydra
+from hydra.core.config_store import ConfigStore
+from omegaconf import MISSING, DictConfig
+
+from mitigate.core import conf
+from mitigate.core.files import atomic_text, find
+
+DECISIONS, TABLE = "decisions.jsonl", "table.md"
+
+
+@dataclass
+class TopicsConfig:
+    """As ``worlds/recorded/bags.py`` has it."""
+
+    rgb: str | None = None
+    depth: str | None = None
+    pose: str | None = None
+    info: str | None = None
+
+
+@dataclass
+class StepConfig:
+    """As ``worlds/recorded/source.py`` has it."""
+
+    metres: float = 0.25
+    degrees: float = 15.0
+    seconds: float = 0.5
+
+
+@dataclass
+class ReplayConfig:
+    """Types of ``conf/replay.yaml``; the meaning of each entry is written there."""
+
+    agents: list[str] = MISSING
+    instruction: str | None = None
+    conditions: list[str] | None = None
+    severity: float = 0.6
+    severity_depth: float | None = None
+    seed: int = 0
+    size: int = 64
+    hfov: float | None = None
+    unit: float | None = None
+    step: StepConfig = field(default_factory=StepConfig)
+    topics: TopicsConfig = field(default_factory=TopicsConfig)
+    out: str | None = None
+    runs: str = "runs"
+    suite: Any = MISSING
+
+
+ConfigStore.instance().store(name="replay_schema", node=ReplayConfig)
+
+
+def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
+    """Take the agents of ``cfg`` along the drives at ``paths``; return the folder of the report.
+
+    Raises ValueError and FileNotFoundError for what is missing, damaged or does not fit.
+    """
+    if not paths:
+        raise ValueError(
+            "No drive is given: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
+        )
+    if not cfg.agents:
+        raise ValueError("agents=[] are none: name folders of weights.")
+    if not 16 <= cfg.size <= 1024:
+        raise ValueError(f"size={cfg.size} must be 16 to 1024 pixels.")
+    from mitigate.evaluation.evaluate import conditions
+
+    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
+    others = [name for name in names if name != "clean"]
+    met = conditions(["clean", *others], cfg.severity, cfg.severity_depth)
+    agents = load_agents(list(cfg.agents))
+    recordings = load_recordings(cfg, paths, {agent.views for agent in agents.values()})
+    out = Path(cfg.out or f"{cfg.runs}/replay/{Path(paths[0]).stem}-s{cfg.severity:g}")
+    out.mkdir(parents=True, exist_ok=True)
+    return replay(agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed)
+
+
+def load_agents(weights: Sequence[str]) -> dict[str, Any]:
+    """The agents of folders of weights, by names that differ."""
+    from mitigate.evaluation.evaluate import name_of
+
+    names = [name_of(folder) for folder in weights]
+    if len(set(names)) < len(names):
+        names = [folder.rstrip("/") for folder in weights]
+    return {name: _agent(find(folder)) for name, folder in zip(names, weights, strict=True)}
+
+
+def _agent(folder: Path) -> Any:
+    from mitigate.core import checkpoint
+    from mitigate.shipping import hardened
+
+    if (folder / hardened.CARD).is_file():
+        return hardened.load_hardened(folder)
+    config = checkpoint.weights_file(folder).with_name(hardened.CONFIG)
+    if not config.is_file():
+        raise FileNotFoundError(f"{config} is missing, so nobody knows what agent {folder} is of.")
+    agent = hardened.build(config)
+    checkpoint.load_agent(agent, folder)
+    return agent.eval()
+
+
+def load_recordings(cfg: DictConfig, paths: Sequence[str], views: set[int]) -> dict[int, list[Any]]:
+    """Every drive, for agents with a panorama (12) and for those with one camera (1)."""
+    from mitigate.worlds.recorded import Step, Topics, load, open_recording
+
+    topics, step = Topics(**cfg.topics), Step(**cfg.step)
+    found: dict[int, list[Any]] = {count: [] for count in views}
+    for path in paths:
+        for source in open_recording(path, topics=topics, hfov=cfg.hfov, unit=cfg.unit):
+            for count in views:
+                drive = load(source, views=count, size=cfg.size, step=step)
+                words = cfg.instruction or drive.instruction
+                if not words:
+                    raise ValueError(
+                        f"{drive.name} says no instruction: give "
+                        "instruction='\"walk to the door\"'."
+                    )
+                found[count].append(replace(drive, instruction=words))
+    for drives in found.values():
+        twice = {drive.name for drive in drives if sum(d.name == drive.name for d in drives) > 1}
+        if twice:
+            raise ValueError(f"Two drives are called {twice.pop()!r}: rename one.")
+    return found
+
+
+def replay(
+    agents: Mapping[str, Any],
+    recordings: Mapping[int, Sequence[Any]],
+    met: Sequence[Any],
+    out: Path,
+    *,
+    severity: float,
+    seed: int,
+) -> Path:
+    """Walk ``agents`` (by name) along ``recordings`` (by their number of views) under the
+    corruptions ``met``, clean first; write the report into ``out`` and return it."""
+    from mitigate.core.progress import Progress
+    from mitigate.replay import changes, report
+    from mitigate.replay.walk import Answers, lines, walk
+
+    found: dict[str, dict[str, changes.Changes]] = {}
+    pictures: list[Path] = []
+    steps = [len(drive.times) for drive in next(iter(recordings.values()))]
+    total = len(agents) * len(met) * len(steps)
+    with Progress("replay", total, unit="walk") as progress, atomic_text(out / DECISIONS) as file:
+        for name, agent in agents.items():
+            drives = recordings[agent.views]
+            answers: dict[str, dict[str, Answers]] = {}
+            for corruption in met:
+                reason = inapplicable(corruption, agent, drives)
+                if reason:
+                    progress.advance(len(drives))
+                    progress.say(f"{name}, {corruption.name}: not applicable, {reason}")
+                    continue
+                here = answers.setdefault(corruption.name, {})
+                for drive in drives:
+                    here[drive.name] = walk(agent, drive, corruption, seed)
+                    told = {"agent": name, "condition": corruption.name}
+                    told |= {"severity": corruption.severity, "seed": seed}
+                    made = lines(told, drive, answers["clean"][drive.name], here[drive.name])
+                    file.writelines(json.dumps(line) + "\n" for line in made)
+                    progress.advance(note=f"{name}, {corruption.name}")
+            clean = answers["clean"]
+            found[name] = {n: changes.compare(drives, clean, a) for n, a in answers.items()}
+            pictures += _picture(name, agent, drives, met, found[name], answers, seed, out)
+    text = report.table(found, severity, sum(steps), len(steps))
+    with atomic_text(out / TABLE) as table:
+        table.write(text)
+    print(text.partition("\nFalse stops")[0])
+    pictures.insert(0, report.heatmap(found, severity, out / "changes.png"))
+    print("\n".join(f"wrote {path}" for path in (out / DECISIONS, out / TABLE, *pictures)))
+    return out
+
+
+def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
+    """Why a corruption cannot be met here; empty if it can."""
+    kind = corruption.modality
+    if kind in ("rgb", "depth") and kind not in drives[0].frames:
+        return f"the drive has no {kind} frames"
+    if corruption.name == "white_box" and not hasattr(agent, "system_prompt"):
+        return "the agent has no system prompt"
+    return ""
+
+
+def _picture(
+    name: str,
+    agent: Any,
+    drives: Sequence[Any],
+    met: Sequence[Any],
+    found: Mapping[str, Any],
+    answers: Mapping[str, Mapping[str, Any]],
+    seed: int,
+    out: Path,
+) -> list[Path]:
+    """A picture of decisions that the worst corruption of frames changed, if it changed any."""
+    from mitigate.replay import report
+    from mitigate.replay.walk import walk
+
+    seen = [c for c in met if c.name in found and c.modality in ("rgb", "depth")]
+    if not seen:
+        return []
+    worst = max(seen, key=lambda c: found[c.name].changed.value)
+    differs = {
+        drive.name: answers["clean"][drive.name].actions != answers[worst.name][drive.name].actions
+        for drive in drives
+    }
+    drive = max(drives, key=lambda d: int(differs[d.name].sum()))
+    steps = report.spread([int(i) for i in differs[drive.name].nonzero()[0]])
+    if not steps:
+        return []
+    again = walk(agent, drive, worst, seed, keep=steps)
+    path = out / f"{name.replace('/', '-')}-{worst.name}.png"
+    return [report.picture(drive, worst, answers["clean"][drive.name], again, path)]
+
+
+_paths: list[str] = []  # the drives of the command line
+
+
+@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="replay")
+def hydra_main(cfg: DictConfig) -> None:
+    """Hydra's entry."""
+    run(cfg, _paths)
+
+
+def main() -> None:
+    """Run from the command line."""
+    arguments = sys.argv[1:]
+    if not arguments or {"--help", "-h"} & set(arguments):
+        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
+        print(conf.options_text("replay"))
+        sys.exit(0 if arguments else 2)
+    _paths[:], sys.argv[1:] = conf.paths_and_options(arguments)
+    conf.main(hydra_main, "replay")

@@ -1,0 +1,181 @@
+"""A recorded drive as an agent's own cameras would have seen it, and the world that it is.
+
+Frames of any camera become square views of 90 degrees, as agents know them: cut and resized, and
+black (no reading in depth) where the camera did not look.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation, Sensor, cameras
+from mitigate.core.progress import Progress
+from mitigate.worlds.episodes import Episode, Instruction
+from mitigate.worlds.recorded.source import Lens, Source, Step, driven
+from mitigate.worlds.world import Expert
+
+LARGEST = 1 << 32  # bytes of the frames of a drive (ours)
+OFF = 3.0  # degrees that a camera may look beside its view of the panorama (ours)
+
+
+@dataclass(frozen=True)
+class Recording:
+    """One drive, ready to be walked along.
+
+    frames: "rgb" uint8 [T, S, S, 3] and "depth" float32 metres [T, S, S, 1], of a panorama
+    [T, 12, S, S, c]; those that there are. times: float64 [T], seconds since the first.
+    poses: float64 [T, 3], or None. driven: int [T], the action that whoever drove took, or None.
+    """
+
+    name: str
+    instruction: str
+    frames: Mapping[str, np.ndarray]
+    times: np.ndarray
+    poses: np.ndarray | None
+    driven: np.ndarray | None
+
+    @property
+    def sensors(self) -> dict[str, Sensor]:
+        """What it gives, as ``core/observation.py`` says."""
+        first = next(iter(self.frames.values()))
+        of = cameras(first.shape[-2], first.shape[1] if first.ndim == 5 else 1)
+        held = {*self.frames, *([] if self.poses is None else [POSE])}
+        return {name: sensor for name, sensor in of.items() if name in held}
+
+
+def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
+    """Read the instants of ``source`` that are a step apart, with ``views`` (1 or 12) views of
+    ``size`` pixels.
+
+    Raises ValueError for a source without the cameras, and for one that is too long.
+    """
+    chosen = np.arange(len(source.times))
+    if not source.stepped:
+        chosen = step.choose(source.times, source.poses)
+    looks = _looks(source, views)
+    count = {RGB: 3, DEPTH: 4}
+    needed = len(chosen) * views * size * size * sum(count[kind] for kind, _ in looks)
+    if needed > LARGEST:
+        raise ValueError(
+            f"{source.name} has {len(chosen)} steps, whose frames take {needed / 2**30:.1f} GiB, "
+            f"more than {LARGEST >> 30}: cut the recording, or set longer steps (step.metres=0.5)."
+        )
+    shape = (len(chosen), *([views] if views > 1 else []), size, size)
+    frames = {
+        kind: np.zeros((*shape, 3 if kind == RGB else 1), np.uint8 if kind == RGB else np.float32)
+        for kind, _ in looks
+    }
+    with Progress(f"read {source.name}", len(chosen), unit="instant") as progress:
+        for row, shown in enumerate(source.frames(chosen.tolist())):
+            for (kind, view), camera in looks.items():
+                place = frames[kind][row] if views == 1 else frames[kind][row, view]
+                place[...] = square(shown[camera], source.cameras[camera], size)
+            progress.advance()
+    poses = None if source.poses is None else source.poses[chosen]
+    times = source.times[chosen] - source.times[0]
+    taken = None if poses is None else driven(poses)
+    return Recording(source.name, source.instruction, frames, times, poses, taken)
+
+
+def _looks(source: Source, views: int) -> dict[tuple[str, int], str]:
+    """Which camera gives which (kind, view): the one ahead, or all of the panorama."""
+    looks: dict[tuple[str, int], str] = {}
+    for name, lens in source.cameras.items():
+        beside = abs((lens.yaw - 30.0 * lens.view + 180) % 360 - 180)
+        if beside <= OFF and (views > 1 or lens.view == 0):
+            looks.setdefault((lens.kind, lens.view), name)
+    for kind in sorted({kind for kind, _ in looks}, reverse=True):
+        there = sum(k == kind for k, _ in looks)
+        if there < views:
+            raise ValueError(
+                f"{source.name} has {there} {kind} cameras of the {VIEWS} that the agent's "
+                f"panorama needs, each 30 degrees from the next (it has {_told(source)}). Give "
+                "agents with one camera: agents=[checkpoints/recurrent/base]."
+            )
+    if not looks:
+        raise ValueError(f"{source.name} has no camera that looks ahead, only {_told(source)}.")
+    return looks
+
+
+def _told(source: Source) -> str:
+    cameras = source.cameras.items()
+    listed = [f"{name} ({lens.kind}, {lens.yaw:g} degrees)" for name, lens in cameras]
+    return ", ".join(listed[:6]) + (" ..." if len(listed) > 6 else "") or "none"
+
+
+def square(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
+    """A frame as a square view of 90 degrees: uint8 [size, size, 3], or float32 [size, size, 1].
+
+    A frame that is one already, of this size, comes back bit for bit.
+    """
+    depth = lens.kind == DEPTH
+    frame = frame.reshape(*frame.shape[:2], -1)
+    height, width = frame.shape[:2]
+    fx, fy, cx, cy = lens.of(height, width)
+    left, right, top, bottom = (round(v) for v in (cx - fx, cx + fx, cy - fy, cy + fy))
+    inside = frame[max(0, top) : max(0, bottom), max(0, left) : max(0, right)]
+    pad = ((max(0, -top), max(0, bottom - height)), (max(0, -left), max(0, right - width)), (0, 0))
+    whole = np.pad(inside, pad) if any(map(any, pad)) else inside
+    if whole.shape[:2] != (size, size):
+        shrinks = size < max(whole.shape[:2])
+        kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
+        kind = cv2.INTER_NEAREST_EXACT if depth else kind  # holes stay holes, edges edges
+        whole = cv2.resize(whole, (size, size), interpolation=kind)
+    return whole.reshape(size, size, -1)
+
+
+class RecordedWorld:
+    """A world in which every step leads to the next instant of a recording, whatever the agent
+    does. It is over after the last one; nobody says how well an agent would have walked."""
+
+    rule = "recorded: the way is the driver's"
+
+    def __init__(self, recording: Recording) -> None:
+        self.recording, self.sensors = recording, recording.sensors
+        self.at, self.done = 0, True
+
+    def episode(self) -> Episode:
+        """What there is to walk: the drive, by its name and instruction."""
+        name, nowhere = self.recording.name, (0.0, 0.0, 0.0)
+        return Episode(
+            episode_id=name,
+            trajectory_id=name,
+            scene_id=name,
+            start_position=nowhere,
+            start_rotation=(*nowhere, 1.0),
+            goals=(),
+            instruction=Instruction(self.recording.instruction),
+            reference_path=(),
+        )
+
+    def reset(self, episode: Episode) -> Observation:
+        """Begin at the first instant."""
+        self.at, self.done = 0, False
+        return self._seen()
+
+    def step(self, action: int) -> Observation:
+        """The next instant. Raises RuntimeError after the last one."""
+        if self.done:
+            raise RuntimeError("The recording is over: reset first.")
+        self.at += 1
+        self.done = self.at >= len(self.recording.times)
+        return self._seen()
+
+    def measures(self) -> dict[str, float]:
+        """None: the way was the driver's."""
+        return {}
+
+    def expert(self) -> Expert | None:
+        """None: how far the goal is, is not recorded."""
+        return None
+
+    def _seen(self) -> Observation:
+        at = min(self.at, len(self.recording.times) - 1)
+        held = self.recording
+        ready = {} if held.poses is None else {POSE: held.poses[at].astype(np.float32)}
+        frames = held.frames
+        return Observation(ready, lambda: {n: f[at].copy() for n, f in frames.items()}, frames)

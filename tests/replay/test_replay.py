@@ -1,0 +1,151 @@
+"""``mitigate replay``: what agents answer along a drive, and what a corruption changes of it."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from mitigate.agents.recurrent.odometer import Odometer
+from mitigate.core.observation import DEPTH, FORWARD, LEFT, RGB, RIGHT, STOP
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.replay.changes import compare
+from mitigate.replay.walk import Answers, walk
+from mitigate.worlds.recorded import Recording
+
+T = 30
+MITIGATE = [sys.executable, "-c", "from mitigate.cli import main; main()"]
+
+
+class ByBrightness:
+    """Goes on in bright frames and turns in dark ones; remembers what it was told."""
+
+    views = 1
+
+    def reset(self, instruction):
+        self.told, self.heard = instruction, []
+
+    def act(self, observation):
+        return FORWARD if observation[RGB].mean() > 100 else RIGHT
+
+    def taken(self, action):
+        self.heard.append(action)
+
+
+def drive(name="lab", driven=None) -> Recording:
+    rng = np.random.default_rng(0)
+    frames = {
+        RGB: rng.integers(120, 255, (T, 16, 16, 3), np.uint8),
+        DEPTH: rng.uniform(1, 5, (T, 16, 16, 1)).astype(np.float32),
+    }
+    poses = np.stack([np.zeros(T), 0.25 * np.arange(T), np.zeros(T)], 1)
+    return Recording(name, "go on", frames, np.arange(T) * 1.0, poses, driven)
+
+
+def test_an_agent_is_shown_every_step_and_told_what_the_driver_did():
+    agent, driven = ByBrightness(), np.array([FORWARD] * (T - 1) + [STOP])
+    found = walk(agent, drive(driven=driven), CLEAN, 0)
+    assert agent.told == "go on"
+    assert found.actions.tolist() == [FORWARD] * T
+    assert agent.heard == driven.tolist()
+
+
+def test_a_corruption_changes_the_answers_and_is_the_same_again():
+    dark = Corruption("low_light", 0.9)
+    first, second = (walk(ByBrightness(), drive(), dark, 3, keep=[4]) for _ in range(2))
+    assert (first.actions == RIGHT).mean() > 0.9
+    assert np.array_equal(first.seen[4][RGB], second.seen[4][RGB])
+    assert first.seen[4][RGB].mean() < drive().frames[RGB][4].mean()
+
+
+def test_an_agent_that_reads_no_depth_keeps_everything_under_depth_corruption():
+    clean = walk(ByBrightness(), drive(), CLEAN, 0)
+    holes = walk(ByBrightness(), drive(), Corruption("missing_data", 0.9), 0)
+    assert np.array_equal(clean.actions, holes.actions)
+
+
+def test_a_drive_without_what_the_agent_reads_says_so():
+    half = drive()
+    half = Recording("lab", "go", {DEPTH: half.frames[DEPTH]}, half.times, half.poses, None)
+    with pytest.raises(ValueError, match="lab does not fit ByBrightness"):
+        walk(ByBrightness(), half, CLEAN, 0)
+
+
+def answers(actions, aims=None) -> Answers:
+    aims = np.full((len(actions), 2), np.nan) if aims is None else aims
+    return Answers(np.array(actions), aims)
+
+
+def test_changes_are_counted_against_clean_answers_and_against_the_driver():
+    drives = [drive("a", np.array([FORWARD] * T)), drive("b", np.array([LEFT] * T))]
+    clean = {"a": answers([FORWARD] * T), "b": answers([FORWARD] * (T - 1) + [STOP])}
+    found = {"a": answers([FORWARD] * 15 + [STOP] * 15), "b": answers([FORWARD] * T)}
+    changes = compare(drives, clean, found)
+    assert changes.changed.value == pytest.approx(16 / 60)
+    assert changes.changed.low < 16 / 60 < changes.changed.high
+    assert (changes.stops, changes.missed, changes.steps) == (15, 1, 60)
+    assert changes.agreement.value == pytest.approx(15 / 60)
+    assert np.isnan(changes.aim)
+
+
+def test_the_aim_is_compared_where_both_have_one():
+    here, there = np.zeros((T, 2)), np.tile([3.0, 4.0], (T, 1))
+    here[:5] = np.nan
+    of = compare([drive()], {"lab": answers([1] * T, here)}, {"lab": answers([1] * T, there)})
+    assert of.aim == pytest.approx(5.0)
+
+
+def test_an_odometer_counts_what_was_done_in_place_of_its_answer():
+    told, own = Odometer(), Odometer()
+    for answer, done in ((FORWARD, LEFT), (RIGHT, FORWARD), (LEFT, LEFT)):
+        told.add(answer)
+        told.correct(done)
+        own.add(done)
+    assert np.allclose(told.moves(), own.moves())
+
+
+def test_the_command_writes_decisions_tables_and_pictures(tmp_path):
+    run = MITIGATE
+    made = subprocess.run(
+        [*run, "export_drive", str(tmp_path / "drives"), "episodes=1", "form=mcap", "env.size=64"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert made.returncode == 0, made.stderr
+    (bag,) = [path for path in (tmp_path / "drives").iterdir() if path.is_dir()]
+    out = tmp_path / "out"
+    done = subprocess.run(
+        [*run, "replay", str(bag), f"out={out}", "conditions=[foreign_object,missing_data]",
+         "agents=[checkpoints/recurrent/base,checkpoints/recurrent/teacher]"],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    lines = [json.loads(line) for line in (out / "decisions.jsonl").read_text().splitlines()]
+    steps = max(line["step"] for line in lines) + 1
+    assert len(lines) == 2 * 3 * steps
+    assert {line["agent"] for line in lines} == {"recurrent", "recurrent_teacher"}
+    clean = [line for line in lines if line["condition"] == "clean"]
+    assert all(line["action"] == line["clean"] for line in clean)
+    assert (out / "changes.png").is_file() and (out / "table.md").is_file()
+    assert "Foreign object" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        ([], "FOLDER_OR_BAG"),
+        (["none"], "no recording"),
+        (["tests", "agents=[checkpoints/nothing]"], "nothing"),
+        (["tests", "conditions=[fog2]"], "fog2"),
+        (["tests", "colour=red"], "colour"),
+    ],
+)
+def test_a_users_mistake_is_one_paragraph(options, says):
+    done = subprocess.run(
+        [*MITIGATE, "replay", *(options or ["seed=1"])],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode != 0 and "Traceback" not in done.stderr
+    assert says in done.stderr

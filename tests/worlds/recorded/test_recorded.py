@@ -1,0 +1,244 @@
+"""Recorded drives: what is read of folders and bags, which instants, and as which views."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
+from mitigate.replay.export_drive import write_bag, write_frames
+from mitigate.worlds.recorded import RecordedWorld, Step, load, open_recording
+from mitigate.worlds.recorded.recording import square
+from mitigate.worlds.recorded.source import Lens, driven
+
+SIZE = 32
+
+
+def steps(poses: list[tuple[float, float, float]]) -> list[dict[str, np.ndarray]]:
+    """Frames that differ from step to step, at these poses."""
+    rng = np.random.default_rng(0)
+    return [
+        {
+            RGB: rng.integers(0, 255, (SIZE, SIZE, 3), np.uint8),
+            DEPTH: (rng.integers(0, 8000, (SIZE, SIZE, 1)) / 1000).astype(np.float32),
+            POSE: np.array(pose, np.float32),
+        }
+        for pose in poses
+    ]
+
+
+def walk() -> list[tuple[float, float, float]]:
+    """Two steps ahead, one turn to the left, one step, one turn to the right."""
+    turn = math.radians(15)
+    ahead = 0.25 * np.array([-math.sin(turn), math.cos(turn)])
+    there = (ahead[0], 0.5 + ahead[1])
+    return [(0, 0, 0), (0, 0.25, 0), (0, 0.5, 0), (0, 0.5, turn), (*there, turn), (*there, 0)]
+
+
+def read(path: Path, **options):
+    (source,) = open_recording(path, **options)
+    return load(source, views=1, size=SIZE, step=Step())
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_frames(tmp_path / "drive", steps(walk()), "walk to the door")
+    return tmp_path / "drive"
+
+
+def test_a_folder_gives_its_frames_poses_words_and_what_the_driver_did(folder):
+    found, wanted = read(folder), steps(walk())
+    assert found.instruction == "walk to the door"
+    assert np.array_equal(found.frames[RGB], np.stack([s[RGB] for s in wanted]))
+    assert np.allclose(found.frames[DEPTH], np.stack([s[DEPTH] for s in wanted]), atol=6e-4)
+    assert np.allclose(found.poses, np.stack([s[POSE] for s in wanted]), atol=1e-5)
+    assert found.driven.tolist() == [FORWARD, FORWARD, LEFT, FORWARD, RIGHT, STOP]
+
+
+@pytest.mark.parametrize("form", ["bag", "mcap"])
+def test_a_bag_gives_what_the_folder_gives(folder, tmp_path, form):
+    bag = write_bag(tmp_path / "robot", steps(walk()), form)
+    (tmp_path / "robot.txt").write_text("walk to the door\n")
+    first, second = read(folder), read(bag)
+    assert second.instruction == "walk to the door"
+    for name in (RGB, DEPTH):
+        assert np.array_equal(first.frames[name], second.frames[name]), name
+    assert np.allclose(first.poses, second.poses, atol=1e-5)
+    assert first.driven.tolist() == second.driven.tolist()
+
+
+def test_a_bag_says_which_topics_there_are_and_takes_one_that_is_named(tmp_path):
+    from mitigate.worlds.recorded import Topics
+
+    bag = write_bag(tmp_path / "robot", steps(walk()), "bag")
+    with pytest.raises(ValueError, match="/camera/color/image_raw"):
+        open_recording(bag, topics=Topics(rgb="/camera/colour/image_raw"))
+    (source,) = open_recording(bag, topics=Topics(rgb="/camera/color/image_raw"))
+    assert set(source.cameras) == {RGB, DEPTH}
+
+
+@pytest.mark.parametrize("form", ["bag", "mcap"])
+def test_a_damaged_bag_is_a_named_error(tmp_path, form):
+    bag = write_bag(tmp_path / "robot", steps(walk()), form)
+    file = bag if form == "bag" else next(bag.glob("*.mcap"))
+    whole = file.read_bytes()
+    rng = np.random.default_rng(0)
+    for cut in (0, 10, len(whole) // 3, len(whole) - 40):
+        file.write_bytes(whole[:cut])
+        with pytest.raises(ValueError, match="robot"):
+            read(bag)
+    for _ in range(10):  # flipped bytes: read as something, or refused by name
+        damaged = bytearray(whole)
+        for at in rng.integers(0, len(whole), 30):
+            damaged[at] ^= 0xFF
+        file.write_bytes(bytes(damaged))
+        try:
+            read(bag)
+        except ValueError as error:
+            assert "robot" in str(error)
+
+
+def tum(folder: Path, made: list[dict[str, np.ndarray]], hertz: float = 10.0) -> Path:
+    """The same in TUM RGB-D's form: frames at ten times the pace of the steps."""
+    lists = {RGB: [], DEPTH: []}
+    poses = []
+    for number, step in enumerate(made):
+        time = 100 + number / hertz
+        for kind in (RGB, DEPTH):
+            (folder / kind).mkdir(parents=True, exist_ok=True)
+            picture = step[RGB][..., ::-1] if kind == RGB else np.rint(step[DEPTH][..., 0] * 5000)
+            picture = picture if kind == RGB else picture.astype(np.uint16)
+            cv2.imwrite(str(folder / kind / f"{time:.4f}.png"), picture)
+            lists[kind].append(f"{time + (kind == DEPTH) * 0.01:.4f} {kind}/{time:.4f}.png")
+        x, y, heading = step[POSE]
+        # the optical axis (z) looks ahead, x to the right, y down
+        ahead = np.array([-math.sin(heading), math.cos(heading), 0])
+        right = np.array([math.cos(heading), math.sin(heading), 0])
+        turned = np.stack([right, [0, 0, -1], ahead], 1)
+        w = math.sqrt(max(0, 1 + np.trace(turned))) / 2
+        q = [turned[2, 1] - turned[1, 2], turned[0, 2] - turned[2, 0], turned[1, 0] - turned[0, 1]]
+        qx, qy, qz = (value / (4 * w) for value in q)
+        poses.append(f"{time:.4f} {x} {y} 1.2 {qx} {qy} {qz} {w}")
+    for kind, lines in lists.items():
+        (folder / f"{kind}.txt").write_text("# time file\n" + "\n".join(lines))
+    (folder / "groundtruth.txt").write_text("# time pose\n" + "\n".join(poses))
+    return folder
+
+
+def test_frames_at_a_cameras_pace_are_thinned_to_an_agents_steps(tmp_path):
+    slow = [(0.0, 0.025 * i, 0.0) for i in range(41)]  # one metre in 41 frames
+    found = read(tum(tmp_path / "lab", steps(slow)), hfov=90.0)
+    assert len(found.times) == 5
+    assert np.allclose(np.diff(found.poses[:, 1]), 0.25, atol=0.01)
+    assert np.allclose(found.poses[:, 2], 0, atol=1e-6)
+
+
+def test_a_list_that_names_a_file_outside_of_its_folder_is_refused(tmp_path):
+    folder = tum(tmp_path / "lab", steps(walk()))
+    (folder / "rgb.txt").write_text("100.0 ../../secret.png\n")
+    with pytest.raises(ValueError, match="outside"):
+        read(folder)
+
+
+def test_a_recording_of_mitigate_run_is_read_with_its_cameras(tmp_path):
+    made = steps(walk())
+    write_frames(tmp_path / "x", made, "")
+    episode = tmp_path / "recorded" / "kitchen" / "17"
+    episode.mkdir(parents=True)
+    (tmp_path / "x" / "rgb").rename(episode / "rgb")
+    (tmp_path / "x" / "depth").rename(episode / "depth")
+    (tmp_path / "recorded" / "recording.json").write_text(json.dumps({"unit": 0.001}))
+    (episode / "episode.json").write_text(json.dumps({"text": "go to the sink"}))
+    cameras = {kind: {"kind": kind, "hfov": 90.0, "yaw": 0.0} for kind in (RGB, DEPTH)}
+    (episode / "cameras.json").write_text(json.dumps(cameras))
+    lines = [
+        {"call": i, "position": [float(p[0]), 0.1, -float(p[1])], "heading": float(p[2])}
+        for i, p in enumerate(walk())
+    ]
+    (episode / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    found = read(tmp_path / "recorded")
+    assert (found.name, found.instruction) == ("kitchen/17", "go to the sink")
+    assert np.allclose(found.poses, np.array(walk()), atol=1e-6)
+
+
+def test_a_square_view_of_ninety_degrees_stays_bit_for_bit():
+    frame = steps(walk())[0][RGB]
+    assert np.array_equal(square(frame, Lens(RGB), SIZE), frame)
+
+
+def test_a_narrow_camera_leaves_black_where_it_does_not_look():
+    frame = np.full((48, 64, 3), 200, np.uint8)
+    lens = Lens(RGB, hfov=math.degrees(2 * math.atan(0.5)))  # half as wide as the view
+    seen = square(frame, lens, 64)[..., 0]
+    assert (seen[:, :15] == 0).all() and (seen[:, 49:] == 0).all()
+    assert (seen[22:42, 18:46] == 200).all()
+    assert abs((seen > 0).mean() - 0.5 * 0.375) < 0.03
+
+
+def test_a_wide_camera_is_cut_to_the_view():
+    columns = np.arange(200)
+    frame = np.repeat(np.repeat(columns[None, :, None], 100, 0), 3, 2).astype(np.uint8)
+    lens = Lens(RGB, hfov=math.degrees(2 * math.atan(2.0)))  # twice as wide
+    seen = square(frame, lens, 50)[25, :, 0].astype(int)
+    assert abs(seen[0] - 50) <= 1 and abs(seen[-1] - 149) <= 1
+
+
+def test_depth_keeps_its_holes_when_it_is_resized():
+    frame = np.full((64, 64), 3.0, np.float32)
+    frame[::2, ::2] = 0.0
+    seen = square(frame, Lens(DEPTH), 32)
+    assert set(np.unique(seen)) <= {0.0, 3.0}
+
+
+def test_a_panorama_needs_all_its_cameras(folder):
+    (source,) = open_recording(folder)
+    with pytest.raises(ValueError, match="1 rgb cameras of the 12"):
+        load(source, views=12, size=SIZE, step=Step())
+
+
+def test_the_world_shows_the_next_instant_whatever_the_agent_does(folder):
+    world = RecordedWorld(read(folder))
+    observation = world.reset(world.episode())
+    seen = []
+    while not world.done:
+        seen.append(observation[RGB])
+        observation = world.step(STOP)
+    assert np.array_equal(np.stack(seen), world.recording.frames[RGB])
+    with pytest.raises(RuntimeError, match="over"):
+        world.step(STOP)
+
+
+def test_a_turn_across_the_back_counts_as_a_small_one():
+    poses = np.array([(0, 0, math.pi - 0.05), (0, 0, -math.pi + 0.2)])
+    assert driven(poses).tolist() == [LEFT, STOP]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,0\n"), "as many of each"),
+        (lambda f: (f / "poses.csv").write_text("0,0\n" * 6), "not x,y,heading"),
+        (lambda f: (f / "poses.csv").write_text("0,0,nan\n" * 6), "no finite number"),
+        (lambda f: (f / "rgb" / "000002.png").write_bytes(b"\x89PNG cut"), "000002.png"),
+        (lambda f: (f / "rgb" / "000002.png").unlink(), "as many of each"),
+        (lambda f: (f / "depth" / "000001.png").replace(f / "rgb" / "000001.png"), "as many"),
+    ],
+)
+def test_a_damaged_folder_is_a_named_error(folder, spoil, says):
+    spoil(folder)
+    with pytest.raises(ValueError, match=says):
+        read(folder)
+
+
+def test_nothing_that_can_be_read_says_what_would_be(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"rgb\.txt"):
+        open_recording(tmp_path)
+    with pytest.raises(FileNotFoundError, match="no recording"):
+        open_recording(tmp_path / "none")
+    with pytest.raises(ValueError, match="field of view"):
+        open_recording(tmp_path, hfov=400)
