@@ -25,6 +25,7 @@ from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.phrases import VOICES
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
+from mitigate.safeguard import spoken
 from mitigate.safeguard.routes import draw_route
 from mitigate.worlds.episodes import read_episodes
 
@@ -46,11 +47,12 @@ PROMPTS = {
 }
 ROLES = ("system", "user", "assistant")
 KINDS = {  # shares of the pairs (ours, chosen on the validation families)
-    "identity": 0.22,
-    "style": 0.46,
-    "mask": 0.14,
+    "identity": 0.16,
+    "style": 0.18,
+    "spoken": 0.40,
+    "mask": 0.10,
     "capitalize": 0.04,
-    "black_box": 0.14,
+    "black_box": 0.12,
 }
 MASKS = ("[MASK]", "[MASK]", "[MASK]", "<mask>", "[UNK]")
 LONGEST_LINE = 1_000_000  # characters of a chat line; more is another kind of file (ours)
@@ -137,8 +139,16 @@ def _attacked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     attack = " ".join(attacks(rng))
     if rng.random() < 0.3:  # a passage may be nothing but attack
         return Pair(attack, "", "black_box")
+    if rng.random() < 0.3:
+        said, plain = spoken.passage(rng)
+        return Pair(f"{attack} {said}", plain, "black_box")
     text = _window(_SENTENCE.split(clean), rng)
     return Pair(f"{attack} {text}", text, "black_box")
+
+
+def _spoken(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
+    said, plain = spoken.passage(rng)
+    return Pair(said, plain, "spoken")
 
 
 def _styled(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
@@ -162,6 +172,7 @@ _MAKE = {
     "mask": _masked,
     "black_box": _attacked,
     "style": _styled,
+    "spoken": _spoken,
 }
 
 

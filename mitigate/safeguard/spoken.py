@@ -1,0 +1,78 @@
+"""What people say, by voice: texts written by hand, each beside the same route in plain words.
+
+A line of ``voices/<voice>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}`` (or "object"):
+the parts in order, each some whole sentences with their plain translation, empty for what tells
+nothing of the way. Whole voices are kept out of training: a person whom nobody has heard.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from mitigate.core.names import unknown
+
+FOLDER = Path(__file__).parent / "voices"
+VALIDATION = ("butler", "gps", "non_native")  # settings are chosen on these
+TEST = ("bureaucratic", "poetic", "storyteller", "tour_guide")  # and figures reported on these
+SPLITS = ("train", "validation", "test")
+LONGEST = 80  # words of a passage that is learned from (ours)
+
+
+@dataclass(frozen=True)
+class Spoken:
+    """One text; ``parts``: (said, plain) in order. ``task``: "route" or "object"."""
+
+    voice: str
+    task: str
+    parts: tuple[tuple[str, str], ...]
+
+    @property
+    def said(self) -> str:
+        """The whole text as it is heard."""
+        return " ".join(said for said, _ in self.parts)
+
+    @property
+    def plain(self) -> str:
+        """The same in plain words."""
+        return " ".join(plain for _, plain in self.parts if plain)
+
+
+@lru_cache(maxsize=4)
+def spoken(split: str) -> tuple[Spoken, ...]:
+    """All texts of a split's voices. Raises ValueError for an unknown split."""
+    if split not in SPLITS:
+        raise ValueError(unknown("split", split, SPLITS))
+    kept = {"validation": VALIDATION, "test": TEST}.get(split)
+    found = []
+    for file in sorted(FOLDER.glob("*.jsonl")):
+        held_out = file.stem in (*VALIDATION, *TEST)
+        if file.stem in kept if kept else not held_out:
+            found += _read(file)
+    return tuple(found)
+
+
+def passage(rng: np.random.Generator) -> tuple[str, str]:
+    """Some parts in a row of a text of the train voices: (said, plain)."""
+    texts = spoken("train")
+    parts = texts[int(rng.integers(len(texts)))].parts
+    share = rng.random()
+    count = 1 if share < 0.45 else int(rng.integers(2, 4)) if share < 0.8 else len(parts)
+    first = int(rng.integers(max(1, len(parts) - count + 1)))
+    chosen = parts[first : first + count]
+    while len(chosen) > 1 and sum(len(said.split()) for said, _ in chosen) > LONGEST:
+        chosen = chosen[:-1]
+    return " ".join(said for said, _ in chosen), " ".join(plain for _, plain in chosen if plain)
+
+
+def _read(file: Path) -> list[Spoken]:
+    found = []
+    for line in file.read_text(encoding="utf-8").splitlines():
+        held = json.loads(line)
+        parts = tuple((said, plain) for said, plain in held["parts"])
+        found.append(Spoken(file.stem, held["task"], parts))
+    return found
