@@ -103,10 +103,12 @@ def prompt_messages(text: str, prompt: str) -> list[dict[str, str]]:
 
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
     """Return pair ``index`` of ``seed``; the share ``share`` is made from ``texts``, if any."""
-    kind = str(generator(seed, "kind", index).choice(list(KINDS), p=list(KINDS.values())))
+    own = not texts or generator(seed, "own", index).random() >= share
+    kinds = {kind: part for kind, part in KINDS.items() if own or kind != "spoken"}
+    parts = np.array(list(kinds.values()))
+    kind = str(generator(seed, "kind", index).choice(list(kinds), p=parts / parts.sum()))
     for attempt in range(100):
         rng = generator(seed, "pair", index, attempt)
-        own = not texts or rng.random() >= share
         clean = draw_route(rng) if own else texts[int(rng.integers(len(texts)))]
         pair = _MAKE[kind](clean, Key(seed, f"pair {index} {attempt}"), rng)
         if pair is not None:

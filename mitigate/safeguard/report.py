@@ -25,11 +25,13 @@ from mitigate.corruptions.language.style import MANNERS
 from mitigate.safeguard.data import read_texts
 from mitigate.safeguard.guard import PASSAGE, Rewriter, Safeguard, open_safeguard
 from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
+from mitigate.safeguard.spoken import SPLITS, spoken
 from mitigate.safeguard.text import passages, sentences
 from mitigate.worlds.episodes import read_episodes
 
 FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")
 ALONE = "-alone"
+GOLDEN = (5**0.5 - 1) / 2  # spreads any number of texts
 Repairer = Callable[[list[str]], list[str]]
 
 
@@ -168,13 +170,34 @@ def read_lines(path: str, count: int | None) -> list[str]:
     return lines[:count]
 
 
+def voices(split: str, count: int | None) -> list[Repair]:
+    """Return what people of a split say, spread over the voices; each voice is a family."""
+    texts = spoken(split)
+    chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]
+    kept = [texts[i] for i in sorted(chosen)]
+    return [Repair(text.voice, text.plain, text.said, text.said) for text in kept]
+
+
+def _heard(options: argparse.Namespace) -> tuple[list[Repair], str]:
+    """What the safeguards hear, and a title."""
+    if options.voices:
+        said = voices(options.voices, options.count)
+        return said, f"{len(said)} texts of the {options.voices} voices"
+    texts = read_lines(options.texts, options.count)
+    made = corrupted(texts, options.families, options.severity, options.split, options.seed)
+    about = f"{len(texts)} texts, severity {options.severity:g}, {options.split} attacks"
+    return made, f"{Path(options.texts).name}, {about}"
+
+
 def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument(
         "safeguards", nargs="+", help="none, rules, lora, lora-alone, a folder, ..."
     )
-    parser.add_argument("--texts", required=True, help="episode file, or text file, one a line")
+    heard = parser.add_mutually_exclusive_group(required=True)
+    heard.add_argument("--texts", help="episode file, or text file, one a line")
+    heard.add_argument("--voices", choices=SPLITS, help="people's texts of a split, as they are")
     parser.add_argument("--count", type=int, help="of the texts; default all")
     parser.add_argument("--families", nargs="+", default=FAMILIES, choices=FAMILIES)
     parser.add_argument("--severity", type=float, default=1.0)
@@ -183,16 +206,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("runs/safeguard-text"))
     options = parser.parse_args(arguments)
-    texts = read_lines(options.texts, options.count)
-    changed = corrupted(texts, options.families, options.severity, options.split, options.seed)
+    changed, title = _heard(options)
     results = {}
     for name in options.safeguards:
         began = time.monotonic()
         results[name] = repaired(changed, choose(name))
         spent = (time.monotonic() - began) / len(changed)
         print(f"{name}: {1000 * spent:.1f} ms an instruction, in batches", flush=True)
-    title = f"{Path(options.texts).name}, {len(texts)} texts, severity {options.severity:g}"
-    write(results, options.out, f"{title}, {options.split} attacks")
+    write(results, options.out, title)
     if options.examples:
         print(examples(results[options.safeguards[-1]], options.examples, options.seed))
 

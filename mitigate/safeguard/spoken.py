@@ -1,8 +1,9 @@
 """What people say, by voice: texts written by hand, each beside the same route in plain words.
 
-A line of ``voices/<voice>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}`` (or "object"):
-the parts in order, each some whole sentences with their plain translation, empty for what tells
-nothing of the way. Whole voices are kept out of training: a person whom nobody has heard.
+A line of ``voices/<voice>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}``; the task
+may be "object", too. The parts are in order, each some whole sentences with their plain
+translation, empty for what tells nothing of the way. Whole voices are kept out of training: people
+whom nobody has heard.
 """
 
 from __future__ import annotations

@@ -72,7 +72,8 @@ def test_pairs_have_the_shares_asked_for_and_depend_on_seed_and_index_alone():
 def test_identity_pairs_are_identical_and_attacks_alone_have_an_empty_target():
     assert all(p.source == p.target for p in PAIRS if p.kind == "identity")
     attacked = [p for p in PAIRS if p.kind == "black_box"]
-    assert all(p.source.endswith(p.target) for p in attacked)
+    before_plain = sum(p.source.endswith(p.target) for p in attacked) / len(attacked)
+    assert 0.6 < before_plain < 0.95  # the others stand before what people say
     assert 0.1 < sum(not p.target for p in attacked) / len(attacked) < 0.5
 
 
