@@ -11,19 +11,18 @@ overlap it.
 from __future__ import annotations
 
 import json
-import re
 import warnings
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import torch
-import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mitigate.agents.conv import ConvAdapter
 from mitigate.agents.ring import RingAdapter
-from mitigate.agents.sites import MAP, Run, Site, first, look
-from mitigate.agents.tokens import Gate, TokenAdapter, further
+from mitigate.agents.sites import MAP, Run, Site, channels_of, first, listed, look, named
+from mitigate.agents.tokens import TokenAdapter
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
@@ -32,49 +31,6 @@ NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module ge
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
 _HOOK = "_adapter_hook"
 _STATISTICS = "_statistics_before_adapters"
-
-
-class ConvAdapter(nn.Module):
-    """``x + up(gelu(down(x)))`` on maps ``[n, C, h, w]``; ``up`` starts at zero.
-
-    Args:
-        channels: C. reduction: the bottleneck has ``max(4, C // reduction)`` channels.
-        kernel: of the spatial convolution, odd. gate: see ``tokens.Gate``.
-        middle: channels of the bottleneck, in place of ``reduction``.
-
-    Source: bottleneck and zero start after Houlsby et al. 2019, as the paper's section on adapters
-    asks; reduction and kernel are ours, chosen for 1-4 % of the weights.
-    """
-
-    def __init__(
-        self,
-        channels: int,
-        reduction: int = 8,
-        kernel: int = 3,
-        gate: bool = False,
-        middle: int | None = None,
-    ) -> None:
-        super().__init__()
-        if channels < 1 or reduction < 1 or kernel % 2 == 0 or (middle or 1) < 1:
-            raise ValueError(
-                f"An adapter needs channels ({channels}) and reduction ({reduction}) of at least 1 "
-                f"and an odd kernel ({kernel})."
-            )
-        self.settings = {"channels": channels, "reduction": reduction, "kernel": kernel}
-        self.settings |= further(gate, middle)
-        middle = middle or max(4, channels // reduction)
-        self.down = nn.Conv2d(channels, middle, kernel, padding=kernel // 2)
-        self.up = nn.Conv2d(middle, channels, 1)
-        self.gate = Gate(middle) if gate else None
-        for parameter in self.up.parameters():
-            nn.init.zeros_(parameter)
-
-    def forward(self, x: Tensor) -> Tensor:
-        y = F.gelu(self.down(x))
-        z = self.up(y)
-        if self.gate is not None:
-            z = z * self.gate(y, (2, 3)).sigmoid()[:, None, None, None]
-        return x + z
 
 
 ADAPTERS = (ConvAdapter, RingAdapter, TokenAdapter)
@@ -118,17 +74,17 @@ def insert_adapters(
     model is then as it was.
     """
     _refuse_adapted(model)
-    target_modules, ring = _listed("target_modules", target_modules), _listed("ring", ring)
+    target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
     if not target_modules + ring:
         raise ValueError("target_modules names no module: give at least one, such as 'layer[1-4]'.")
-    plain, ringed = _find(model, target_modules), _find(model, ring)
+    plain, ringed = named(model, target_modules), named(model, ring)
     sites = None if run is None else look(model, run)
     made: dict[str, nn.Module] = {}
     for name, module in model.named_modules():
         if name in ringed and views == 1:  # no neighbours
-            made[name] = ConvAdapter(_channels(name, module), ring_reduction, kernel)
+            made[name] = ConvAdapter(channels_of(name, module), ring_reduction, kernel)
         elif name in ringed:
-            made[name] = RingAdapter(_channels(name, module), ring_reduction, kernel, views, hfov)
+            made[name] = RingAdapter(channels_of(name, module), ring_reduction, kernel, views, hfov)
         elif name in plain:
             made[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
     _attach_all(model, made)
@@ -146,7 +102,7 @@ def _plain(
 ) -> nn.Module:
     """The adapter that fits behind a module."""
     if sites is None:
-        return ConvAdapter(_channels(name, module), reduction, kernel, gate, middle)
+        return ConvAdapter(channels_of(name, module), reduction, kernel, gate, middle)
     site = sites.get(name, "the encoder does not call it")
     if isinstance(site, str):
         raise ValueError(f"No adapter fits behind {name}: {site}. Choose another target module.")
@@ -305,57 +261,12 @@ def _statistics(model: nn.Module) -> dict[str, Tensor]:
     return {name: torch.clone(buffer).float().cpu() for name, buffer in found.items()}
 
 
-def _listed(what: str, targets: Iterable[str]) -> list[str]:
-    if isinstance(targets, str):
-        raise TypeError(f"{what} is a list of names or regular expressions: [{targets!r}].")
-    return list(targets)
-
-
 def _attach(module: nn.Module, adapter: nn.Module, usual: Tensor) -> None:
     """``usual``: whose device and dtype it gets where ``module`` has no weights."""
     like = next(module.parameters(), usual)
     module.add_module(NAME, adapter.to(like.device, like.dtype))
     if type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
         setattr(module, _HOOK, module.register_forward_hook(_adapt))
-
-
-def _find(model: nn.Module, targets: Iterable[str]) -> set[str]:
-    names = [name for name, _ in model.named_modules() if name]
-    found: set[str] = set()
-    for target in targets:
-        try:
-            pattern = re.compile(rf"(?:.*\.)?(?:{target})")
-        except re.error as error:
-            raise ValueError(
-                f"target module {target!r} is no regular expression: {error}."
-            ) from error
-        hits = {name for name in names if pattern.fullmatch(name)}
-        if not hits:
-            raise ValueError(
-                f"target module {target!r} matches none of the model's {len(names)} modules, such "
-                f"as {', '.join(names[:12])}. Give the end of a dotted name, or a regular "
-                "expression for it."
-            )
-        found |= hits
-    return found
-
-
-def _channels(name: str, module: nn.Module) -> int:
-    """Channels of the module's output: those of its last convolution or normalisation."""
-    channels = 0
-    for part in module.modules():
-        if isinstance(part, nn.Conv2d):
-            channels = part.out_channels
-        elif isinstance(part, nn.GroupNorm):
-            channels = part.num_channels
-        elif isinstance(part, nn.BatchNorm2d):
-            channels = part.num_features
-    if not channels:
-        raise ValueError(
-            f"The channels of {name} cannot be told: it holds no Conv2d, GroupNorm or BatchNorm2d. "
-            "Choose a module that ends in one."
-        )
-    return channels
 
 
 def _key(name: str) -> str:

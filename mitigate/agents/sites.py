@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -120,3 +121,51 @@ def choose(found: dict[str, Site | str], model: nn.Module, count: int) -> list[s
         "told: agent.adapters.targets=[...], regular expressions for the names of modules that "
         f"return maps or tokens. There are {', '.join(usable[:24]) or 'none'}."
     )
+
+
+def listed(what: str, targets: Iterable[str]) -> list[str]:
+    """``targets`` as a list. Raises TypeError for a single text."""
+    if isinstance(targets, str):
+        raise TypeError(f"{what} is a list of names or regular expressions: [{targets!r}].")
+    return list(targets)
+
+
+def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
+    """Names of the modules that ``targets`` (ends of names, or regular expressions) mean. Raises
+    ValueError for one that matches none."""
+    names = [name for name, _ in model.named_modules() if name]
+    found: set[str] = set()
+    for target in targets:
+        try:
+            pattern = re.compile(rf"(?:.*\.)?(?:{target})")
+        except re.error as error:
+            raise ValueError(
+                f"target module {target!r} is no regular expression: {error}."
+            ) from error
+        hits = {name for name in names if pattern.fullmatch(name)}
+        if not hits:
+            raise ValueError(
+                f"target module {target!r} matches none of the model's {len(names)} modules, such "
+                f"as {', '.join(names[:12])}. Give the end of a dotted name, or a regular "
+                "expression for it."
+            )
+        found |= hits
+    return found
+
+
+def channels_of(name: str, module: nn.Module) -> int:
+    """Channels of the module's output: those of its last convolution or normalisation."""
+    channels = 0
+    for part in module.modules():
+        if isinstance(part, nn.Conv2d):
+            channels = part.out_channels
+        elif isinstance(part, nn.GroupNorm):
+            channels = part.num_channels
+        elif isinstance(part, nn.BatchNorm2d):
+            channels = part.num_features
+    if not channels:
+        raise ValueError(
+            f"The channels of {name} cannot be told: it holds no Conv2d, GroupNorm or BatchNorm2d. "
+            "Choose a module that ends in one."
+        )
+    return channels
