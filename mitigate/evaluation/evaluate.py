@@ -21,6 +21,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import unknown
+from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
 
 if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
     from torch import nn
@@ -82,6 +83,7 @@ class EvaluateConfig:
     severity_depth: float | None = None
     seed: int = 0
     workers: int | None = None
+    launcher: Any = MISSING
     out: str | None = None
     agent: Any = MISSING
     weights: WeightsConfig = field(default_factory=WeightsConfig)
@@ -130,6 +132,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         split=cfg.split,
         seed=cfg.seed,
         workers=cfg.workers,
+        launcher=OmegaConf.to_object(cfg.launcher),
         safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
         identity=identity(agent, world().sensors, front),
     )

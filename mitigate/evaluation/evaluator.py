@@ -29,10 +29,12 @@ from mitigate.corruptions.registry import version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.safeguard.guard import Safeguard
+from mitigate.scale.launcher import LauncherConfig, count, results
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, remembering
 
 WORTH = 40  # episodes that make a process worth its start (ours): 4 s of 0.1 s each
+LOCAL = LauncherConfig()  # workers of this machine
 _PAUSE = 1.0  # seconds between two writes, at least
 
 Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says besides measures
@@ -101,6 +103,7 @@ def evaluate(
     split: str,
     seed: int = 0,
     workers: int | None = 1,
+    launcher: LauncherConfig = LOCAL,
     safeguard: Safeguard | None = None,
     identity: str | None = None,
 ) -> list[dict[str, Any]]:
@@ -109,7 +112,8 @@ def evaluate(
     Args: world: makes a world, in each process. conditions: corruptions to meet, ``CLEAN`` among
     them for PRS; "white_box" is left out with a warning if the agent has no ``system_prompt``.
     name: the table's column. split: what the rows say. seed: of the corruptions' keys. workers:
-    processes, None: one a core if there is work for them; the rows do not depend on it. safeguard:
+    processes, None: one a core if there is work for them; the rows do not depend on it, nor on the
+    launcher, which says on which machines (``scale/launcher.py``). safeguard:
     repairs each instruction, once, before the agent hears it. identity: of the agent in its rows
     (``core/identity.py``); None: of the agent behind the world's sensors.
     Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
@@ -133,7 +137,8 @@ def evaluate(
     decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
     repaired = {decision.original: decision.text for decision in decided}
     if todo:
-        _run(EpisodeTask(agent, world, repaired), todo, len(jobs), out, workers, f"{name}, {split}")
+        task, title = EpisodeTask(agent, world, repaired), f"{name}, {split}"
+        _run(task, todo, len(jobs), out, workers, launcher, title)
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
 
 
@@ -173,16 +178,22 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
 
 
 def _run(
-    task: EpisodeTask, jobs: list[Job], total: int, out: Path, workers: int | None, title: str
+    task: EpisodeTask,
+    jobs: list[Job],
+    total: int,
+    out: Path,
+    workers: int | None,
+    launcher: LauncherConfig,
+    title: str,
 ) -> None:
     """Run the jobs, an episode's in one process, and append their rows to ``out`` as they come."""
     groups = [list(group) for _, group in groupby(jobs, lambda job: job[0].episode_id)]
-    started = min(processes.count(workers, len(jobs), WORTH), len(groups))
+    started = min(count(launcher, workers, len(jobs), WORTH), len(groups))
     with Progress(title, total, unit="episode", start=total - len(jobs)) as progress:
         if started > 1:
-            progress.say(f"{title}: {started} worker processes")
+            progress.say(f"{title}: {started} {launcher.name} workers")
         try:
-            _write(processes.results(task, groups, started, progress), out, progress)
+            _write(results(launcher, task, groups, started, progress), out, progress)
         except processes.WorkersDied as error:
             raise processes.WorkersDied(
                 f"{error} The finished rows are in {out}: the same command goes on from there."

@@ -1,0 +1,1 @@
+"""Jobs on this machine, on a Ray cluster or under SLURM; the engines are theirs."""

@@ -1,0 +1,188 @@
+"""Workers as jobs of a SLURM cluster, submitted by submitit; or as processes of this machine, to
+try it (``launcher.cluster=local``).
+
+Each job takes a share of the groups, runs them in its own worker processes and appends a line for
+each result to a file in a folder that all nodes see. Whoever submitted them reads the lines as
+they come; when a job ends without having done its share, the rest is submitted again.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+import re
+import shutil
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mitigate.core.files import write_bytes
+from mitigate.core.names import unknown
+from mitigate.core.progress import Progress
+from mitigate.core.workers import SECOND, Task
+from mitigate.core.workers import results as run_here
+from mitigate.scale.launcher import lost, numbered
+
+if TYPE_CHECKING:
+    from mitigate.scale.launcher import SlurmConfig
+
+CLUSTERS = ("slurm", "local")
+LATE = 30.0  # seconds that jobs without work may take to end (ours)
+TASK = "task.pickle"  # by whoever submits, for the jobs: no file from outside is unpickled
+
+
+@dataclass
+class _Share:
+    """A job and the part of the work that it has: ``left`` by the jobs' numbers; ``read``: bytes of
+    ``lines`` that were read."""
+
+    job: Any
+    lines: Path
+    left: dict[int, Any]
+    attempt: int
+    read: int = 0
+
+
+def results(
+    task: Task,
+    groups: Sequence[Sequence[Any]],
+    workers: int,
+    progress: Progress,
+    launcher: SlurmConfig,
+) -> Iterator[tuple[int, Any] | None]:
+    """As ``launcher.results``; ``workers`` is the number of jobs."""
+    folder = Path(launcher.folder).resolve() / f"{int(time.time())}-{os.getpid()}"
+    write_bytes(folder / TASK, pickle.dumps(task))
+    executor = _executor(launcher, folder)
+    given = numbered(groups)
+    total, done = sum(map(len, given)), 0
+    shares = [given[at::workers] for at in range(min(workers, len(given)))]
+    running = [_submit(executor, folder, launcher, share, 1, n) for n, share in enumerate(shares)]
+    progress.say(f"{len(running)} jobs submitted; their logs are in {folder}")
+    submitted = len(running)
+    try:
+        while done < total:
+            for share in list(running):
+                over = share.job.done()  # before its lines are read: nothing comes after
+                for number, result in _fresh(share):
+                    done += 1
+                    yield number, result
+                if not over:
+                    continue
+                running.remove(share)
+                if share.left:
+                    again = _again(share, task, launcher, progress, done, total)
+                    groups_left = [list(share.left.items())]
+                    running.append(
+                        _submit(executor, folder, launcher, groups_left, again, submitted)
+                    )
+                    submitted += 1
+            yield None
+            time.sleep(SECOND / 4)
+        _end(running, folder)
+    finally:
+        for share in running:
+            share.job.cancel()
+
+
+def _end(running: list[_Share], folder: Path) -> None:
+    """Let the jobs, whose results are all here, end by themselves, and remove their folder."""
+    waited = time.monotonic()
+    while running and time.monotonic() - waited < LATE:
+        running[:] = [share for share in running if not share.job.done()]
+        time.sleep(SECOND / 4)
+    if not running:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _executor(launcher: SlurmConfig, folder: Path) -> Any:
+    try:
+        import submitit
+    except ModuleNotFoundError as error:
+        needed = "launcher=slurm needs submitit: pip install 'mitigate[cluster]'."
+        raise ValueError(needed) from error
+    if launcher.cluster not in CLUSTERS:
+        raise ValueError(unknown("launcher.cluster", launcher.cluster, CLUSTERS))
+    if launcher.cluster == "slurm" and shutil.which("sbatch") is None:
+        raise ValueError(
+            "There is no SLURM here (no sbatch). Start this on a login node, or try it with "
+            "launcher.cluster=local."
+        )
+    executor = submitit.AutoExecutor(folder=folder / "logs", cluster=launcher.cluster)
+    executor.update_parameters(
+        name="mitigate",
+        timeout_min=launcher.minutes,
+        cpus_per_task=launcher.processes,
+        mem_gb=launcher.memory * launcher.processes,
+        **{f"slurm_{name}": value for name, value in launcher.options.items()},
+    )
+    return executor
+
+
+def _submit(
+    executor: Any,
+    folder: Path,
+    launcher: SlurmConfig,
+    groups: Sequence[Sequence[tuple[int, Any]]],
+    attempt: int,
+    number: int,
+) -> _Share:
+    """Submit a job for ``groups``."""
+    lines = folder / f"results-{number}.jsonl"
+    job = executor.submit(serve, folder / TASK, list(groups), launcher.processes, lines)
+    return _Share(job, lines, {n: j for group in groups for n, j in group}, attempt)
+
+
+def serve(
+    task: Path, groups: Sequence[Sequence[tuple[int, Any]]], processes: int, lines: Path
+) -> None:
+    """A job's life: run ``groups``, a line for each result, ``{"job": number, "result": ...}``."""
+    with open(task, "rb") as file:
+        held: Task = pickle.load(file)
+    numbers = [number for group in groups for number, _ in group]
+    jobs = [[job for _, job in group] for group in groups]
+    with open(lines, "a", encoding="utf-8") as out, Progress("jobs", len(numbers)) as progress:
+        for found in run_here(held, jobs, processes, progress):
+            if found is not None:
+                out.write(json.dumps({"job": numbers[found[0]], "result": found[1]}) + "\n")
+                out.flush()
+                progress.advance()
+
+
+def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
+    """Results of a share that were not read before, each once; a line without end comes later."""
+    if not share.lines.is_file():
+        return
+    with open(share.lines, "rb") as file:
+        file.seek(share.read)
+        for line in file:
+            if not line.endswith(b"\n"):
+                break
+            share.read += len(line)
+            told = json.loads(line)
+            if share.left.pop(told["job"], None) is not None:
+                yield told["job"], told["result"]
+
+
+def _again(
+    share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
+) -> int:
+    """Which attempt the rest of a share is. Raises what its job raised if that was a ValueError,
+    else WorkersDied after too many."""
+    try:
+        problem: Any = share.job.exception()
+    except Exception as error:  # submitit's own, of a job that left no result
+        problem = error
+    said = re.findall(r"^\w*(?:Error|Died|Exception): .*$", str(problem), re.MULTILINE)
+    cause = said[-1] if said else "it was killed, or ran out of time"
+    if share.attempt >= launcher.attempts:
+        first = next(iter(share.left.values()))
+        raise lost(f"{task.name(first)} ({cause})", share.attempt, done, total)
+    progress.say(
+        f"job {share.job.job_id} ended early ({cause}). What it had not finished "
+        f"({len(share.left)}) is submitted again."
+    )
+    return share.attempt + 1
