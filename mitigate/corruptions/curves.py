@@ -9,7 +9,8 @@ import cv2
 import numpy as np
 
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.suite import DEPTH, NAMES, RGB, corrupt
+from mitigate.corruptions.registry import modality
+from mitigate.corruptions.suite import NAMES, corrupt
 
 GRID = np.linspace(0.0, 1.0, 101)
 EPISODES = 3  # random draws that a curve averages over
@@ -58,17 +59,22 @@ class Curve:
         return float(max(rise.max(), 0.0))
 
 
-def curves(rgb: np.ndarray, depth: np.ndarray, grid: np.ndarray = GRID) -> dict[str, Curve]:
-    """The curve of every corruption on views [V, H, W, 3] and depth metres [V, H, W, 1]."""
+def curves(
+    rgb: np.ndarray,
+    depth: np.ndarray,
+    grid: np.ndarray = GRID,
+    names: tuple[str, ...] = NAMES,
+) -> dict[str, Curve]:
+    """The curves of corruptions, by name, on views [V, H, W, 3] and depth metres [V, H, W, 1]."""
     found = {}
-    for name in NAMES:
-        frame = rgb if name in RGB else depth
+    for name in names:
+        frame = rgb if modality(name) == "rgb" else depth
         corrupted = [
             [corrupt(frame, name, s, key=Key(0, f"curve {i}")) for s in grid]
             for i in range(EPISODES)
         ]
         none: list[list[float]] = [[]] * EPISODES
-        if name in RGB:
+        if modality(name) == "rgb":
             likeness = [
                 [np.mean([ssim(a, b) for a, b in zip(rgb, x, strict=True)]) for x in row]
                 for row in corrupted
@@ -92,7 +98,8 @@ def draw(found: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
     titles = ("RGB: SSIM to the clean frame", "RGB: PSNR in dB", "Depth: mean error in metres")
     lines = ("-", "--")
     for axis, title, kind in zip(panels, titles, ("ssim", "psnr", "error"), strict=True):
-        for number, name in enumerate(DEPTH if kind == "error" else RGB):
+        shown = "depth" if kind == "error" else "rgb"
+        for number, name in enumerate(n for n in found if modality(n) == shown):
             values = getattr(found[name], kind)
             values = np.where(np.isfinite(values), values, np.nan)  # equal frames: no PSNR
             seen = np.isfinite(values).all(0)
