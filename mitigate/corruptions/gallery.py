@@ -20,7 +20,7 @@ import numpy as np
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, Z_MAX
 from mitigate.core.observation import RGB as RGB_ENTRY
-from mitigate.corruptions import curves, page, registry
+from mitigate.corruptions import curves, page, registry, unseen_page
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.record import TEST, VALIDATION
 from mitigate.corruptions.suite import NAMES, corrupt
@@ -133,13 +133,20 @@ def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
-    """Write ``corruptions.md``, the contact sheet and the curves into ``folder``."""
+    """Write the two pages of the corruptions, with their pictures, into ``folder``."""
     rgb, depth = rendered_frame(PAGE_SEED, PAGE_SIZE)
     view = varied_view(depth)
     contact_sheet(rgb[view], depth[view], folder / "pictures" / "corruptions.jpg")
     found = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
     curves.draw(found, folder / "pictures" / "severity-curves.png", grid)
     write_bytes(folder / "corruptions.md", page.page(found, PAGE_SEED).encode())
+    for half, picture in unseen_page.PICTURES.items():
+        names = registry.unseen_names(*BOTH, half=half)
+        contact_sheet(rgb[view], depth[view], folder / picture, names=names)
+    unseen = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid, SHEETS["unseen"])
+    curves.draw(unseen, folder / unseen_page.CURVES, grid)
+    text = unseen_page.page(unseen, found, grid, PAGE_SEED)
+    write_bytes(folder / "unseen-corruptions.md", text.encode())
 
 
 def varied_view(depth: np.ndarray) -> int:

@@ -151,8 +151,8 @@ RECORDS = (
             f"b of {', '.join(map(str, BLOCKS))} px, the nearest to side/{BLOCKS_ACROSS}"
         ),
         sources=(
-            "JPEG of ImageNet-C; dead zone and block sides of H.264 and H.265; the width of the "
-            "zone is ours"
+            "JPEG of ImageNet-C, H.265 of 3DCC; dead zone and block sides of H.264 and H.265; the "
+            "width of the zone is ours"
         ),
         source="ImageNet-C, H.264, H.265",
     ),
@@ -168,7 +168,7 @@ RECORDS = (
             f"of {SLICES} slices each view loses each with probability {LOST:g} s, from column "
             f"U(0, 1) W to the end: grey {NOTHING}"
         ),
-        sources=("H.264 over IP (Wenger 2003); shares are ours"),
+        sources=("H.264 over IP (Wenger 2003), bit error of 3DCC; shares are ours"),
         source="Wenger 2003",
         frame="which, from where",
         slip=0.01,

@@ -150,7 +150,7 @@ RECORDS = (
         sources=("caustic refraction of ImageNet-C-bar, elastic transform of ImageNet-C"),
         source="ImageNet-C-bar",
         episode="surface",
-        slip=0.02,
+        slip=0.01,
     ),
     Record(
         name="scratches",

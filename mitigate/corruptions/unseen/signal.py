@@ -91,7 +91,7 @@ RECORDS = (
         source="Liang et al. 2008",
         episode="frequency f",
         frame="phase p",
-        slip=0.06,
+        slip=0.01,
     ),
     Record(
         name="flicker_bands",
@@ -122,5 +122,6 @@ RECORDS = (
         sources=("impulse noise of ImageNet-C (0.03-0.27)"),
         source="ImageNet-C",
         frame="which pixels",
+        slip=0.002,
     ),
 )
