@@ -11,6 +11,7 @@ import warnings
 from functools import lru_cache
 from importlib.metadata import entry_points
 
+from mitigate.core.names import unknown
 from mitigate.corruptions import depth, eld, rgb, unseen
 from mitigate.corruptions.language import families
 from mitigate.corruptions.record import MODALITIES, TEST, VALIDATION, Record
@@ -79,7 +80,12 @@ def names(*modalities: str) -> tuple[str, ...]:
 
 
 def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
-    """Names of the unseen corruptions of ``modalities``, of one half or of both."""
+    """Names of the unseen corruptions of ``modalities``, of one half or of both.
+
+    Raises ValueError for a half that is none.
+    """
+    if half not in ("", *HALVES):
+        raise ValueError(unknown("half of the unseen corruptions", half, HALVES))
     return tuple(
         name
         for name, record in UNSEEN.items()

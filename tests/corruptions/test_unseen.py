@@ -52,6 +52,8 @@ def test_a_record_says_all_that_the_pages_print(name):
 
 
 def test_a_half_that_is_none_is_refused():
+    with pytest.raises(ValueError, match="no half of the unseen corruptions 'tset'"):
+        unseen_names("rgb", half="tset")
     with pytest.raises(ValueError, match="'validation' or 'test'"):
         Record("fog", "rgb", lambda views, *_: views, "s", half="train")
 

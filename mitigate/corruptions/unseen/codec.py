@@ -118,7 +118,8 @@ def _code(views, colours, matrix, back, least, out):
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blocks keep the coefficients of their DCT that are not in a dead zone of 0.4 s."""
     side = block_side(*views.shape[1:3])
-    least = np.float32(DEAD_ZONE * severity * 255.0 * side / 2.0) * np.float32([1, CHROMA, CHROMA])
+    zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
+    least = zones.astype(np.float32)
     matrix, out = cosines(side), np.empty_like(views)
     _code(views, opponents(), matrix, np.ascontiguousarray(matrix.T), least, out)
     return out

@@ -18,7 +18,7 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 STOPS, STOPS_SPREAD = 2.0, 0.2  # of exposure at s = 1
 CAST = 2.0  # stops between red and blue at s = 1: Afifi & Brown 2019 have 2800 to 10000 K
 TINT = 0.5  # of that, between green and the other two
-HAZE_DEPTH = 1.8  # optical depth at s = 1, where the haze is average
+HAZE_DEPTH = 1.5  # optical depth at s = 1, where the haze is average
 HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))  # correlation over the side, weight
 HAZE_UNEVEN = 0.4  # standard deviation of the haze over its mean
 HAZE_THIN, HAZE_THICK = 0.25, 2.5  # of the mean
@@ -132,28 +132,10 @@ RECORDS = (
         slip=0.001,
     ),
     Record(
-        name="overexposure",
-        modality="rgb",
-        apply=overexposure,
-        half=VALIDATION,
-        version="1",
-        severity="2 s stops too much light",
-        fails="the exposure is stuck at a dark place's",
-        formula=(
-            f"min(255, x 2^({STOPS:g} s u/{GAMMA:g})), u ~ U({1 - STOPS_SPREAD:g}, "
-            f"{1 + STOPS_SPREAD:g})"
-        ),
-        sources=(
-            "3DCC and ImageNet-C (brightness); stops of light instead of grey levels are ours"
-        ),
-        source="ImageNet-C, 3DCC",
-        episode="stops, +- 20 %",
-    ),
-    Record(
         name="haze",
         modality="rgb",
         apply=haze,
-        half=TEST,
+        half=VALIDATION,
         version="1",
         severity=f"optical depth {HAZE_DEPTH:g} s",
         fails="smoke, steam or dust in the room",
@@ -169,6 +151,22 @@ RECORDS = (
         ),
         source="3DCC, ImageNet-C",
         episode="field, place by view",
+    ),
+    Record(
+        name="overexposure",
+        modality="rgb",
+        apply=overexposure,
+        half=TEST,
+        version="1",
+        severity="2 s stops too much light",
+        fails="the exposure is stuck at a dark place's",
+        formula=(
+            f"min(255, x 2^({STOPS:g} s u/{GAMMA:g})), u ~ U({1 - STOPS_SPREAD:g}, "
+            f"{1 + STOPS_SPREAD:g})"
+        ),
+        sources=("brightness of ImageNet-C; stops of light instead of grey levels are ours"),
+        source="ImageNet-C, 3DCC",
+        episode="stops, +- 20 %",
     ),
     Record(
         name="hue_shift",
