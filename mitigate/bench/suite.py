@@ -13,9 +13,9 @@ import numpy as np
 
 from mitigate.bench.peers import peers
 from mitigate.bench.timing import fresh, steady
-from mitigate.corruptions import NAMES, RGB, Key, corrupt
+from mitigate.corruptions import NAMES, Key, corrupt
 from mitigate.corruptions.gallery import rendered_frame
-from mitigate.corruptions.registry import record
+from mitigate.corruptions.registry import record, unseen_names
 
 SEVERITY = 0.6  # the paper's for R2R
 SEED = 7  # of the apartment rendered and of the keys
@@ -65,23 +65,25 @@ def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def measure(seconds: float) -> dict[str, dict[str, Cost]]:
-    """Costs by size, then by corruption; about ``seconds`` for each of several hundred clocks."""
+    """Costs by size, then by corruption (of the unseen ones at the last size alone); about
+    ``seconds`` for each of several hundred clocks."""
     costs: dict[str, dict[str, Cost]] = {}
     for column, (label, shape) in enumerate(SIZES.items()):
         rgb, depth = frames(*shape)
-        others: dict[str, dict[str, float]] = {name: {} for name in NAMES}
+        names = NAMES if column < 2 else (*NAMES, *unseen_names("rgb", "depth"))
+        others: dict[str, dict[str, float]] = {name: {} for name in names}
         for library, calls in peers(rgb, depth, SEVERITY).items():
             for name, call in calls.items():
                 others[name][library] = steady(partial(_unnumbered, call), seconds)
         costs[label] = {
             name: cost(
                 name,
-                rgb if name in RGB else depth,
+                rgb if record(name).modality == "rgb" else depth,
                 seconds,
                 others[name],
                 (record(name).bars or NONE)[column] if column < 2 else None,
             )
-            for name in NAMES
+            for name in names
         }
     return costs
 

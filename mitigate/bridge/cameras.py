@@ -183,27 +183,28 @@ class Rig:
     ) -> list[str]:
         """Corrupt the frames in ``memory``, in place; return the names of the cameras concerned.
 
-        Raises ValueError if no camera is of the corruption's modality, and as ``corrupt`` does.
+        Raises ValueError if no camera is of a modality that it corrupts, and as ``corrupt`` does.
         """
-        if corruption.modality not in CHANNELS:
-            return []
-        groups = [g for g in self.groups if g.cameras[0].kind == corruption.modality]
-        if not groups:
-            raise ValueError(
-                f"{corruption.name!r} corrupts {corruption.modality}, but the agent has no such "
-                f"camera (it has {', '.join(c.name for c in self.cameras) or 'none'}). Leave it "
-                "out: suite=rgb, or conditions=[clean,...]."
-            )
-        for group in groups:
-            views = _views(memory, offsets, group)
-            views[...] = corrupted(group, views, corruption, key, heading)
-        return [camera.name for group in groups for camera in group.cameras]
+        changed: dict[str, None] = {}
+        for part in (part for part in corruption.parts if part.modality in CHANNELS):
+            groups = [g for g in self.groups if g.cameras[0].kind == part.modality]
+            if not groups:
+                raise ValueError(
+                    f"{part.name!r} corrupts {part.modality}, but the agent has no such "
+                    f"camera (it has {', '.join(c.name for c in self.cameras) or 'none'}). Leave "
+                    "it out: suite=rgb, or conditions=[clean,...]."
+                )
+            for group in groups:
+                views = _views(memory, offsets, group)
+                views[...] = corrupted(group, views, part, key, heading)
+                changed |= dict.fromkeys(camera.name for camera in group.cameras)
+        return list(changed)
 
 
 def corrupted(
     group: Group, views: np.ndarray, corruption: Corruption, key: Key, heading: float | None
 ) -> np.ndarray:
-    """Return the views of a group as the corruption leaves them."""
+    """Return the views of a group as one corruption of theirs leaves them."""
     first = group.cameras[0]
     frames: dict[str, Any] = {first.kind: views}
     if first.kind == DEPTH:

@@ -83,10 +83,10 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path:
     for other in made[1:]:
         reason = applicable(other.corruption, told)
         print(f"  {other.name}: {f'not applicable, {reason}' if reason else 'applies'}")
-        if not reason and other.corruption.modality in (RGB, DEPTH):
-            fitting.append(other.corruption)
+        if not reason:
+            fitting += [p for p in other.corruption.parts if p.modality in (RGB, DEPTH)]
     with np.load(file, allow_pickle=False) as frames:
-        picture = sheet(rig, dict(frames), fitting, told.first, cfg.seed)
+        picture = sheet(rig, dict(frames), list(dict.fromkeys(fitting)), told.first, cfg.seed)
     path = out / "sheet.png"
     write_atomically(path, lambda p: p.write_bytes(cv2.imencode(".png", picture[..., ::-1])[1]))
     print(f"wrote {path}: what the agent would see at its first frame", flush=True)

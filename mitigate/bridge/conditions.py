@@ -117,10 +117,11 @@ def _environment(cfg: DictConfig) -> dict[str, str]:
 def applicable(corruption: Corruption, clean: Told) -> str:
     """Return why a corruption cannot reach the agent of a clean run; empty if it can."""
     kinds = {camera["type"] for camera in clean.cameras}
-    if corruption.modality in ("rgb", "depth") and corruption.modality not in kinds:
-        return f"the agent has no {corruption.modality} camera"
-    if corruption.name == "white_box":
-        return "an agent's system prompt does not pass the bridge"
-    if corruption.modality == "instruction" and not clean.first.get("text"):
-        return "its goals are categories, not instructions"
+    for part in corruption.parts:
+        if part.modality in ("rgb", "depth") and part.modality not in kinds:
+            return f"the agent has no {part.modality} camera"
+        if part.name == "white_box":
+            return "an agent's system prompt does not pass the bridge"
+        if part.modality == "instruction" and not clean.first.get("text"):
+            return "its goals are categories, not instructions"
     return ""

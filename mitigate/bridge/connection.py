@@ -132,7 +132,10 @@ class Connection:
         self._drop_memory()
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn)
-        wanted = (condition.corruption.modality, *(k for o in condition.observers for k in o.kinds))
+        wanted = (
+            *condition.corruption.modalities,
+            *(k for o in condition.observers for k in o.kinds),
+        )
         self.offsets, size = self.rig.lay_out(wanted)
         note(self.folder, event="spec", cameras=message["cameras"])
         if not size:

@@ -31,14 +31,14 @@ class Words:
         they stay as they are. Raises ValueError where an agent would not hear the change.
         """
         text, tokens = told.get("text"), told.get("tokens")
-        changes = corruption.modality == "instruction"
-        if changes and corruption.name == "white_box":
+        spoken = [part for part in corruption.parts if part.modality == "instruction"]
+        if any(part.name == "white_box" for part in spoken):
             raise ValueError(
                 "white_box is not applicable: it corrupts an agent's system prompt, which does not "
                 "pass the bridge. black_box puts the same sentences in front of the instruction."
             )
         if not isinstance(text, str):
-            if changes:
+            if spoken:
                 what = (
                     f"an object category ({told['category']})" if told.get("category") else "none"
                 )
@@ -47,12 +47,9 @@ class Words:
                     f"{what}, which agents read by number. Leave it out: suite=full."
                 )
             return {}
-        if changes and _is_english(told.get("language")):
-            made = corrupt_instruction(
-                text, corruption.name, corruption.severity, key, mask_token=self._mask()
-            )
-        else:
-            made = text
+        made = text
+        for part in spoken if _is_english(told.get("language")) else ():
+            made = corrupt_instruction(made, part.name, part.severity, key, mask_token=self._mask())
         if self.repair is not None:
             made = self.repair(made)
         if made == text:

@@ -9,10 +9,12 @@ import cv2
 import numpy as np
 
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.suite import DEPTH, NAMES, RGB, corrupt
+from mitigate.corruptions.registry import modality
+from mitigate.corruptions.suite import NAMES, corrupt
 
 GRID = np.linspace(0.0, 1.0, 101)
 EPISODES = 3  # random draws that a curve averages over
+OFF = 0.05  # of the depth: what counts as changed (ours)
 SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # pixels (Wang et al. 2004)
 SSIM_C1, SSIM_C2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2  # the same
 
@@ -43,41 +45,56 @@ def depth_error(clean: np.ndarray, corrupted: np.ndarray) -> float:
     return float(np.abs(corrupted[valid].astype(np.float64) - clean[valid]).mean())
 
 
+def depth_changed(clean: np.ndarray, corrupted: np.ndarray) -> float:
+    """Share of the pixels valid in ``clean`` that are off by more than ``OFF`` of their depth."""
+    valid = np.isfinite(clean) & (clean > 0)
+    gap = np.abs(corrupted[valid].astype(np.float64) - clean[valid])
+    return float(np.mean(gap > OFF * clean[valid]))
+
+
 @dataclass(frozen=True)
 class Curve:
-    """Likeness or error [episodes, severities] of one corruption over ``GRID``."""
+    """Likeness, or error and share of changed depth, [episodes, severities] of one corruption over
+    ``GRID``."""
 
     ssim: np.ndarray
     psnr: np.ndarray
     error: np.ndarray
+    changed: np.ndarray
 
     @property
     def slip(self) -> float:
         """The largest step against the rule: a rise of SSIM, or a fall of the depth error (m)."""
         rise = np.diff(self.ssim) if self.ssim.size else -np.diff(self.error)
-        return float(max(rise.max(), 0.0))
+        return float(max(0.0, rise.max()))
 
 
-def curves(rgb: np.ndarray, depth: np.ndarray, grid: np.ndarray = GRID) -> dict[str, Curve]:
-    """The curve of every corruption on views [V, H, W, 3] and depth metres [V, H, W, 1]."""
+def curves(
+    rgb: np.ndarray,
+    depth: np.ndarray,
+    grid: np.ndarray = GRID,
+    names: tuple[str, ...] = NAMES,
+) -> dict[str, Curve]:
+    """The curves of corruptions, by name, on views [V, H, W, 3] and depth metres [V, H, W, 1]."""
     found = {}
-    for name in NAMES:
-        frame = rgb if name in RGB else depth
+    for name in names:
+        frame = rgb if modality(name) == "rgb" else depth
         corrupted = [
             [corrupt(frame, name, s, key=Key(0, f"curve {i}")) for s in grid]
             for i in range(EPISODES)
         ]
         none: list[list[float]] = [[]] * EPISODES
-        if name in RGB:
+        if modality(name) == "rgb":
             likeness = [
                 [np.mean([ssim(a, b) for a, b in zip(rgb, x, strict=True)]) for x in row]
                 for row in corrupted
             ]
             signal = [[psnr(rgb, x) for x in row] for row in corrupted]
-            found[name] = Curve(np.array(likeness), np.array(signal), np.array(none))
+            found[name] = Curve(*(np.array(values) for values in (likeness, signal, none, none)))
         else:
             error = [[depth_error(depth, x) for x in row] for row in corrupted]
-            found[name] = Curve(np.array(none), np.array(none), np.array(error))
+            changed = [[depth_changed(depth, x) for x in row] for row in corrupted]
+            found[name] = Curve(*(np.array(values) for values in (none, none, error, changed)))
     return found
 
 
@@ -90,14 +107,15 @@ def draw(found: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
     FigureCanvasAgg(figure)
     panels = figure.subplots(1, 3)
     titles = ("RGB: SSIM to the clean frame", "RGB: PSNR in dB", "Depth: mean error in metres")
-    lines = ("-", "--")
+    lines = ("-", "--", ":", "-.")
     for axis, title, kind in zip(panels, titles, ("ssim", "psnr", "error"), strict=True):
-        for number, name in enumerate(DEPTH if kind == "error" else RGB):
+        shown = "depth" if kind == "error" else "rgb"
+        for number, name in enumerate(n for n in found if modality(n) == shown):
             values = getattr(found[name], kind)
             values = np.where(np.isfinite(values), values, np.nan)  # equal frames: no PSNR
             seen = np.isfinite(values).all(0)
-            colour = f"C{number % 8}"
-            axis.plot(grid[seen], values[:, seen].mean(0), lines[number % 2], c=colour, label=name)
+            colour, line = f"C{number % 8}", lines[number % 2 + 2 * (number // 8)]
+            axis.plot(grid[seen], values[:, seen].mean(0), line, c=colour, label=name)
         axis.set(title=title, xlabel="severity")
         axis.grid(alpha=0.3)
     panels[0].set_ylim(0, 1.02)

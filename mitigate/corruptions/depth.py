@@ -76,7 +76,7 @@ class DepthSensor:
 
 
 @njit(inline="always")
-def _valid(z):
+def is_valid(z):
     return (z > np.float32(0)) & (z < np.float32(np.inf))
 
 
@@ -95,10 +95,10 @@ def _add_noise(views, streams, base, square, z_max, table, out):
             for i in range(source.size):
                 z = source[i]
                 moved = min(max(z + (base + square * z * z) * draws[i], NEAREST), z_max)
-                target[i] = moved if _valid(z) else z
+                target[i] = moved if is_valid(z) else z
 
 
-def _flat(views: np.ndarray) -> np.ndarray:
+def flat(views: np.ndarray) -> np.ndarray:
     return views.reshape(views.shape[0], -1)
 
 
@@ -106,7 +106,7 @@ def _flat(views: np.ndarray) -> np.ndarray:
 def _comes_near(pixels, limit):
     """Whether a valid pixel is at most ``limit``; the first one ends the search."""
     i = 0
-    while i < pixels.size and not (_valid(pixels[i]) and pixels[i] <= limit):
+    while i < pixels.size and not (is_valid(pixels[i]) and pixels[i] <= limit):
         i += 1
     return i < pixels.size
 
@@ -132,7 +132,7 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
-    _add_noise(_flat(views), streams, base, square, z_max, normal_table(), _flat(out))
+    _add_noise(flat(views), streams, base, square, z_max, normal_table(), flat(out))
     return out
 
 
@@ -157,7 +157,7 @@ def _drop_row(source, holes, missing, z_max, target):
         z, hole = source[x], holes[x]
         read = missing if hole == 1 else z_max
         kept = read if hole > 0 else min(max(z, NEAREST), z_max)
-        target[x] = kept if _valid(z) else z
+        target[x] = kept if is_valid(z) else z
 
 
 @njit(cache=True)
@@ -205,21 +205,21 @@ def echo_polynomial(severity: float) -> np.ndarray:
 
 
 @njit(cache=True)
-def _larger(row, other):
+def larger(row, other):
     """In place: row = max(row, other), float32; the two do not overlap."""
     for x in range(row.size):
         row[x] = row[x] if row[x] > other[x] else other[x]
 
 
 @njit(cache=True)
-def _farthest_along(row, spare, reach):
+def farthest_along(row, spare, reach):
     """In place: maximum over the 2 reach + 1 entries from each on (van Herk's doubling)."""
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
         for x in range(size):
             spare[x] = row[x]
-        _larger(row[: size - step], spare[step:])
+        larger(row[: size - step], spare[step:])
         have += step
 
 
@@ -227,7 +227,7 @@ def _farthest_along(row, spare, reach):
 def _keep_valid(source, target):
     for x in range(source.size):
         z = source[x]
-        target[x] = z if _valid(z) else np.float32(0)
+        target[x] = z if is_valid(z) else np.float32(0)
 
 
 @njit(cache=True)
@@ -238,7 +238,7 @@ def _add_echo(source, far, p, z_max, target):
         share = ((p[7] * gap + p[6]) * gap + p[5]) * gap + p[4]
         share = (((share * gap + p[3]) * gap + p[2]) * gap + p[1]) * gap + p[0]
         moved = min(max(z + max(share * gap, np.float32(0)), NEAREST), z_max)
-        target[x] = moved if _valid(z) else z
+        target[x] = moved if is_valid(z) else z
 
 
 @njit(cache=True)
@@ -254,13 +254,13 @@ def _echo(views, reach, polynomial, z_max, out):
         for y in range(height):
             row = far[y + reach]
             _keep_valid(views[v, y], row[reach : reach + width])
-            _farthest_along(row, spare, reach)
+            farthest_along(row, spare, reach)
         have, want, rows = 1, 2 * reach + 1, height + 2 * reach
         while have < want:
             step = min(have, want - have)
             rows -= step
             for y in range(rows):
-                _larger(far[y, :width], far[y + step, :width])
+                larger(far[y, :width], far[y + step, :width])
             have += step
         for y in range(height):
             _add_echo(views[v, y], far[y, :width], polynomial, z_max, out[v, y])
@@ -279,7 +279,7 @@ def _round_off(views, step, z_max, out):
     for i in range(views.size):
         z = views[i]
         stepped = np.rint(z / step) * step
-        out[i] = min(max(stepped, NEAREST), z_max) if _valid(z) else z
+        out[i] = min(max(stepped, NEAREST), z_max) if is_valid(z) else z
 
 
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:

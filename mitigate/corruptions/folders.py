@@ -18,7 +18,8 @@ from mitigate.corruptions.frame_files import MOST, RGB
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import check_sensor
 from mitigate.corruptions.plan import Frame, Plan, make_plan, told
-from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
+from mitigate.corruptions.registry import known, version
+from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_name, corrupt
 
 SUMMARY = "corrupt.json"
 UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0}
@@ -41,6 +42,7 @@ class Settings:
 
     def __post_init__(self) -> None:
         Corruption(self.corruption, self.severity)
+        check_name(self.corruption, ("clean", *known("rgb", "depth")))
         if self.corruption == "clean":
             raise ValueError("corruption=clean changes nothing: copy the folder instead.")
         for name, allowed in (("episode", EPISODES), ("format", FORMATS)):
@@ -126,7 +128,8 @@ def _output(path: Path, form: str) -> Path:
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
     """Check what an earlier run left in ``out``, then note settings and episodes there."""
-    settings_now = {"suite_version": SUITE_VERSION, **asdict(settings)}
+    of_its_own = version(settings.corruption)
+    settings_now = {"suite_version": SUITE_VERSION, **of_its_own, **asdict(settings)}
     if out.is_dir() and any(path.name[0] != "." for path in out.iterdir()):
         _check_earlier(out, settings_now, plan.episodes())
     summary = {

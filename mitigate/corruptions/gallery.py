@@ -1,10 +1,12 @@
 """Pictures of the suite: a contact sheet of every corruption, and the page of the documentation.
 
     python -m mitigate.corruptions.gallery --out sheet.png [--rgb FRAME.png --depth FRAME.npy]
+    python -m mitigate.corruptions.gallery --out sheet.png --suite unseen
     python -m mitigate.corruptions.gallery --page
 
 The sheet shows every corruption at several severities on one instant; without files the frame is
-rendered from an apartment. ``--page`` writes ``docs/corruptions.md`` with its two pictures.
+rendered from an apartment. ``--page`` writes ``docs/corruptions.md`` and
+``docs/unseen-corruptions.md`` with their pictures.
 """
 
 from __future__ import annotations
@@ -18,9 +20,10 @@ import numpy as np
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, Z_MAX
 from mitigate.core.observation import RGB as RGB_ENTRY
-from mitigate.corruptions import curves, page
+from mitigate.corruptions import curves, page, registry, unseen_page
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.suite import NAMES, RGB, corrupt
+from mitigate.corruptions.record import TEST, VALIDATION
+from mitigate.corruptions.suite import NAMES, corrupt
 
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
 SUFFIXES = (".png", ".jpg", ".jpeg")  # of a sheet
@@ -30,6 +33,13 @@ DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
 CURVE_VIEWS = slice(0, 12, 3)  # of its panorama, for the curves
 NO_READING = (255, 255, 255)  # the colour of invalid depth
+BOTH = ("rgb", "depth")
+SHEETS = {  # what a sheet shows, by the name of its suite
+    "full": NAMES,
+    "unseen": registry.unseen_names(*BOTH),
+    "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),
+    "unseen_test": registry.unseen_names(*BOTH, half=TEST),
+}
 
 
 def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
@@ -44,7 +54,7 @@ def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
 
 def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: Key, views):
     """The views asked for, corrupted, side by side as uint8 RGB."""
-    if name in RGB:
+    if registry.modality(name) == "rgb":
         return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
     corrupted = corrupt(depth, name, severity, key=key)[list(views)]
     shown = depth[list(views)]
@@ -64,8 +74,9 @@ def contact_sheet(
     *,
     key: Key | None = None,
     views: tuple[int, ...] = (0,),
+    names: tuple[str, ...] = NAMES,
 ) -> np.ndarray:
-    """Write the 12 corruptions (rows) at ``severities`` (columns) as a picture file.
+    """Write corruptions (rows; the suite's 12) at ``severities`` (columns) as a picture file.
 
     Args:
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
@@ -73,6 +84,7 @@ def contact_sheet(
         path: where the picture goes (.png, .jpg, .jpeg); parent folders are made.
         key: the random draw; one draw for the whole sheet.
         views: which views of a panorama each cell shows, left to right.
+        names: the corruptions.
 
     Returns the picture, uint8 RGB. Raises ValueError if the frames do not match or ``path`` ends
     in another suffix.
@@ -90,11 +102,11 @@ def contact_sheet(
     path.parent.mkdir(parents=True, exist_ok=True)
     key = key or Key(0, "contact sheet")
     high, wide = rgb.shape[1] + GUTTER, rgb.shape[2] * len(views) + GUTTER
-    shape = (TITLE + high * len(NAMES), LABEL + wide * len(severities), 3)
+    shape = (TITLE + high * len(names), LABEL + wide * len(severities), 3)
     sheet = np.full(shape, 255, np.uint8)
     for column, severity in enumerate(severities):
         _write(sheet, f"s = {severity:g}", LABEL + column * wide, TITLE - 8)
-    for row, name in enumerate(NAMES):
+    for row, name in enumerate(names):
         top = TITLE + row * high
         _write(sheet, name, 6, top + high // 2)
         for column, severity in enumerate(severities):
@@ -121,13 +133,20 @@ def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
-    """Write ``corruptions.md``, the contact sheet and the curves into ``folder``."""
+    """Write the two pages of the corruptions, with their pictures, into ``folder``."""
     rgb, depth = rendered_frame(PAGE_SEED, PAGE_SIZE)
     view = varied_view(depth)
     contact_sheet(rgb[view], depth[view], folder / "pictures" / "corruptions.jpg")
     found = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid)
     curves.draw(found, folder / "pictures" / "severity-curves.png", grid)
     write_bytes(folder / "corruptions.md", page.page(found, PAGE_SEED).encode())
+    for half, picture in unseen_page.PICTURES.items():
+        names = registry.unseen_names(*BOTH, half=half)
+        contact_sheet(rgb[view], depth[view], folder / picture, names=names)
+    unseen = curves.curves(rgb[CURVE_VIEWS], depth[CURVE_VIEWS], grid, SHEETS["unseen"])
+    curves.draw(unseen, folder / unseen_page.CURVES, grid)
+    text = unseen_page.page(unseen, found, grid, PAGE_SEED)
+    write_bytes(folder / "unseen-corruptions.md", text.encode())
 
 
 def varied_view(depth: np.ndarray) -> int:
@@ -172,11 +191,12 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=7, help="apartment to render (default 7)")
     parser.add_argument("--size", type=int, default=160, help="rendered view size (default 160)")
     parser.add_argument("--view", type=int, help="rendered view (default: the most varied depth)")
-    parser.add_argument("--page", action="store_true", help="write docs/corruptions.md instead")
+    parser.add_argument("--suite", choices=SHEETS, default="full", help="what it shows")
+    parser.add_argument("--page", action="store_true", help="write the pages in docs instead")
     options = parser.parse_args(arguments)
     if options.page:
         write_page()
-        print("Wrote docs/corruptions.md and its pictures")
+        print("Wrote docs/corruptions.md, docs/unseen-corruptions.md and their pictures")
         return
     if options.out is None:
         parser.error("name the picture to write: --out sheet.png (or pass --page).")
@@ -196,7 +216,7 @@ def _write_sheet(options: argparse.Namespace) -> None:
         rgb, depth = rgb[view], depth[view]
     else:
         rgb, depth = read_frame(options.rgb, options.depth)
-    contact_sheet(rgb, depth, options.out)
+    contact_sheet(rgb, depth, options.out, names=SHEETS[options.suite])
 
 
 if __name__ == "__main__":

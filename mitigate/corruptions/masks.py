@@ -42,7 +42,9 @@ def _expand(share, weight, out):
                 target[3 * x + c] = np.int16(np.int32(value))
 
 
-def _opacity(share: np.ndarray, strength: float, tint: tuple[float, float, float]) -> np.ndarray:
+def opacity_mask(
+    share: np.ndarray, strength: float, tint: tuple[float, float, float]
+) -> np.ndarray:
     """Opacity mask int16 [H, 3 W] of the float32 [H, W] shares >= 0, times strength and tint."""
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
@@ -98,7 +100,7 @@ def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarr
 @lru_cache(maxsize=16)
 def low_light_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the dark, in 1/32768."""
-    return _opacity(light_loss(value, severity, height, width), 1.0, NEUTRAL)
+    return opacity_mask(light_loss(value, severity, height, width), 1.0, NEUTRAL)
 
 
 @lru_cache(maxsize=16)
@@ -107,7 +109,7 @@ def spatter_mask(value: int, severity: float, height: int, width: int) -> np.nda
     smooth, cells = field(value, height, width, SPATTER_CORRELATION)
     level = top_share(cells, SPATTER_COVER * severity)
     share = np.clip((smooth - np.float32(level)) * np.float32(1.0 / SPATTER_EDGE), 0.0, 1.0)
-    return _opacity(share, 0.5 + 0.5 * severity, NEUTRAL)
+    return opacity_mask(share, 0.5 + 0.5 * severity, NEUTRAL)
 
 
 @lru_cache(maxsize=64)
@@ -172,7 +174,7 @@ def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> 
     right = ((np.arange(width) + 0.5 - x) * cells) ** 2
     glow = np.empty((height, width), np.float32)
     _look_up(down.astype(np.float32), right.astype(np.float32), _glow_table(), glow)
-    return _opacity(glow, severity, FLARE_TINT)
+    return opacity_mask(glow, severity, FLARE_TINT)
 
 
 @lru_cache(maxsize=32)

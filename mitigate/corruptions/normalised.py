@@ -27,7 +27,7 @@ def corrupt_normalised(
     ``corrupt_observation`` does.
     """
     check_sensor(sensor)
-    if corruption.modality != "depth" or observation.DEPTH not in obs:
+    if observation.DEPTH not in {*obs}.intersection(corruption.modalities):
         return corrupt_observation(obs, corruption, key, sensor)
     clean = np.ascontiguousarray(_checked(np.asarray(obs[observation.DEPTH])))
     metres, range_ = np.empty_like(clean), _range(sensor)

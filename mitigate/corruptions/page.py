@@ -18,6 +18,9 @@ One view of apartment {seed}, one random draw for the whole sheet: every row is 
 or noise at growing strength. Depth: near is bright, no reading is white. This page and its pictures
 are written by `python -m mitigate.corruptions.gallery --page`.
 
+Agents are also measured under corruptions that no recipe trains on, and under two at once:
+[unseen-corruptions.md](unseen-corruptions.md).
+
 ## Formulas
 
 W and H are a view's width and height, side = min(H, W), x a pixel, z its depth in metres, U
@@ -120,9 +123,9 @@ def page(found: dict[str, Curve], seed: int) -> str:
     return HEAD.format(version=SUITE_VERSION, seed=seed) + formulas() + text
 
 
-def formulas() -> str:
-    """The rows of the table of formulas."""
-    return "".join(f"| {' | '.join(_cells(name))} |\n" for name in NAMES)
+def formulas(names: tuple[str, ...] = NAMES) -> str:
+    """The rows of a table of formulas."""
+    return "".join(f"| {' | '.join(_cells(name))} |\n" for name in names)
 
 
 def _cells(name: str) -> tuple[str, ...]:

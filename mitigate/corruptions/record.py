@@ -1,8 +1,8 @@
 """One record a corruption: all that tables, pages, suites and benchmarks say of it.
 
 A corruption of your own is such a record, found by the entry point group ``mitigate.corruptions``
-(``docs/corruption-entry-points.md``); ours stand at the end of ``rgb.py``, ``eld.py``, ``depth.py``
-and ``language/families.py``.
+(``docs/corruption-entry-points.md``); ours stand at the end of ``rgb.py``, ``eld.py``,
+``depth.py``, ``language/families.py`` and the files of ``unseen``.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 MODALITIES = ("rgb", "depth", "instruction")
+VALIDATION, TEST = "validation", "test"  # halves of the unseen corruptions
 
 
 @dataclass(frozen=True)
@@ -28,8 +29,9 @@ class Record:
     the code. sources: of the constants; source: the same in a word or two. episode, frame: what is
     drawn once an episode, and anew for each frame. slip: how far it may change less at the next of
     100 severities (SSIM, or metres). bars: milliseconds to stay under at 480x640 and 224x224;
-    reason: where the time goes. version: of a further one, whose rows are measured anew when it
-    changes; ours have the suite's.
+    reason: where the time goes. version: of an unseen or further one, whose rows are measured anew
+    when it changes; those of the suite have the suite's. half: of an unseen one, ``VALIDATION`` or
+    ``TEST``; methods may be chosen by the first, never by the second.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Record:
     bars: tuple[float, float] | None = None
     reason: str = ""
     version: str = ""
+    half: str = ""
 
     def __post_init__(self) -> None:
         if self.modality not in MODALITIES:
@@ -59,6 +62,8 @@ class Record:
             raise ValueError(
                 f"A corruption's name is lower case with underscores, not {self.name!r}."
             )
+        if self.half not in ("", VALIDATION, TEST):
+            raise ValueError(f"A half is {VALIDATION!r} or {TEST!r}, not {self.half!r}.")
         if self.modality != "instruction" and not callable(self.apply):
             raise ValueError(f"The corruption {self.name!r} needs a function that applies it.")
 

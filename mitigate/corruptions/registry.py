@@ -1,7 +1,8 @@
-"""All corruptions there are: ours, and those that installed packages bring.
+"""All corruptions there are: the suite, the unseen ones, and those that installed packages bring.
 
-Ours are the suite, whose version every result row carries. A further one has a name of its own and
-is drawn or evaluated only where it is named.
+Every result row carries the version of the suite. An unseen or further one has a version of its own
+and is drawn or evaluated only where it is named. Two at once are a pair, such as
+``low_light+missing_data``: the first is applied first, and each draws what it draws alone.
 """
 
 from __future__ import annotations
@@ -10,9 +11,10 @@ import warnings
 from functools import lru_cache
 from importlib.metadata import entry_points
 
-from mitigate.corruptions import depth, eld, rgb
+from mitigate.core.names import unknown
+from mitigate.corruptions import depth, eld, rgb, unseen
 from mitigate.corruptions.language import families
-from mitigate.corruptions.record import Record
+from mitigate.corruptions.record import MODALITIES, TEST, VALIDATION, Record
 
 GROUP = "mitigate.corruptions"  # of entry points: name = "package.module:RECORD"
 SUITE = {
@@ -21,7 +23,23 @@ SUITE = {
         (*rgb.RECORDS, *eld.RECORDS, *depth.RECORDS, *families.RECORDS), key=lambda r: r.place
     )
 }
-HEAD = ("name", "corrupts", "severity s", "kept in an episode", "drawn each frame", "source")
+HALVES = (VALIDATION, TEST)
+UNSEEN = {
+    record.name: record
+    for record in sorted(
+        unseen.RECORDS, key=lambda r: (MODALITIES.index(r.modality), HALVES.index(r.half))
+    )
+}
+AND = "+"  # between the names of a pair
+HEAD = (
+    "name",
+    "corrupts",
+    "severity s",
+    "kept in an episode",
+    "drawn each frame",
+    "source",
+    "suite",
+)
 
 
 @lru_cache(maxsize=1)
@@ -32,7 +50,7 @@ def further() -> dict[str, Record]:
     for point in entry_points(group=GROUP):
         try:
             record = point.load()
-            problem = _problem(record, {"clean", *SUITE, *found})
+            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *found})
         except Exception as error:  # of any kind: it is another package's code
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
@@ -61,27 +79,50 @@ def names(*modalities: str) -> tuple[str, ...]:
     return tuple(name for name, record in SUITE.items() if record.modality in modalities)
 
 
+def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
+    """Names of the unseen corruptions of ``modalities``, of one half or of both.
+
+    Raises ValueError for a half that is none.
+    """
+    if half not in ("", *HALVES):
+        raise ValueError(unknown("half of the unseen corruptions", half, HALVES))
+    return tuple(
+        name
+        for name, record in UNSEEN.items()
+        if record.modality in modalities and half in ("", record.half)
+    )
+
+
 def known(*modalities: str) -> tuple[str, ...]:
-    """As :func:`names`, with the further ones behind."""
-    own = names(*modalities)
+    """As :func:`names`, with the unseen and the further ones behind."""
+    own = names(*modalities) + unseen_names(*modalities)
     return own + tuple(n for n, r in further().items() if r.modality in modalities)
 
 
 def record(name: str) -> Record:
     """The record of a known corruption; KeyError for another."""
-    return SUITE[name] if name in SUITE else further()[name]
+    return SUITE.get(name) or UNSEEN.get(name) or further()[name]
+
+
+def parts(name: str) -> tuple[str, ...]:
+    """The corruptions that ``name`` stands for, in their order: one, or those of a pair."""
+    return tuple(name.split(AND))
 
 
 def title(name: str) -> str:
     """The name of a corruption in tables; of one that is not installed here, in words."""
-    if name in SUITE or name in further():
+    if AND in name:
+        return f" {AND} ".join(map(title, parts(name)))
+    if name in SUITE or name in UNSEEN or name in further():
         return record(name).title
     return name.replace("_", " ").capitalize()
 
 
 def version(name: str) -> dict[str, str]:
-    """What a row says of a corruption that is not the suite's."""
-    return {"version": further()[name].version} if name in further() else {}
+    """What a row says of a corruption that is not, or not only, the suite's."""
+    own = (part for part in parts(name) if part != "clean" and part not in SUITE)
+    versions = [record(part).version for part in own]
+    return {"version": AND.join(versions)} if versions else {}
 
 
 def modality(name: str) -> str:
@@ -92,7 +133,16 @@ def modality(name: str) -> str:
 def table() -> str:
     """All corruptions of frames as lines of aligned columns, a heading first."""
     found = [record(name) for name in known("rgb", "depth")]
-    rows = [HEAD, *((r.name, r.modality, r.severity, r.episode, r.frame, r.source) for r in found)]
+    rows = [
+        (r.name, r.modality, r.severity, r.episode, r.frame, r.source, _suite(r)) for r in found
+    ]
+    rows = [HEAD, *rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
     return "\n".join(lines)
+
+
+def _suite(record: Record) -> str:
+    """The smallest suite of ``conf/suite`` that has it; none has a further one."""
+    short = {VALIDATION: "unseen_val", TEST: "unseen_test"}
+    return "full" if record.name in SUITE else short.get(record.half, "-")

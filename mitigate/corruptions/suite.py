@@ -37,6 +37,11 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
     allowed = registry.known("rgb", "depth") if allowed is None else allowed
     if name in allowed:
         return name
+    if registry.AND in str(name):
+        raise ValueError(
+            f"{name!r} is a pair: it is a condition of an evaluation (conditions=[{name}]), and "
+            "Corruption holds it; here one corruption is meant."
+        )
     raise ValueError(unknown("corruption", name, allowed))
 
 
@@ -57,16 +62,20 @@ def check_severity(severity: float) -> float:
 
 @dataclass(frozen=True)
 class Corruption:
-    """What is done: ``name`` ("clean", or a known one) at ``severity`` in [0, 1].
+    """What is done: ``name`` ("clean", a known one, or a pair of them) at ``severity`` in [0, 1].
 
-    Raises ValueError for an unknown name, a severity outside [0, 1], or "clean" with severity > 0.
+    A pair such as "low_light+missing_data" has one severity for both; the first is applied first.
+    Raises ValueError for an unknown name, one that is twice in a pair or "clean" in it, a severity
+    outside [0, 1], or "clean" with severity > 0.
     """
 
     name: str
     severity: float
 
     def __post_init__(self) -> None:
-        if self.name not in ("clean", *NAMES, *INSTRUCTION):
+        if registry.AND in str(self.name):
+            _check_pair(self.name)
+        elif self.name not in ("clean", *NAMES, *INSTRUCTION):
             check_name(self.name, ("clean", *registry.known(*MODALITIES)))
         object.__setattr__(self, "severity", check_severity(self.severity))
         if self.name == "clean" and self.severity > 0.0:
@@ -76,9 +85,33 @@ class Corruption:
             )
 
     @property
+    def parts(self) -> tuple[Corruption, ...]:
+        """The corruptions of a pair in their order, one alone as it is; of "clean" none."""
+        if self.name == "clean":
+            return ()
+        found = registry.parts(self.name)
+        return (self,) if len(found) == 1 else tuple(Corruption(n, self.severity) for n in found)
+
+    @property
+    def modalities(self) -> tuple[str, ...]:
+        """What is corrupted, each once: of "rgb", "depth" and "instruction"."""
+        return tuple(dict.fromkeys(registry.modality(part.name) for part in self.parts))
+
+    @property
     def modality(self) -> str:
-        """What is corrupted: "rgb", "depth", "instruction", or "none" for clean episodes."""
-        return "none" if self.name == "clean" else registry.modality(self.name)
+        """The same in one word: "rgb", "rgb+depth", or "none" for clean episodes."""
+        return registry.AND.join(self.modalities) or "none"
+
+
+def _check_pair(name: str) -> None:
+    found = registry.parts(name)
+    for part in found:
+        check_name(part, registry.known(*MODALITIES))
+    if len(found) != 2 or found[0] == found[1]:
+        raise ValueError(
+            f"{name!r} is no pair: it has two different names, such as low_light+missing_data, the "
+            "first applied first."
+        )
 
 
 CLEAN = Corruption("clean", 0.0)
@@ -185,7 +218,7 @@ def corrupt(
         return frame.copy()
     assert record.apply is not None, "names of frames have a function"
     given = (severity, key, heading if rgb else sensor)
-    if name in registry.SUITE:
+    if name in registry.SUITE or name in registry.UNSEEN:
         return record.apply(views, *given).reshape(frame.shape)
     made = record.apply(views.copy(), *given)
     if getattr(made, "dtype", None) != views.dtype or made.shape != views.shape:
@@ -200,20 +233,27 @@ def corrupt(
 def corrupt_observation(
     obs: dict, corruption: Corruption, key: Key, sensor: DepthSensor = SENSOR
 ) -> dict:
-    """A new observation dict with the modality concerned corrupted (``core/observation.py``).
+    """A new observation dict with what ``corruption`` concerns corrupted (``core/observation.py``).
 
     The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
     A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
     Raises ValueError if the modality is missing or the pose is not [3], and as ``corrupt`` does.
     """
-    if corruption.modality in ("none", "instruction"):
-        return dict(obs)
-    entry = observation.RGB if corruption.modality == "rgb" else observation.DEPTH
+    found = dict(obs)
+    for part in corruption.parts:
+        if part.modality != "instruction":
+            found |= _corrupted_entry(found, part, key, sensor)
+    return found
+
+
+def _corrupted_entry(obs: dict, part: Corruption, key: Key, sensor: DepthSensor) -> dict:
+    """The entry that one corruption changes, by name."""
+    entry = observation.RGB if part.modality == "rgb" else observation.DEPTH
     if entry not in obs:
         raise ValueError(
-            f"{corruption.name!r} corrupts {entry!r}, which this observation does not hold (it "
+            f"{part.name!r} corrupts {entry!r}, which this observation does not hold (it "
             f"holds {', '.join(map(repr, obs)) or 'nothing'}). Give the agent that sensor or leave "
-            f"{corruption.name!r} out of its suite."
+            f"{part.name!r} out of its suite."
         )
     pose = obs.get(observation.POSE)
     if pose is not None and np.shape(pose) != (3,):
@@ -223,7 +263,8 @@ def corrupt_observation(
             "place in view 0."
         )
     heading = None if pose is None else float(pose[2])
-    corrupted = corrupt(
-        obs[entry], corruption.name, corruption.severity, key=key, heading=heading, sensor=sensor
-    )
-    return {**obs, entry: corrupted}
+    return {
+        entry: corrupt(
+            obs[entry], part.name, part.severity, key=key, heading=heading, sensor=sensor
+        )
+    }

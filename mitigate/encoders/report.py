@@ -13,7 +13,7 @@ from torch import nn
 from mitigate.core.build import build, maker
 from mitigate.core.files import atomic_text
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
-from mitigate.corruptions.registry import modality, names, title
+from mitigate.corruptions.registry import names, title
 from mitigate.encoders.folder import lines
 from mitigate.encoders.frames import Frames, collect
 from mitigate.encoders.model import Encoder
@@ -72,7 +72,8 @@ def _frames(cfg: Any, sensor: str) -> tuple[Frames, Frames]:
 
 def _conditions(cfg: Any, sensor: str) -> list[Corruption]:
     """Clean, and the suite's corruptions of ``sensor`` (all there are, if it has none)."""
-    chosen = [n for n in cfg.suite.conditions if n != "clean" and modality(n) == sensor]
+    met = conditions(list(cfg.suite.conditions), cfg.severity, None)
+    chosen = [corruption.name for corruption in met if corruption.modality == sensor]
     return [CLEAN, *conditions(chosen or list(names(sensor)), cfg.severity, cfg.severity_depth)]
 
 

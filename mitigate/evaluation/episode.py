@@ -14,6 +14,7 @@ from mitigate.corruptions import (
     corrupt_instruction,
     inject_system_prompt,
 )
+from mitigate.corruptions.registry import parts
 from mitigate.evaluation.rows import MEASURES
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import Corrupted, World
@@ -43,11 +44,11 @@ def run_episode(
 
 def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
     """Return the words of ``episode`` as ``corruption`` leaves them."""
-    text = episode.instruction.text
-    if corruption.modality != "instruction" or corruption.name == "white_box":
-        return text
-    key = Key(seed, episode.episode_id)
-    return corrupt_instruction(text, corruption.name, corruption.severity, key)
+    text, key = episode.instruction.text, Key(seed, episode.episode_id)
+    for part in corruption.parts:
+        if part.modality == "instruction" and part.name != "white_box":
+            text = corrupt_instruction(text, part.name, part.severity, key)
+    return text
 
 
 @contextmanager
@@ -63,10 +64,10 @@ def instructed(
     text, key = instruction(episode, corruption, seed), Key(seed, episode.episode_id)
     prompt = getattr(agent, "system_prompt", None)
     try:
-        if corruption.name == "white_box":
+        if "white_box" in parts(corruption.name):
             injected = inject_system_prompt(prompt, corruption.severity, key)
             if isinstance(injected, NotApplicable):
-                raise ValueError(f"{corruption.name!r} is not applicable: {injected.reason}.")
+                raise ValueError(f"'white_box' is not applicable: {injected.reason}.")
             agent.system_prompt = injected  # type: ignore[attr-defined]
         agent.reset((repaired or {}).get(text, text))
         yield

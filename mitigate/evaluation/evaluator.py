@@ -25,7 +25,7 @@ from mitigate.core.identity import identity as identity_of
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
-from mitigate.corruptions.registry import version
+from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.safeguard.guard import Safeguard
@@ -167,7 +167,7 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
     """Return the conditions that the agent can meet, and warn of the others."""
     if getattr(agent, "system_prompt", None):
         return conditions
-    kept = [condition for condition in conditions if condition.name != "white_box"]
+    kept = [condition for condition in conditions if "white_box" not in parts(condition.name)]
     if len(kept) < len(conditions):
         warnings.warn(
             f"white_box is not applicable to {name}: the agent has no system prompt to inject "

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from mitigate.core.files import atomic_text
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
-from mitigate.evaluation.grid import BLOCKS, METRICS, PROMPT_ONLY, Grid
+from mitigate.evaluation.grid import METRICS, PROMPT_ONLY, Grid, meant
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
@@ -58,6 +58,7 @@ def write(rows: Iterable[Row], folder: Path | str) -> list[Path]:
 def _heading(section: Section) -> str:
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
+    at = f"{section.kind}, {at}" if section.kind else at
     kinds = {grid.seeds[column, section.severity] for column in columns}
     seeds = "seed " + _listed(kinds.pop()) if len(kinds) == 1 else _seeds_by_column(section)
     agents = ", ".join(f"{x} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns)
@@ -101,6 +102,10 @@ def _table(section: Section) -> str:
             for metric in METRICS:
                 cells = [_change(section, (c, block, metric)) for c in section.columns]
                 lines.append([f"PRS-{metric} against {section.reference}", *cells])
+        for half in section.halves.get(block, {}):
+            lines.append(
+                [f"PRS-SR ({half})", *(_prs(section, (c, half, "SR")) for c in section.columns)]
+            )
         for name in names:
             lines.append([label(name), *(_rate(section, c, name) for c in section.columns)])
         if _prompt_not_applicable(section, block):
@@ -148,12 +153,7 @@ def _notes(section: Section) -> str:
     found = section.retained.items()
     if any(len(r.corruptions) < section.whole(block) for (_, block, _), r in found):
         notes.append("† over k of the K corruptions: the others are not measured or not complete.")
-    absent = [
-        n
-        for b, names in section.blocks.items()
-        for n in BLOCKS.get(b, ())
-        if n not in (*names, PROMPT_ONLY)
-    ]
+    absent = [n for b, names in section.blocks.items() for n in meant(b, names) if n not in names]
     if absent:
         notes.append(f"Not measured: {', '.join(map(label, absent))}.")
     if any(_prompt_not_applicable(section, block) for block in section.blocks):

@@ -12,7 +12,17 @@ import numpy as np
 from mitigate.corruptions.registry import title
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import BLOCKS, METRICS, PROMPT_ONLY, Gap, Grid, Retention, grids
+from mitigate.evaluation.grid import (
+    METRICS,
+    SUITE,
+    Gap,
+    Grid,
+    Retention,
+    by_kind,
+    grids,
+    halves,
+    meant,
+)
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 
@@ -34,18 +44,22 @@ class Retained:
 class Section:
     """One table: a grid at one severity (0 where only clean cells exist).
 
-    ``clean`` is keyed by (column, metric), ``retained`` by (column, block, metric) and ``gained``,
-    the paired PRS difference to the ``reference`` column, likewise; metrics are "SR" and "SPL".
-    ``moved`` is the paired difference of clean SR, by column. Differences are over the seeds that
-    both columns have. ``corrupted`` is the mean SR over all
+    ``kind`` says which corruptions it shows, empty for the suite's. ``halves`` are parts of a block
+    that have a PRS of their own, by block and heading.
+    ``clean`` is keyed by (column, metric), ``retained`` by (column, block or half, metric) and
+    ``gained``, the paired PRS difference to the ``reference`` column, likewise; metrics are "SR"
+    and "SPL". ``moved`` is the paired difference of clean SR, by column. Differences are over the
+    seeds that both columns have. ``corrupted`` is the mean SR over all
     corruptions and ``raised`` its paired difference, by column. ``by_seed`` holds each seed's own
     clean SR (key: column, "clean") and PRS-SR (column, block), for columns with several seeds.
     """
 
     grid: Grid
+    kind: str
     severity: float
     columns: tuple[str, ...]
     blocks: dict[str, tuple[str, ...]]
+    halves: dict[str, dict[str, tuple[str, ...]]]
     reference: str
     clean: dict[tuple[str, str], Estimate]
     moved: dict[str, Estimate]
@@ -65,12 +79,13 @@ class Section:
         return any((gap.column, gap.corruption) == (column, corruption) for gap in self.gaps)
 
     def whole(self, block: str) -> int:
-        """Return how many corruptions a PRS over ``block`` stands for, measured or not.
-
-        One that does not apply (:data:`PROMPT_ONLY`) counts only where it was measured.
-        """
-        held = self.blocks[block]
-        return sum(n in held or n != PROMPT_ONLY for n in BLOCKS.get(block, held))
+        """Return how many corruptions a PRS over ``block``, or a half of it, stands for, measured
+        or not."""
+        half = next((parts[block] for parts in self.halves.values() if block in parts), None)
+        if half is not None:
+            name = block.rpartition(",")[0]
+            return len(meant(name, half))
+        return len(meant(block, self.blocks[block]))
 
     def marks(self, found: Retained, *blocks: str) -> str:
         """Return the signs of a value that lacks corruptions or episodes, or is near the floor."""
@@ -80,15 +95,16 @@ class Section:
 
 
 def sections(rows: Iterable[Row]) -> list[Section]:
-    """Return one section for each split, suite, rule and severity in ``rows``.
+    """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 
     Where a column was never corrupted (a control), a clean-only section comes first.
     """
     found = []
-    for grid in grids(rows):
-        corrupted = {label for label, _, severity, _ in grid.cells if severity > 0}
-        clean_only = [] if corrupted == grid.columns.keys() else [0.0]
-        found += [_section(grid, severity) for severity in clean_only + grid.severities]
+    for kind, held in (by_kind(rows) or {SUITE: []}).items():
+        for grid in grids(held):
+            corrupted = {label for label, _, severity, _ in grid.cells if severity > 0}
+            clean_only = [] if corrupted == grid.columns.keys() else [0.0]
+            found += [_section(grid, kind, severity) for severity in clean_only + grid.severities]
     return found
 
 
@@ -97,12 +113,14 @@ def label(corruption: str) -> str:
     return title(corruption)
 
 
-def _section(grid: Grid, severity: float) -> Section:
+def _section(grid: Grid, kind: str, severity: float) -> Section:
     rank = {name: place for place, name in enumerate(REFERENCES)}
     columns = sorted(
         grid.columns_at(severity), key=lambda label: rank.get(grid.columns[label][0], len(rank))
     )
     blocks, reference = grid.blocks_at(severity), columns[0]
+    parted = halves(blocks)
+    measured = blocks | {half: names for own in parted.values() for half, names in own.items()}
     clean, moved, retained, gained, corrupted, raised = {}, {}, {}, {}, {}, {}
     every = tuple(name for names in blocks.values() for name in names)
     for column in columns:
@@ -120,7 +138,7 @@ def _section(grid: Grid, severity: float) -> Section:
             values = values[grid.measured(column, severity, key)]
             if len(values):
                 clean[column, metric] = bootstrap.share(values)
-            for block, names in blocks.items():
+            for block, names in measured.items():
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):
                     retained[place] = _retained(parts)
@@ -128,9 +146,11 @@ def _section(grid: Grid, severity: float) -> Section:
                     gained[place] = _retained(parts)
     return Section(
         grid,
+        kind,
         severity,
         tuple(columns),
         blocks,
+        parted,
         reference,
         clean,
         moved,

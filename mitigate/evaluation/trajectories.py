@@ -72,7 +72,7 @@ def draw_trajectories(
     met = corrupt_observation(start, corruption, key, sensor)
     figure = Figure(figsize=INCHES, layout="constrained")
     above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
-    entry = DEPTH if corruption.modality == "depth" else RGB
+    entry = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
     far = float(start[DEPTH].max()) if DEPTH in start else 0.0
     _show(above, start[entry], far, f"start, straight ahead in the middle: {entry}, clean")
     _show(below, met[entry], far, f"{label(corruption.name)}, severity {corruption.severity:g}")

@@ -209,7 +209,7 @@ def check(cfg: DictConfig) -> None:
 
 def _check_sensors(cfg: DictConfig, met: list[Corruption]) -> None:
     sensors = maker(cfg.env.world)().sensors
-    lost = [c.name for c in met if c.modality in ("rgb", "depth") and c.modality not in sensors]
+    lost = [c.name for c in met if not {*c.modalities} <= {*sensors, "instruction"}]
     if lost:
         raise ValueError(
             f"The suite has {', '.join(lost)}, but the world {cfg.env.name} shows only "

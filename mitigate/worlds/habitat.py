@@ -58,6 +58,12 @@ def corrupt_habitat(
     """
     if turn not in TURNS:
         raise ValueError(f"turn must be 'left' or 'right', where rgb_30 looks, but it is {turn!r}.")
+    if len(corruption.parts) > 1:
+        for part in corruption.parts:
+            obs = corrupt_habitat(
+                obs, part, key, sensor, heading=heading, turn=turn, normalised=normalised
+            )
+        return obs
     modality = corruption.modality
     if modality in (RGB, DEPTH):
         check_cameras(obs, [corruption.name])

@@ -32,7 +32,7 @@ def clean_frames(tmp_path):
 
 def test_it_gives_the_pixels_of_corrupt_habitat(command, tmp_path):
     clean = clean_frames(tmp_path)
-    for name in ("spatter", "flare", "missing_data", "gaussian_noise"):
+    for name in ("spatter", "flare", "missing_data", "spatter+gaussian_noise", "haze+flare"):
         ran = command(condition(name), "--cameras", 12, "--episodes", 1, "--steps", 2)
         assert ran.status == 0, ran.output
         for number, instant in enumerate(clean):
@@ -82,6 +82,14 @@ def test_repeats_draw_other_pixels(command):
 def test_instructions_are_corrupted_and_put_back(command):
     ran = command(condition("capitalize", 1.0))
     assert ran.seen()["2", 1]["words"]["text"] == "WALK TO the DOOR 2."
+
+
+def test_a_pair_changes_frames_and_words(command):
+    clean = command(condition()).seen()["2", 1]
+    seen = command(condition("spatter+capitalize", 1.0)).seen()["2", 1]
+    assert seen["words"]["text"] == "WALK TO the DOOR 2."
+    assert seen["frames"]["rgb"] != clean["frames"]["rgb"]
+    assert seen["frames"]["depth"] == clean["frames"]["depth"]
 
 
 def test_tokens_never_stay_stale(command):

@@ -13,7 +13,7 @@ import pytest
 from PIL import Image
 
 from mitigate.core import files
-from mitigate.corruptions import NAMES, DepthSensor, Key, corrupt
+from mitigate.corruptions import DepthSensor, Key, corrupt, registry
 from mitigate.corruptions import frames_command as program
 
 ROOT = Path(__file__).parents[2]
@@ -340,7 +340,7 @@ def test_a_unit_too_small_for_the_range_is_refused(run, tmp_path):
 def test_the_list_names_every_corruption(capsys):
     assert program.main(["--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines[1:]] == list(NAMES)
+    assert [line.split()[0] for line in lines[1:]] == list(registry.known("rgb", "depth"))
     assert all(len(line) <= 170 for line in lines)
 
 

@@ -77,11 +77,29 @@ def test_the_page_holds_every_corruption_and_its_pictures(tmp_path):
     gallery.write_page(tmp_path, np.array([0.0, 0.5, 1.0]))
     text = (tmp_path / "corruptions.md").read_text()
     assert all(text.count(f"| `{name}` |") == 2 for name in gallery.NAMES)
-    for picture in ("corruptions.jpg", "severity-curves.png"):
-        assert f"pictures/{picture}" in text
+    unseen = (tmp_path / "unseen-corruptions.md").read_text()
+    assert all(unseen.count(f"| `{name}` |") == 2 for name in gallery.SHEETS["unseen"])
+    for picture in (
+        *("corruptions.jpg", "severity-curves.png"),
+        *("unseen-validation.jpg", "unseen-test.jpg", "unseen-curves.png"),
+    ):
+        assert f"pictures/{picture}" in text + unseen
         assert cv2.imread(str(tmp_path / "pictures" / picture)) is not None
+
+
+def test_a_sheet_of_the_unseen_ones_has_a_row_for_each(tmp_path, scene, monkeypatch):
+    frames = tuple(np.stack([frame]) for frame in scene.draw(24, 32))
+    monkeypatch.setattr(
+        gallery, "rendered_frame", lambda seed, size: (frames[0], frames[1][..., None])
+    )
+    for suite in ("full", "unseen", "unseen_val", "unseen_test"):
+        gallery.main(["--out", str(tmp_path / f"{suite}.png"), "--suite", suite])
+        height = cv2.imread(str(tmp_path / f"{suite}.png")).shape[0]
+        assert height == 24 + 28 * len(gallery.SHEETS[suite])
 
 
 def test_the_formulas_in_the_documentation_are_those_of_the_code():
     """After a change of a constant: ``python -m mitigate.corruptions.gallery --page``."""
     assert gallery.page.formulas() in (gallery.DOCS / "corruptions.md").read_text()
+    text = (gallery.DOCS / "unseen-corruptions.md").read_text()
+    assert all(gallery.unseen_page.table(half) in text for half in gallery.unseen_page.PICTURES)

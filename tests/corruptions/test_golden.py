@@ -1,6 +1,7 @@
-"""Pixels are pinned: a change here is a new SUITE_VERSION.
+"""Pixels are pinned: a change here is a new SUITE_VERSION, or a new version of an unseen one.
 
-To accept new pixels: raise ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py``, look at the
+To accept new pixels: raise ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py`` (of an unseen
+corruption: ``version`` in its record), look at the
 contact sheet (``python -m mitigate.corruptions.gallery --out sheet.png``), then run
 
     python tests/corruptions/test_golden.py --write
@@ -17,9 +18,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mitigate.corruptions import NAMES, RGB, SUITE_VERSION, Key, corrupt
+from mitigate.corruptions import NAMES, SUITE_VERSION, Key, corrupt
+from mitigate.corruptions.registry import modality, record, unseen_names
 
 GOLDEN = Path(__file__).with_name("golden.json")
+UNSEEN = unseen_names("rgb", "depth")
 SEVERITIES = (0.05, 0.5, 0.6, 1.0)
 
 
@@ -36,15 +39,20 @@ def fingerprint(name: str, severity: float) -> str:
     """Hash of the pixels; depth is rounded to 0.1 mm first."""
     rgb, depth = frames()
     key = Key(2024, "golden", 13)
-    out = corrupt(rgb if name in RGB else depth, name, severity, key=key, heading=0.7)
-    if name not in RGB:
+    seen = modality(name) == "rgb"
+    out = corrupt(rgb if seen else depth, name, severity, key=key, heading=0.7)
+    if not seen:
         out = np.rint(out * np.float32(1e4)).astype(np.int32)
     return hashlib.blake2b(out.tobytes(), digest_size=16).hexdigest()
 
 
 def current() -> dict:
     hashes = {name: {str(s): fingerprint(name, s) for s in SEVERITIES} for name in NAMES}
-    return {"suite": SUITE_VERSION, "pixels": hashes}
+    unseen = {
+        name: {"version": record(name).version, **{str(s): fingerprint(name, s) for s in (0.6, 1)}}
+        for name in UNSEEN
+    }
+    return {"suite": SUITE_VERSION, "pixels": hashes, "unseen": unseen}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -54,6 +62,14 @@ def test_pixels_are_those_of_the_suite_version(name):
     for severity in SEVERITIES:
         found = fingerprint(name, severity)
         assert found == golden["pixels"][name][str(severity)], (name, severity, __doc__)
+
+
+@pytest.mark.parametrize("name", UNSEEN)
+def test_pixels_of_an_unseen_one_are_those_of_its_version(name):
+    golden = json.loads(GOLDEN.read_text())["unseen"][name]
+    assert golden.pop("version") == record(name).version, "regenerate (see the docstring)"
+    for severity, wanted in golden.items():
+        assert fingerprint(name, float(severity)) == wanted, (name, severity, __doc__)
 
 
 if __name__ == "__main__":

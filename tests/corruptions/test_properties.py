@@ -6,11 +6,12 @@ import torch
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mitigate.corruptions import DEPTH, NAMES, RGB, DepthSensor, Key, corrupt
+from mitigate.corruptions import DEPTH, NAMES, DepthSensor, Key, corrupt
 from mitigate.corruptions.depth import echo_shift
+from mitigate.corruptions.registry import modality, unseen_names
 
 SENSORS = (DepthSensor(), DepthSensor(0.5, 5.0, missing=-1.0))
-names = st.sampled_from(NAMES)
+names = st.sampled_from((*NAMES, *unseen_names("rgb", "depth")))
 severities = st.floats(0.0, 1.0)
 keys = st.builds(Key, st.integers(-(2**70), 2**70), st.text(max_size=8), st.integers(0, 10**9))
 quick = settings(max_examples=40, deadline=None, derandomize=True)
@@ -32,7 +33,7 @@ def instants(draw, fewest=1):
 
 
 def frame_of(name, instant):
-    return instant[name not in RGB]
+    return instant[modality(name) != "rgb"]
 
 
 def same(a, b):

@@ -19,7 +19,7 @@ from mitigate.corruptions import (
 )
 from mitigate.evaluation import controls, evaluator, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
-from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -97,6 +97,26 @@ def test_a_result_does_not_depend_on_what_ran_before(finished, tmp_path):
     _, rows = finished
     alone = run(tmp_path, conditions=[Corruption("flare", 0.6)])
     assert alone == [row for row in rows if row["corruption"] == "flare"]
+
+
+def test_a_pair_is_a_condition_and_an_unseen_one_says_its_version(tmp_path):
+    names = ("low_light+missing_data", "spatter+mask", "haze", "ripple+flare")
+    made = run(tmp_path, episodes=1, conditions=[CLEAN, *(Corruption(n, 0.6) for n in names)])
+    versions = {row["corruption"]: row.get("version") for row in made}
+    assert versions == dict(zip(("clean", *names), (None, None, None, "1", "1"), strict=True))
+    assert run(tmp_path, episodes=1, conditions=[Corruption("haze", 0.6)]) == made[3:4]
+
+
+def test_a_pair_meets_both_sensors_and_the_words():
+    episode, world, agent = load_episodes("val_seen")[5], ApartmentsWorld(SIZE), Watcher()
+    looks = {}
+    for name in ("low_light", "multipath", "low_light+multipath"):
+        run_episode(agent, world, episode, Corruption(name, 0.8), 0)
+        looks[name] = agent.seen
+    for one, other, both in zip(*looks.values(), strict=True):
+        assert (both[RGB] == one[RGB]).all() and (both[DEPTH] == other[DEPTH]).all()
+    spoken = instruction(episode, Corruption("spatter+mask", 0.8), 0)
+    assert spoken == instruction(episode, Corruption("mask", 0.8), 0) != episode.instruction.text
 
 
 def test_other_weights_are_another_agent(finished, tmp_path):

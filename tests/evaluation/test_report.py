@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
+from mitigate.corruptions.registry import unseen_names
 from mitigate.evaluation import rows, table
 from mitigate.evaluation.report import markdown, sections, write
 from tests.evaluation.made_rows import cell, column, row
@@ -265,3 +266,55 @@ def test_numbers_do_not_depend_on_the_order_of_the_rows():
     assert sections(mixed)[0].retained == sections(made)[0].retained
     assert set(DEPTH) | set(RGB) == {r["corruption"] for r in made} - {"clean"}
     assert row(0, True)["corruption"] == "clean"
+
+
+UNSEEN = (*unseen_names("rgb"), *unseen_names("depth"))
+
+
+def test_unseen_corruptions_have_a_table_of_their_own():
+    made = column(8, dict.fromkeys(UNSEEN, 2), version="1") + column(8, ALL)
+    suite, unseen = sections(made)
+    assert (suite.kind, set(suite.blocks)) == ("", {"RGB", "Depth"})
+    assert (unseen.kind, set(unseen.blocks)) == (
+        "unseen corruptions",
+        {"unseen RGB", "unseen depth"},
+    )
+    assert unseen.value("base", "clean") == 0.8
+    assert unseen.retained["base", "unseen RGB", "SR"].estimate.value == pytest.approx(0.25)
+    text = markdown([unseen])
+    assert "## val_unseen, unseen corruptions, severity 0.6" in text
+    assert f"Mean SR of {len(UNSEEN)} corruptions" in text and "†" not in text
+
+
+def test_the_suites_figures_do_not_depend_on_what_else_was_measured():
+    """Other seeds, gaps and agents of the unseen rows included."""
+    suite = column(8, ALL) + column(6, ALL, seed=1) + column(5, ALL, **HARD)
+    other = column(8, dict.fromkeys(UNSEEN, 2)) + column(5, {"spatter+haze": 1}, **HARD)
+    other += column(3, {"haze": 1}, agent="eeee00000000", name="third")
+    alone, among = sections(suite)[0], sections(suite + other)[0]
+    assert markdown([alone]) == markdown([among])
+    assert [s.columns for s in sections(suite + other)][1:] == [
+        ("base", "third"),
+        ("da_per_episode",),
+    ]
+
+
+def test_each_half_of_the_unseen_ones_has_its_prs_where_both_are_measured():
+    validation, test = (unseen_names("rgb", half=half) for half in ("validation", "test"))
+    made = column(8, dict.fromkeys(validation, 8) | dict.fromkeys(test, 4))
+    found = lines(made)
+    assert found["**PRS-SR (unseen RGB)**"][0].startswith("**0.75**")
+    assert found["PRS-SR (unseen RGB, validation)"][0].startswith("**1.00**")
+    assert found["PRS-SR (unseen RGB, test)"][0].startswith("**0.50**")
+    half = lines(column(8, dict.fromkeys(test, 4)))
+    assert half["**PRS-SR (unseen RGB)**"][0].endswith("]")  # a whole half: nothing is missing
+    assert "PRS-SR (unseen RGB, test)" not in half
+    part = lines(column(8, dict.fromkeys(test[1:], 4)))
+    assert part["**PRS-SR (unseen RGB)**"][0].endswith("† 5/6")
+
+
+def test_pairs_have_a_table_of_their_own():
+    (section,) = sections(column(8, {"spatter+missing_data": 4, "low_light+mask": 2}))
+    assert section.kind == "pairs of corruptions"
+    assert section.blocks == {"Pairs": ("low_light+mask", "spatter+missing_data")}
+    assert "| Spatter + Missing data | 40.0 |" in markdown([section])

@@ -1,0 +1,125 @@
+"""Unseen depth corruptions of calibration: scale, place beside RGB, wiggling.
+
+Functions take and give what those of ``corruptions/depth.py`` do, and keep its rules of invalid
+pixels.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from mitigate.corruptions.depth import LIGHT_SPEED, NEAREST, DepthSensor
+from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.record import TEST, VALIDATION, Record
+
+SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # of the depth at s = 1
+ASIDE = 0.12  # of W at s = 1
+ASIDE_DOWN = 0.25  # of that, down or up
+WIGGLE = 0.30  # metres at s = 1
+WIGGLE_HERTZ = 20e6
+WIGGLE_PERIOD = LIGHT_SPEED / (2.0 * WIGGLE_HERTZ) / 4.0  # metres: four samples of the phase
+WIGGLE_CELLS = 4096
+
+
+def valid(views: np.ndarray) -> np.ndarray:
+    """Whether each depth is a reading."""
+    return (views > 0) & (views < np.inf)
+
+
+def kept(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
+    """``moved`` within the sensor's range where ``views`` is valid, else ``views``."""
+    inside = np.clip(moved, NEAREST, np.float32(sensor.z_max))
+    return np.where(valid(views), inside, views)
+
+
+def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """z (1 + s k), k of either sign and 0.25 to 0.4 for the episode."""
+    value = digest(key, "scale_error")
+    factor = SCALE_LEAST + (SCALE_MOST - SCALE_LEAST) * uniform(value, 0)
+    factor = 1.0 + severity * factor * (1 if uniform(value, 1) < 0.5 else -1)
+    return kept(views, np.where(valid(views), views, 0) * np.float32(factor), sensor)
+
+
+def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """Depth of the pixel 0.12 s W aside, where that is valid; edges are replicated."""
+    _, height, width = views.shape
+    value = digest(key, "misalignment")
+    reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
+    across, down = round(reach), round(reach * ASIDE_DOWN * (2.0 * uniform(value, 1) - 1.0))
+    rows = np.clip(np.arange(height) + down, 0, height - 1)
+    columns = np.clip(np.arange(width) + across, 0, width - 1)
+    moved = np.take(np.take(views, rows, axis=1), columns, axis=2)
+    return kept(views, np.where(valid(moved), moved, views), sensor)
+
+
+@lru_cache(maxsize=32)
+def wiggle_table(phase: float, amplitude: float, z_max: float) -> np.ndarray:
+    """float32 [WIGGLE_CELLS + 1]: metres to add at z = 0 .. z_max."""
+    z = np.linspace(0.0, z_max, WIGGLE_CELLS + 1)
+    turns = z / WIGGLE_PERIOD + phase
+    return (amplitude * np.sin(2.0 * math.pi * turns)).astype(np.float32)
+
+
+def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """z + 0.3 s sin(2 pi (z/P + p)): the harmonics of a time-of-flight camera's light."""
+    phase = uniform(digest(key, "wiggling"))
+    table = wiggle_table(phase, WIGGLE * severity, sensor.z_max)
+    clean = np.clip(np.where(valid(views), views, 0), 0, np.float32(sensor.z_max))
+    place = clean * np.float32(WIGGLE_CELLS / sensor.z_max) + np.float32(0.5)
+    return kept(views, clean + table[place.astype(np.int32)], sensor)
+
+
+RECORDS = (
+    Record(
+        name="scale_error",
+        modality="depth",
+        apply=scale_error,
+        half=VALIDATION,
+        version="1",
+        severity="all depth off by 0.25 s to 0.4 s",
+        fails="the baseline or focal length is miscalibrated",
+        formula=f"z (1 +- s k), k ~ U({SCALE_LEAST:g}, {SCALE_MOST:g})",
+        sources=(
+            "scale errors of depth cameras (Khoshelham & Elberink 2012) and, larger, of monocular "
+            "depth; the range is ours"
+        ),
+        source="Khoshelham & Elberink 2012",
+        episode="sign and size",
+    ),
+    Record(
+        name="wiggling",
+        modality="depth",
+        apply=wiggling,
+        half=VALIDATION,
+        version="1",
+        severity="0.3 s metres too near and too far by turns",
+        fails="the harmonics of a time-of-flight camera's light",
+        formula=(
+            f"z + {WIGGLE:g} s sin(2 pi (z/P + p)), P = c/(8 f) = {WIGGLE_PERIOD:.2f} metres, f = "
+            f"{WIGGLE_HERTZ / 1e6:g} MHz"
+        ),
+        sources=("wiggling error (Lindner & Kolb 2006; Foix 2011); the amplitude is ours"),
+        source="Lindner & Kolb 2006",
+        episode="phase p",
+    ),
+    Record(
+        name="misalignment",
+        modality="depth",
+        apply=misalignment,
+        half=TEST,
+        version="1",
+        severity="moved by 0.12 s of the width against RGB",
+        fails="the mount of the depth camera has moved",
+        formula=(
+            f"z at p + d, d = +-{ASIDE:g} s W (1, U(-{ASIDE_DOWN:g}, {ASIDE_DOWN:g})); an invalid "
+            "one there changes nothing"
+        ),
+        sources=("registration errors of RGB-D cameras (Khoshelham & Elberink 2012); d is ours"),
+        source="Khoshelham & Elberink 2012",
+        episode="direction",
+        slip=0.01,
+    ),
+)

@@ -1,0 +1,177 @@
+"""Unseen RGB corruptions of a compressed stream: coarse blocks, lost slices.
+
+Functions take and give what those of ``corruptions/rgb.py`` do.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from mitigate.corruptions.keying import Key, uniform, view_streams
+from mitigate.corruptions.record import TEST, VALIDATION, Record
+
+BLOCKS = (4, 8, 16, 32)  # pixels: the transforms of H.264 and H.265
+BLOCKS_ACROSS = 28  # of them in the side: 8 px at 224
+DEAD_ZONE = 0.40  # amplitude over white at s = 1
+CHROMA = 2.0  # times that of the grey part
+SLICES = 14  # in the height: macroblocks of 16 px at 224
+LOST = 0.8  # of the slices at s = 1
+NOTHING = 128  # grey: what a decoder shows that has no earlier picture
+
+
+@lru_cache(maxsize=4)
+def cosines(side: int) -> np.ndarray:
+    """float32 [side, side]: the orthonormal DCT-II, a frequency a row."""
+    places = (2 * np.arange(side) + 1) * np.arange(side)[:, None]
+    matrix = np.cos(math.pi * places / (2 * side)) * math.sqrt(2.0 / side)
+    matrix[0] = math.sqrt(1.0 / side)
+    return matrix.astype(np.float32)
+
+
+def block_side(height: int, width: int) -> int:
+    """The transform whose blocks are nearest to 1/28 of the shorter side, by ratio."""
+    wanted = math.log(min(height, width) / BLOCKS_ACROSS)
+    return min(BLOCKS, key=lambda side: abs(math.log(side) - wanted))
+
+
+@lru_cache(maxsize=1)
+def opponents() -> np.ndarray:
+    """float32 [3, 3]: grey, red against blue, green against both; orthonormal."""
+    rows = np.array([[1.0, 1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 2.0, -1.0]])
+    return (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32)
+
+
+@njit(cache=True)
+def _both_ways(matrix, cells, spare):
+    """In place: cells [b, b, n] = matrix cells matrix^T, for all n at once."""
+    side, _, count = cells.shape
+    for k in range(side):
+        for x in range(side):
+            row = spare[k, x]
+            for i in range(count):
+                row[i] = np.float32(0)
+            for j in range(side):
+                weight, source = matrix[k, j], cells[j, x]
+                for i in range(count):
+                    row[i] += weight * source[i]
+    for y in range(side):
+        for k in range(side):
+            row = cells[y, k]
+            for i in range(count):
+                row[i] = np.float32(0)
+            for j in range(side):
+                weight, source = matrix[k, j], spare[y, j]
+                for i in range(count):
+                    row[i] += weight * source[i]
+
+
+@njit(cache=True)
+def _lose(cells, least):
+    """In place: coefficients under ``least`` become 0, but for the mean."""
+    mean = cells[0, 0].copy()
+    flat = cells.reshape(-1)
+    for i in range(flat.size):
+        flat[i] = flat[i] if abs(flat[i]) >= least else np.float32(0)
+    cells[0, 0] = mean
+
+
+@njit(cache=True)
+def _gather(view, weights, cells):
+    """cells [b, b, n] = one opponent colour of uint8 [H, W, 3], edges replicated."""
+    height, width, _ = view.shape
+    side, across = cells.shape[0], -(-width // cells.shape[0])
+    for y in range(-(-height // side) * side):
+        row = view[min(y, height - 1)]
+        for x in range(across * side):
+            r, g, b = row[min(x, width - 1)]
+            n = (y // side) * across + x // side
+            level = weights[0] * np.float32(r) + weights[1] * np.float32(g)
+            cells[y % side, x % side, n] = level + weights[2] * np.float32(b)
+
+
+@njit(cache=True)
+def _code(views, colours, matrix, back, least, out):
+    count, height, width, _ = views.shape
+    side = matrix.shape[0]
+    across, blocks = -(-width // side), -(-width // side) * -(-height // side)
+    planes = np.empty((3, side, side, blocks), np.float32)
+    spare = np.empty((side, side, blocks), np.float32)
+    for v in range(count):
+        for p in range(3):
+            _gather(views[v], colours[p], planes[p])
+            _both_ways(matrix, planes[p], spare)
+            _lose(planes[p], least[p])
+            _both_ways(back, planes[p], spare)
+        for y in range(height):
+            for x in range(width):
+                cell = (y % side, x % side, (y // side) * across + x // side)
+                for c in range(3):
+                    level = colours[0, c] * planes[0][cell] + colours[1, c] * planes[1][cell]
+                    level += colours[2, c] * planes[2][cell] + np.float32(0.5)
+                    out[v, y, x, c] = int(min(max(level, np.float32(0)), np.float32(255)))
+
+
+def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Blocks keep the coefficients of their DCT that are not in a dead zone of 0.4 s."""
+    side = block_side(*views.shape[1:3])
+    zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
+    least = zones.astype(np.float32)
+    matrix, out = cosines(side), np.empty_like(views)
+    _code(views, opponents(), matrix, np.ascontiguousarray(matrix.T), least, out)
+    return out
+
+
+def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """0.8 s of the 14 slices of every view are lost from some column to their end."""
+    count, height, width, _ = views.shape
+    out, edges = views.copy(), np.rint(np.linspace(0, height, SLICES + 1)).astype(int)
+    for view, stream in enumerate(view_streams(key, "lost_slices", count)):
+        for number in range(SLICES):
+            if uniform(int(stream), 2 * number) < LOST * severity:
+                start = int(uniform(int(stream), 2 * number + 1) * width)
+                out[view, edges[number] : edges[number + 1], start:] = NOTHING
+    return out
+
+
+RECORDS = (
+    Record(
+        name="compression",
+        modality="rgb",
+        apply=compression,
+        half=VALIDATION,
+        version="1",
+        severity="patterns of amplitude under 0.4 s are lost",
+        fails="too little bandwidth for the camera's stream",
+        formula=(
+            "DCT of square blocks in grey, red - blue and green against both; coefficients under "
+            f"{DEAD_ZONE:g} s 255 b/2 (colours: {CHROMA:g} times that) become 0, but for the mean; "
+            f"b of {', '.join(map(str, BLOCKS))} px, the nearest to side/{BLOCKS_ACROSS}"
+        ),
+        sources=(
+            "JPEG of ImageNet-C, H.265 of 3DCC; dead zone and block sides of H.264 and H.265; the "
+            "width of the zone is ours"
+        ),
+        source="ImageNet-C, H.264, H.265",
+    ),
+    Record(
+        name="lost_slices",
+        modality="rgb",
+        apply=lost_slices,
+        half=TEST,
+        version="1",
+        severity="0.8 s of the slices are lost",
+        fails="packets of the camera's stream are lost",
+        formula=(
+            f"of {SLICES} slices each view loses each with probability {LOST:g} s, from column "
+            f"U(0, 1) W to the end: grey {NOTHING}"
+        ),
+        sources=("H.264 over IP (Wenger 2003), bit error of 3DCC; shares are ours"),
+        source="Wenger 2003",
+        frame="which, from where",
+        slip=0.01,
+    ),
+)

@@ -1,0 +1,170 @@
+"""Unseen depth corruptions beside edges: fattening, flying pixels, shadows of the projector.
+
+Functions take and give what those of ``corruptions/depth.py`` do, and keep its rules of invalid
+pixels.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from mitigate.core.observation import HFOV_DEGREES
+from mitigate.corruptions.depth import NEAREST, DepthSensor, farthest_along, is_valid, larger
+from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
+from mitigate.corruptions.record import TEST, VALIDATION, Record
+
+FATTENING = 0.08  # of the side at s = 1
+FOOTPRINT = 0.03  # of the side: half the square over which a flying pixel mixes
+BASELINE = 0.50  # metres at s = 1; a Kinect has 0.075, a ZED 0.12
+
+_U = np.uint64
+
+
+@njit(cache=True)
+def extremes(view, reach, sign, out):
+    """out [H, W] = the largest of sign z in a square of 2 reach + 1; -inf where all is invalid."""
+    height, width = view.shape
+    rows = height + 2 * reach
+    wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
+    spare = np.empty(width + 2 * reach, np.float32)
+    for y in range(height):
+        for x in range(width):
+            if is_valid(view[y, x]):
+                wide[y + reach, x + reach] = sign * view[y, x]
+        farthest_along(wide[y + reach], spare, reach)
+    have, want = 1, 2 * reach + 1
+    while have < want:
+        step = min(have, want - have)
+        rows -= step
+        for y in range(rows):
+            larger(wide[y, :width], wide[y + step, :width])
+        have += step
+    out[:] = wide[:height, :width]
+
+
+@njit(cache=True)
+def _fatten(views, reach, share, z_max, out):
+    near, nearer = np.empty_like(views[0]), np.empty_like(views[0])
+    for v in range(views.shape[0]):
+        extremes(views[v], reach, np.float32(-1), near)
+        extremes(views[v], reach + 1, np.float32(-1), nearer)
+        for y in range(views.shape[1]):
+            for x in range(views.shape[2]):
+                z = views[v, y, x]
+                least = -(near[y, x] + share * (nearer[y, x] - near[y, x]))
+                out[v, y, x] = min(max(least, NEAREST), z_max) if is_valid(z) else z
+
+
+def fattening(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """The nearest surface within 0.08 s side: what is near grows, as in a matching window."""
+    reach = FATTENING * severity * min(views.shape[1:])
+    out, whole = np.empty_like(views), math.floor(reach)
+    _fatten(views, whole, np.float32(reach - whole), np.float32(sensor.z_max), out)
+    return out
+
+
+@njit(cache=True)
+def _fly(views, streams, reach, least, z_max, out):
+    near, far = np.empty_like(views[0]), np.empty_like(views[0])
+    for v in range(views.shape[0]):
+        extremes(views[v], reach, np.float32(-1), near)
+        extremes(views[v], reach, np.float32(1), far)
+        for y in range(views.shape[1]):
+            for x in range(views.shape[2]):
+                z = views[v, y, x]
+                word = mix(streams[v], _U(y * views.shape[2] + x))
+                share = np.float32(word >> _U(48)) * np.float32(1 / 65536)
+                mixed = -near[y, x] + share * (far[y, x] + near[y, x])
+                moved = mixed if (word & _U(0xFFFFFFFF)) < least else z
+                out[v, y, x] = min(max(moved, NEAREST), z_max) if is_valid(z) else z
+
+
+def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """The share s of the pixels reads somewhere between the nearest and the farthest around it."""
+    reach = max(1, round(FOOTPRINT * min(views.shape[1:])))
+    streams, out = view_streams(key, "flying_pixels", len(views)), np.empty_like(views)
+    _fly(views, streams, reach, _U(round(severity * 2**32)), np.float32(sensor.z_max), out)
+    return out
+
+
+@njit(cache=True)
+def _shade(views, offset, side, missing, z_max, out):
+    """A ray of the projector meets the row at x + offset / z, and stops at the first surface."""
+    width = views.shape[2]
+    for v in range(views.shape[0]):
+        for y in range(views.shape[1]):
+            reached = np.float32(-np.inf)
+            for i in range(width):
+                x = i if side > 0 else width - 1 - i
+                z = views[v, y, x]
+                if not is_valid(z):
+                    out[v, y, x] = z
+                    continue
+                at = np.float32(i) + offset / max(z, NEAREST)
+                lit = at > reached
+                reached = max(reached, at)
+                out[v, y, x] = min(max(z, NEAREST), z_max) if lit else missing
+
+
+def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """No reading where a nearer surface hides the light of a projector 0.5 s metres aside."""
+    width, out = views.shape[2], np.empty_like(views)
+    focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
+    offset = np.float32(BASELINE * severity * focal)
+    side = 1 if uniform(digest(key, "edge_shadow")) < 0.5 else -1
+    _shade(views, offset, side, np.float32(sensor.missing), np.float32(sensor.z_max), out)
+    return out
+
+
+RECORDS = (
+    Record(
+        name="fattening",
+        modality="depth",
+        apply=fattening,
+        half=VALIDATION,
+        version="1",
+        severity="near surfaces grow by 0.08 s side",
+        fails="the window of a stereo matcher sees past edges",
+        formula=(
+            f"the least depth within r = {FATTENING:g} s side (a square), linear between whole "
+            "pixels"
+        ),
+        sources=("edge fattening of stereo (Kanade & Okutomi 1994; Scharstein 2002); r is ours"),
+        source="Kanade & Okutomi 1994",
+    ),
+    Record(
+        name="edge_shadow",
+        modality="depth",
+        apply=edge_shadow,
+        half=VALIDATION,
+        version="1",
+        severity="the projector is 0.5 s metres aside",
+        fails="the light of the projector does not reach there",
+        formula=(
+            f"no reading where x + f b/z does not exceed that of all before it in the row; b = "
+            f"{BASELINE:g} s metres, f = W/(2 tan({HFOV_DEGREES:g}/2 degrees))"
+        ),
+        sources=("shadows of structured light (Khoshelham & Elberink 2012: b = 0.075); b is ours"),
+        source="Khoshelham & Elberink 2012",
+        episode="side",
+    ),
+    Record(
+        name="flying_pixels",
+        modality="depth",
+        apply=flying_pixels,
+        half=TEST,
+        version="1",
+        severity="the share s of the pixels beside edges",
+        fails="a pixel sees two surfaces at once",
+        formula=(
+            f"the share s of the pixels reads near + U(0, 1) (far - near), of the nearest and the "
+            f"farthest within {FOOTPRINT:g} side (a square)"
+        ),
+        sources=("flying pixels of time of flight (Foix 2011; Reynolds et al., CVPR 2011)"),
+        source="Reynolds et al. 2011",
+        frame="which, where to",
+    ),
+)

@@ -1,0 +1,187 @@
+"""Unseen RGB corruptions of light and colour: white balance, exposure, haze, hue.
+
+Functions take and give what those of ``corruptions/rgb.py`` do.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from mitigate.corruptions import masks
+from mitigate.corruptions.eld import GAMMA
+from mitigate.corruptions.keying import Key, digest, field, scramble, uniform
+from mitigate.corruptions.record import TEST, VALIDATION, Record
+
+STOPS, STOPS_SPREAD = 2.0, 0.2  # of exposure at s = 1
+CAST = 2.0  # stops between red and blue at s = 1: Afifi & Brown 2019 have 2800 to 10000 K
+TINT = 0.5  # of that, between green and the other two
+HAZE_DEPTH = 1.5  # optical depth at s = 1, where the haze is average
+HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))  # correlation over the side, weight
+HAZE_UNEVEN = 0.4  # standard deviation of the haze over its mean
+HAZE_THIN, HAZE_THICK = 0.25, 2.5  # of the mean
+HAZE_COLOUR = (205, 208, 212)
+HUE_DEGREES = 180.0  # at s = 1
+
+
+def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
+    """Each colour of uint8 [V, H, W, 3] through its own uint8 [256] table."""
+    out = np.empty_like(views)
+    for colour, table in enumerate(tables):
+        out[..., colour] = table[views[..., colour]]
+    return out
+
+
+def _amplified(stops: float) -> np.ndarray:
+    """uint8 [256]: grey levels after ``stops`` more of light, clipped at white."""
+    return np.rint(np.minimum(np.arange(256) * 2.0 ** (stops / GAMMA), 255.0)).astype(np.uint8)
+
+
+def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Gains of red, green and blue of a wrong light, one direction for the episode."""
+    angle = 2.0 * math.pi * uniform(digest(key, "white_balance"))
+    warm, green = 0.5 * CAST * math.cos(angle), 0.5 * CAST * TINT * math.sin(angle)
+    stops = (warm - green, green, -warm - green)
+    return _by_table(views, [_amplified(severity * each) for each in stops])
+
+
+def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Light times 2^(2 s u), u ~ U(0.8, 1.2) for the episode; what is over white is lost."""
+    spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
+    return _by_table(views, [_amplified(STOPS * spread * severity)] * 3)
+
+
+@lru_cache(maxsize=16)
+def haze_density(value: int, height: int, width: int) -> np.ndarray:
+    """float32 [H, W]: the haze over its mean, a fractal field."""
+    parts = [
+        weight * field(scramble(value, octave), height, width, correlation)[0]
+        for octave, (correlation, weight) in enumerate(HAZE_OCTAVES)
+    ]
+    spread = HAZE_UNEVEN / math.hypot(*(weight for _, weight in HAZE_OCTAVES))
+    density = np.float32(1.0) + np.float32(spread) * np.sum(parts, axis=0, dtype=np.float32)
+    return np.clip(density, np.float32(HAZE_THIN), np.float32(HAZE_THICK))
+
+
+@lru_cache(maxsize=16)
+def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
+    """int16 [H, 3 W]: the opacity of the haze, in 1/32768."""
+    lost = np.exp(-HAZE_DEPTH * severity * haze_density(value, height, width).astype(np.float64))
+    return masks.opacity_mask((1.0 - lost).astype(np.float32), 1.0, masks.NEUTRAL)
+
+
+def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """x t + A (1 - t): smoke or dust between camera and scene; every view sees another part."""
+    count, height, width, _ = views.shape
+    value, out = digest(key, "haze"), np.empty_like(views)
+    mask, grey = (
+        haze_mask(value, severity, height, width),
+        masks.colour_row(HAZE_COLOUR, width),
+    )
+    for view in range(count):
+        shift = int(uniform(scramble(value, view)) * width)
+        seen = np.roll(mask, 3 * shift, axis=1)
+        masks.cover(views[view : view + 1], seen, grey, out[view : view + 1])
+    return out
+
+
+@lru_cache(maxsize=32)
+def hue_matrix(degrees: float) -> np.ndarray:
+    """int32 [3, 3] in 1/4096: a turn of colours about grey (Rodrigues)."""
+    angle = math.radians(degrees)
+    third, cross = np.full((3, 3), 1.0 / 3.0), np.zeros((3, 3))
+    cross[[0, 1, 2], [2, 0, 1]], cross[[0, 1, 2], [1, 2, 0]] = 1.0, -1.0
+    turn = math.cos(angle) * np.eye(3) + (1.0 - math.cos(angle)) * third
+    return np.rint(4096.0 * (turn + math.sin(angle) / math.sqrt(3.0) * cross)).astype(np.int32)
+
+
+def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Turn all hues by 180 s degrees, one way or the other for the episode; grey stays."""
+    sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
+    matrix = hue_matrix(sign * HUE_DEGREES * severity)
+    colours = [views[..., c].astype(np.int32) for c in range(3)]
+    out = np.empty_like(views)
+    for c, row in enumerate(matrix):
+        level = sum(colour * weight for colour, weight in zip(colours, row, strict=True))
+        out[..., c] = np.clip((level + 2048) >> 12, 0, 255)
+    return out
+
+
+RECORDS = (
+    Record(
+        name="white_balance",
+        modality="rgb",
+        apply=white_balance,
+        half=VALIDATION,
+        version="1",
+        severity="2 s stops between red and blue",
+        fails="the camera takes the light for another one",
+        formula=(
+            f"255 min(1, (x/255) 2^(s g/{GAMMA:g})); stops g of red, green, blue = {0.5 * CAST:g} "
+            f"(cos a, 0, -cos a) + {0.5 * CAST * TINT:g} (-sin a, sin a, -sin a), a ~ U(0, 360) "
+            "degrees"
+        ),
+        sources=(
+            "Afifi & Brown, ICCV 2019: errors of white balance from 2850 to 7500 K; the range is "
+            "ours"
+        ),
+        source="Afifi & Brown 2019",
+        episode="direction",
+        slip=0.001,
+    ),
+    Record(
+        name="haze",
+        modality="rgb",
+        apply=haze,
+        half=VALIDATION,
+        version="1",
+        severity=f"optical depth {HAZE_DEPTH:g} s",
+        fails="smoke, steam or dust in the room",
+        formula=(
+            f"x t + A (1 - t), t = exp(-{HAZE_DEPTH:g} s d), A = {HAZE_COLOUR}; d = 1 + "
+            f"{HAZE_UNEVEN:g} F in [{HAZE_THIN:g}, {HAZE_THICK:g}], F the sum of random fields of "
+            f"correlation {', '.join(f'{c:g}' for c, _ in HAZE_OCTAVES)} side and weight "
+            f"{', '.join(f'{w:g}' for _, w in HAZE_OCTAVES)}, sd 1"
+        ),
+        sources=(
+            "Koschmieder's law, as 3DCC; fractal as ImageNet-C's fog; without depth, since RGB is "
+            "corrupted alone; constants are ours"
+        ),
+        source="3DCC, ImageNet-C",
+        episode="field, place by view",
+    ),
+    Record(
+        name="overexposure",
+        modality="rgb",
+        apply=overexposure,
+        half=TEST,
+        version="1",
+        severity="2 s stops too much light",
+        fails="the exposure is stuck at a dark place's",
+        formula=(
+            f"min(255, x 2^({STOPS:g} s u/{GAMMA:g})), u ~ U({1 - STOPS_SPREAD:g}, "
+            f"{1 + STOPS_SPREAD:g})"
+        ),
+        sources=("brightness of ImageNet-C; stops of light instead of grey levels are ours"),
+        source="ImageNet-C, 3DCC",
+        episode="stops, +- 20 %",
+    ),
+    Record(
+        name="hue_shift",
+        modality="rgb",
+        apply=hue_shift,
+        half=TEST,
+        version="1",
+        severity="hues turned by 180 s degrees",
+        fails="wrong Bayer order or colour matrix",
+        formula=(
+            f"colours turned about the grey axis by +-{HUE_DEGREES:g} s degrees, clipped to 0-255"
+        ),
+        sources=("a wrong order of channels moves hues by 120 degrees; the range is ours"),
+        source="ours, after ImageNet-C's saturate",
+        episode="sense",
+        slip=0.001,
+    ),
+)

@@ -1,0 +1,173 @@
+"""Unseen RGB corruptions of what is before the sensor: panes, drops, scratches.
+
+Functions take and give what those of ``corruptions/rgb.py`` do.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from mitigate.corruptions import masks
+from mitigate.corruptions.keying import Key, digest, field, uniform
+from mitigate.corruptions.record import TEST, VALIDATION, Record
+
+GHOST = 0.5  # share of the ghost at s = 1
+GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04  # of W, W and H: where the ghost lies
+DROPS = 0.06  # correlation of the surface over the side
+BEND = 0.045  # rms displacement over the side at s = 1
+SCRATCHES = 14  # all there at s = 1
+SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths over the side
+SCRATCH_OPACITY, GLOW_OPACITY = 0.9, 0.45
+SCRATCH_LONG = (0.3, 1.0)  # length over the side
+SCRATCH_COLOUR = (226, 226, 222)
+
+
+def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """(1 - a) x + a x', a = 0.5 s: x' is the picture moved aside, edges replicated."""
+    _, height, width, _ = views.shape
+    value = digest(key, "ghosting")
+    away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
+    across = round(away * width * (1 if uniform(value, 1) < 0.5 else -1))
+    down = round(GHOST_DOWN * height * (2.0 * uniform(value, 2) - 1.0))
+    rows = np.clip(np.arange(height) + down, 0, height - 1)
+    columns = np.clip(np.arange(width) + across, 0, width - 1)
+    moved = np.take(np.take(views, rows, axis=1), columns, axis=2).astype(np.int32)
+    weight = round(65536 * GHOST * severity)
+    gap = moved - views
+    return (views + ((gap * weight + 32768) >> 16)).astype(np.uint8)
+
+
+@njit(cache=True)
+def displaced(view, down, right, out):
+    """out[y, x] = view at (y + down, x + right), bilinear, edges replicated.
+
+    uint8 [H, W, 3] and float32 [H, W]; displacements in pixels, taken in 1/256.
+    """
+    height, width, _ = view.shape
+    for y in range(height):
+        for x in range(width):
+            v = min(max(y * 256 + int(np.floor(down[y, x] * 256)), 0), (height - 1) * 256)
+            u = min(max(x * 256 + int(np.floor(right[y, x] * 256)), 0), (width - 1) * 256)
+            top, left, b, a = v >> 8, u >> 8, v & 255, u & 255
+            below, beside = min(top + 1, height - 1), min(left + 1, width - 1)
+            for c in range(3):
+                upper = view[top, left, c] * (256 - a) + view[top, beside, c] * a
+                lower = view[below, left, c] * (256 - a) + view[below, beside, c] * a
+                out[y, x, c] = (upper * (256 - b) + lower * b + 32768) >> 16
+
+
+@lru_cache(maxsize=16)
+def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
+    """float32 [H, W] each: slope down and to the right of a random surface, rms 1 together."""
+    surface = field(value, height, width, DROPS)[0].astype(np.float64)
+    down, right = (np.roll(surface, -1, axis) - np.roll(surface, 1, axis) for axis in (0, 1))
+    scale = 1.0 / max(math.sqrt(np.mean(down**2 + right**2)), 1e-9)
+    return (down * scale).astype(np.float32), (right * scale).astype(np.float32)
+
+
+def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Every pixel looks aside by the slope of a wet pane's surface, rms 0.045 s side."""
+    _, height, width, _ = views.shape
+    reach = np.float32(BEND * severity * min(height, width))
+    down, right = slopes(digest(key, "refraction"), height, width)
+    out = np.empty_like(views)
+    for view, into in zip(views, out, strict=True):
+        displaced(view, down * reach, right * reach, into)
+    return out
+
+
+def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
+    """float64 [H, W] each: distance from the line of a scratch, and beyond its ends, in sides."""
+    draw = [uniform(value, 5 * number + part) for part in range(4)]
+    side, angle = min(height, width), math.pi * draw[2]
+    half = 0.5 * (SCRATCH_LONG[0] + (SCRATCH_LONG[1] - SCRATCH_LONG[0]) * draw[3])
+    y = ((np.arange(height) + 0.5 - draw[0] * height) / side)[:, None]
+    x = ((np.arange(width) + 0.5 - draw[1] * width) / side)[None, :]
+    along = x * math.cos(angle) + y * math.sin(angle)
+    across = y * math.cos(angle) - x * math.sin(angle)
+    return np.abs(across), np.maximum(np.abs(along) - half, 0.0)
+
+
+@lru_cache(maxsize=16)
+def scratch_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
+    """int16 [H, 3 W]: the opacity of the scratches that are there, in 1/32768."""
+    clear = np.ones((height, width))
+    for number in range(SCRATCHES):
+        strength = min(max(SCRATCHES * severity - number, 0.0), 1.0)
+        if strength > 0.0:
+            across, beyond = _along(value, number, height, width)
+            far = np.hypot(across, beyond)
+            for reach, most in (
+                (SCRATCH_CORE, SCRATCH_OPACITY),
+                (SCRATCH_GLOW, GLOW_OPACITY),
+            ):
+                clear *= 1.0 - strength * most * np.exp(-0.5 * (far / reach) ** 2)
+    return masks.opacity_mask((1.0 - clear).astype(np.float32), 1.0, masks.NEUTRAL)
+
+
+def scratches(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Bright lines with a glow around them: the first 14 s scratches of the episode."""
+    height, width = views.shape[1:3]
+    mask = scratch_mask(digest(key, "scratches"), severity, height, width)
+    out = np.empty_like(views)
+    masks.cover(views, mask, masks.colour_row(SCRATCH_COLOUR, width), out)
+    return out
+
+
+RECORDS = (
+    Record(
+        name="ghosting",
+        modality="rgb",
+        apply=ghosting,
+        half=VALIDATION,
+        version="1",
+        severity="a second picture of opacity 0.5 s",
+        fails="a pane or dome before the lens reflects",
+        formula=(
+            f"(1 - a) x + a x', a = {GHOST:g} s; x' moved by +-U({GHOST_NEAR:g}, {GHOST_FAR:g}) W "
+            f"and U(-{GHOST_DOWN:g}, {GHOST_DOWN:g}) H"
+        ),
+        sources=("double reflection of glass (Shih et al., CVPR 2015); constants are ours"),
+        source="Shih et al. 2015",
+        episode="displacement",
+    ),
+    Record(
+        name="refraction",
+        modality="rgb",
+        apply=refraction,
+        half=TEST,
+        version="1",
+        severity="displaced by 0.045 s side, rms",
+        fails="water or grease on the lens bends the light",
+        formula=(
+            f"x at p + {BEND:g} s side grad h(p); h a random field of correlation {DROPS:g} side, "
+            "its slope of rms 1; bilinear"
+        ),
+        sources=("caustic refraction of ImageNet-C-bar, elastic transform of ImageNet-C"),
+        source="ImageNet-C-bar",
+        episode="surface",
+        slip=0.01,
+    ),
+    Record(
+        name="scratches",
+        modality="rgb",
+        apply=scratches,
+        half=TEST,
+        version="1",
+        severity=f"the first {SCRATCHES} s scratches",
+        fails="the lens is scratched or cracked",
+        formula=(
+            f"{SCRATCHES} s lines of length U({SCRATCH_LONG[0]:g}, {SCRATCH_LONG[1]:g}) side and "
+            f"colour {SCRATCH_COLOUR}; opacity {SCRATCH_OPACITY:g} exp(-(d/{SCRATCH_CORE:g})^2/2) "
+            f"and {GLOW_OPACITY:g} exp(-(d/{SCRATCH_GLOW:g})^2/2), d over the side"
+        ),
+        sources=("camera crack of RobustNav, frost of ImageNet-C; constants are ours"),
+        source="RobustNav",
+        episode="where they are",
+        slip=0.001,
+    ),
+)

@@ -1,0 +1,175 @@
+"""Unseen depth corruptions of what comes back: ripple, mismatches, range, glossy floors.
+
+Functions take and give what those of ``corruptions/depth.py`` do, and keep its rules of invalid
+pixels.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from mitigate.corruptions.depth import NEAREST, DepthSensor, is_valid
+from mitigate.corruptions.keying import (
+    Key,
+    digest,
+    field,
+    mix,
+    scramble,
+    top_share,
+    uniform,
+    view_streams,
+)
+from mitigate.corruptions.record import TEST, VALIDATION, Record
+from mitigate.corruptions.unseen.calibration import kept, valid
+
+RIPPLE = 0.06  # per metre, at s = 1: sd of z is 0.06 z^2
+RIPPLE_CORRELATION = 0.04  # of the side
+RANGE_LEFT = 0.10  # of z_max at s = 1
+WRONG = 0.30  # of the readings at s = 1
+SPECKLE = 0.02  # of the side: what is wrong together
+GLOSS_CORRELATION = 0.08  # of the side
+FLOOR = 0.92  # of the height of the camera: what lies deeper is the floor
+UPSIDE_DOWN = 3.0  # times the floor's depth: a ceiling twice as high as the camera, mirrored
+
+_U = np.uint64
+
+
+def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """z + 0.06 s z^2 F: waves over walls, another place of one field F in every view and frame."""
+    count, height, width = views.shape
+    waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
+    moved = np.where(valid(views), views, 0)
+    strength = np.float32(RIPPLE * severity)
+    for view, stream in enumerate(view_streams(key, "ripple_offset", count)):
+        down, right = (int(uniform(int(stream), i) * n) for i, n in enumerate((height, width)))
+        seen = np.roll(waves, (down, right), axis=(0, 1))
+        moved[view] += strength * moved[view] * moved[view] * seen
+    return kept(views, moved, sensor)
+
+
+def range_limit(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """No reading beyond z_max 0.1^s: too little of the camera's light comes back."""
+    limit = np.float32(sensor.z_max * RANGE_LEFT**severity)
+    near = kept(views, views, sensor)
+    return np.where(valid(views) & (near > limit), np.float32(sensor.missing), near)
+
+
+@njit(cache=True)
+def _mismatch(views, streams, cell, least, z_max, out):
+    for v in range(views.shape[0]):
+        for y in range(views.shape[1]):
+            for x in range(views.shape[2]):
+                z = views[v, y, x]
+                word = mix(streams[v], _U((y // cell) * 65536 + x // cell))
+                wrong = np.float32((word >> _U(40)) + _U(1)) * np.float32(1 / 16777216) * z_max
+                read = wrong if (word & _U(0xFFFFFFFF)) < least else z
+                out[v, y, x] = min(max(read, NEAREST), z_max) if is_valid(z) else z
+
+
+def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """0.3 s of the readings, in speckles of 0.02 side, are anywhere in the sensor's range."""
+    cell = max(1, round(SPECKLE * min(views.shape[1:])))
+    streams, out = view_streams(key, "mismatches", len(views)), np.empty_like(views)
+    least = _U(round(WRONG * severity * 2**32))
+    _mismatch(views, streams, cell, least, np.float32(sensor.z_max), out)
+    return out
+
+
+def below_camera(views: np.ndarray) -> np.ndarray:
+    """float32 [V, H, W]: how far a level camera sees each pixel below itself, in half widths at one
+    metre; 0 or less above the horizon."""
+    _, height, width = views.shape
+    down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
+    return np.where(valid(views), views, 0) * down.astype(np.float32)[:, None]
+
+
+def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """The share s of the floor reads as deep as the room that it mirrors."""
+    _, height, width = views.shape
+    value, out, depth = (
+        digest(key, "glossy_floor"),
+        kept(views, views, sensor),
+        below_camera(views),
+    )
+    smooth, cells = field(value, height, width, GLOSS_CORRELATION)
+    gloss = smooth >= top_share(cells, severity)
+    for view, seen in enumerate(out):
+        floor = (depth[view] > 0) & (depth[view] >= FLOOR * depth[view].max())
+        floor &= np.roll(gloss, int(uniform(scramble(value, view)) * width), axis=1)
+        wall = np.where(valid(seen), seen, 0).max(axis=0)
+        mirrored = np.minimum(np.float32(UPSIDE_DOWN) * seen, wall)
+        out[view] = np.where(floor & (mirrored > seen), mirrored, seen)
+    return out
+
+
+RECORDS = (
+    Record(
+        name="ripple",
+        modality="depth",
+        apply=ripple,
+        half=VALIDATION,
+        version="1",
+        severity="waves of sd 0.06 s z^2 metres",
+        fails="the errors of a stereo camera go together",
+        formula=(
+            f"z + {RIPPLE:g} s z^2 F; F a random field of correlation {RIPPLE_CORRELATION:g} side, "
+            "sd 1"
+        ),
+        sources=(
+            "stereo errors grow with z^2 and are correlated over the matching window (Keselman et "
+            "al. 2017); constants are ours"
+        ),
+        source="Keselman et al. 2017",
+        episode="field",
+        frame="offset, by view",
+    ),
+    Record(
+        name="range_limit",
+        modality="depth",
+        apply=range_limit,
+        half=TEST,
+        version="1",
+        severity="no reading beyond z_max 0.1^s",
+        fails="dark surfaces or sunlight leave too little signal",
+        formula=f"no reading where z > z_max {RANGE_LEFT:g}^s",
+        sources=("range of active cameras in sunlight (Fankhauser et al. 2015); 0.1 is ours"),
+        source="Fankhauser et al. 2015",
+    ),
+    Record(
+        name="mismatches",
+        modality="depth",
+        apply=mismatches,
+        half=TEST,
+        version="1",
+        severity="0.3 s of the readings are anywhere",
+        fails="a stereo matcher takes one place for another",
+        formula=(
+            f"U(0, 1) z_max in the share {WRONG:g} s of square cells of {SPECKLE:g} side, at least "
+            "1 px"
+        ),
+        sources=("bad pixels and speckles of stereo (Scharstein 2002, Hirschmueller 2008)"),
+        source="Scharstein 2002",
+        frame="which, what they read",
+    ),
+    Record(
+        name="glossy_floor",
+        modality="depth",
+        apply=glossy_floor,
+        half=TEST,
+        version="1",
+        severity="the share s of the floor",
+        fails="a polished floor shows the room upside down",
+        formula=(
+            f"min({UPSIDE_DOWN:g} z, the largest z of the column) in the top s of a random field, "
+            f"correlation {GLOSS_CORRELATION:g} side, where z (y - H/2) is at least {FLOOR:g} of "
+            "its largest in the view: on the floor before a level camera"
+        ),
+        sources=(
+            "mirror errors of RGB-D cameras (Mirror3D, CVPR 2021); the geometry of a ceiling twice "
+            "as high as the camera is ours"
+        ),
+        source="Mirror3D 2021",
+        episode="field, place by view",
+    ),
+)

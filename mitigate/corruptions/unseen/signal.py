@@ -1,0 +1,127 @@
+"""Unseen RGB corruptions of read-out: rolling shutter, flicker, bit errors.
+
+Functions take and give what those of ``corruptions/rgb.py`` do.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
+from mitigate.corruptions.record import TEST, VALIDATION, Record
+from mitigate.corruptions.unseen.optics import displaced
+
+WOBBLE = 0.05  # of W at s = 1
+WOBBLE_WAVES = (1.0, 2.5)  # in the height of a frame
+FLICKER = 0.8  # of the light at s = 1
+BANDS = (2.0, 4.0)  # in the height of a frame: 100 Hz read out in 1/50 to 1/25 s
+IMPULSES = 0.3  # of the pixels at s = 1
+
+_U = np.uint64
+
+
+def _between(value: int, counter: int, ends: tuple[float, float]) -> float:
+    return ends[0] + (ends[1] - ends[0]) * uniform(value, counter)
+
+
+def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Each row was read at another time of a vibration: it lies 0.05 s W sin(...) aside."""
+    _, height, width, _ = views.shape
+    waves = _between(digest(key, "rolling_shutter"), 0, WOBBLE_WAVES)
+    phase = uniform(digest(key, "rolling_shutter", frame=True))
+    row = (np.arange(height) + 0.5) / height
+    aside = WOBBLE * severity * width * np.sin(2.0 * math.pi * (waves * row + phase))
+    right = np.repeat(aside.astype(np.float32)[:, None], width, axis=1)
+    level, out = np.zeros_like(right), np.empty_like(views)
+    for view, into in zip(views, out, strict=True):
+        displaced(view, level, right, into)
+    return out
+
+
+def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Rows brighter and darker by a share of 0.8 s cos(...): lamps on mains, a short exposure."""
+    count, height, _, _ = views.shape
+    bands = _between(digest(key, "flicker_bands"), 0, BANDS)
+    value = digest(key, "flicker_bands", frame=True)
+    phase = np.array([uniform(value, view) for view in range(count)])
+    turns = bands * (np.arange(height) + 0.5) / height + phase[:, None]
+    share = FLICKER * severity * np.cos(2.0 * math.pi * turns)
+    gain = np.rint(4096.0 * (1.0 + share)).astype(np.int32)[:, :, None, None]
+    return np.minimum((views * gain + 2048) >> 12, 255).astype(np.uint8)
+
+
+@njit(cache=True)
+def _strike(views, streams, least, out):
+    """Pixels [V, P, 3] whose hash is below ``least`` (of 2^32) become black or white."""
+    for v in range(views.shape[0]):
+        for i in range(views.shape[1]):
+            word = mix(streams[v], _U(i))
+            struck = (word >> _U(32)) < least
+            for c in range(3):
+                level = 255 * ((word >> _U(c)) & _U(1))
+                out[v, i, c] = level if struck else views[v, i, c]
+
+
+def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """0.3 s of the pixels of every frame read 0 or 255, each colour by itself."""
+    out, count = np.empty_like(views), len(views)
+    least = _U(round(IMPULSES * severity * 2**32))
+    streams = view_streams(key, "impulse_noise", count)
+    _strike(views.reshape(count, -1, 3), streams, least, out.reshape(count, -1, 3))
+    return out
+
+
+RECORDS = (
+    Record(
+        name="rolling_shutter",
+        modality="rgb",
+        apply=rolling_shutter,
+        half=VALIDATION,
+        version="1",
+        severity="rows moved by 0.05 s of the width",
+        fails="the camera shakes while its rows are read",
+        formula=(
+            f"row y moved by {WOBBLE:g} s W sin(2 pi (f y/H + p)), f ~ U({WOBBLE_WAVES[0]:g}, "
+            f"{WOBBLE_WAVES[1]:g}), p ~ U(0, 1); bilinear, edges replicated"
+        ),
+        sources=("rolling-shutter geometry (Liang et al., TIP 2008); amplitude and f are ours"),
+        source="Liang et al. 2008",
+        episode="frequency f",
+        frame="phase p",
+        slip=0.01,
+    ),
+    Record(
+        name="flicker_bands",
+        modality="rgb",
+        apply=flicker_bands,
+        half=VALIDATION,
+        version="1",
+        severity="bands of 1 +- 0.8 s of the light",
+        fails="lamps flicker faster than the rows are read",
+        formula=(
+            f"min(255, x (1 + {FLICKER:g} s cos(2 pi (f y/H + p)))), f ~ U({BANDS[0]:g}, "
+            f"{BANDS[1]:g}), p ~ U(0, 1) for each view"
+        ),
+        sources=("lamps on mains under a rolling shutter (Sheinin et al., CVPR 2017); f is ours"),
+        source="Sheinin et al. 2017",
+        episode="frequency f",
+        frame="phase p, by view",
+    ),
+    Record(
+        name="impulse_noise",
+        modality="rgb",
+        apply=impulse_noise,
+        half=TEST,
+        version="1",
+        severity="0.3 s of the pixels black or white",
+        fails="bit errors between sensor and computer",
+        formula=(f"each colour 0 or 255 in {IMPULSES:g} s of the pixels"),
+        sources=("impulse noise of ImageNet-C (0.03-0.27)"),
+        source="ImageNet-C",
+        frame="which pixels",
+        slip=0.002,
+    ),
+)

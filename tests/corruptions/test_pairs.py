@@ -1,0 +1,127 @@
+"""Two corruptions at once: what is applied first, whose draws, and who knows the notation."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mitigate.core import conf
+from mitigate.corruptions import (
+    CLEAN,
+    Corruption,
+    Key,
+    Schedule,
+    corrupt,
+    corrupt_normalised,
+    corrupt_observation,
+    registry,
+)
+from mitigate.corruptions.folders import Settings
+from mitigate.evaluation import evaluate
+from mitigate.worlds.habitat import corrupt_habitat
+
+KEY = Key(3, "episode-7", 4)
+
+
+def test_a_pair_of_two_sensors_is_each_of_them_alone(panorama):
+    obs = {"rgb": panorama[0], "depth": panorama[1], "pose": np.array([0, 0, 0.4])}
+    both = corrupt_observation(obs, Corruption("flare+missing_data", 0.6), KEY)
+    for name, entry in (("flare", "rgb"), ("missing_data", "depth")):
+        alone = corrupt_observation(obs, Corruption(name, 0.6), KEY)
+        assert both[entry].tobytes() == alone[entry].tobytes()
+    assert both["pose"] is obs["pose"]
+
+
+def test_of_one_sensor_the_first_is_applied_first(panorama):
+    obs = {"rgb": panorama[0]}
+    made = corrupt_observation(obs, Corruption("overexposure+spatter", 0.6), KEY)["rgb"]
+    bright = corrupt(panorama[0], "overexposure", 0.6, key=KEY)
+    assert (made == corrupt(bright, "spatter", 0.6, key=KEY)).all()
+    other = corrupt_observation(obs, Corruption("spatter+overexposure", 0.6), KEY)["rgb"]
+    assert (made != other).any()
+
+
+def test_a_pair_says_what_it_consists_of():
+    pair = Corruption("low_light+missing_data", 0.6)
+    assert [(part.name, part.severity) for part in pair.parts] == [
+        ("low_light", 0.6),
+        ("missing_data", 0.6),
+    ]
+    assert pair.modalities == ("rgb", "depth") and pair.modality == "rgb+depth"
+    assert Corruption("spatter+flare", 0.6).modality == "rgb"
+    assert Corruption("spatter+mask", 0.6).modalities == ("rgb", "instruction")
+    assert CLEAN.parts == CLEAN.modalities == () and CLEAN.modality == "none"
+    assert registry.title("low_light_noise+haze") == "L-L w/ noise + Haze"
+
+
+def test_a_rows_version_is_that_of_its_unseen_parts():
+    assert registry.version("spatter+flare") == registry.version("clean") == {}
+    assert registry.version("spatter+haze") == {"version": "1"}
+    assert registry.version("haze+ripple") == {"version": "1+1"}
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("spatter+fogg", "There is no corruption 'fogg'"),
+        ("spatter+clean", "There is no corruption 'clean'"),
+        ("spatter+spatter", "two different names"),
+        ("spatter+flare+haze", "two different names"),
+        ("spatter+", "There is no corruption ''"),
+    ],
+)
+def test_what_is_no_pair_is_refused(name, said):
+    with pytest.raises(ValueError, match=said):
+        Corruption(name, 0.5)
+
+
+def test_where_one_is_meant_a_pair_is_refused_with_its_place(panorama):
+    for call in (
+        lambda: corrupt(panorama[0], "spatter+flare", 0.5, key=0),
+        lambda: Schedule("per_frame", 0.6, names=("spatter+flare",)),
+        lambda: Settings("spatter+flare", 0.5),
+    ):
+        with pytest.raises(ValueError, match="is a pair: it is a condition of an evaluation"):
+            call()
+
+
+def test_a_missing_sensor_is_told_by_the_part_that_needs_it(panorama):
+    with pytest.raises(ValueError, match="'missing_data' corrupts 'depth'"):
+        corrupt_observation({"rgb": panorama[0]}, Corruption("flare+missing_data", 0.5), KEY)
+
+
+def test_normalised_depth_and_habitat_take_pairs(panorama):
+    pair = Corruption("spatter+missing_data", 0.6)
+    obs = {"rgb": panorama[0], "depth": np.clip(panorama[1] / 10, 0, 1)}
+    made = corrupt_normalised(obs, pair, KEY)
+    assert np.nanmax(made["depth"][1:]) <= 1.0 and (made["depth"] == 0).mean() > 0.1
+    cameras = {"rgb": panorama[0][0], "depth": obs["depth"][0]}
+    seen = corrupt_habitat(cameras, pair, KEY)
+    assert (seen["rgb"] == made["rgb"][0]).all()
+    assert seen["depth"].tobytes() == made["depth"][0].tobytes()
+
+
+def test_the_suite_of_pairs_is_eight_of_the_suites_own():
+    cfg = conf.load_config("evaluate", ["suite=pairs"])
+    clean, *pairs = cfg.suite.conditions
+    assert clean == "clean" and len(pairs) == 8
+    for pair in evaluate.conditions(pairs, 0.6, None):
+        assert len(pair.parts) == 2 and not registry.version(pair.name)
+
+
+def test_conditions_of_an_evaluation_may_be_pairs_at_one_severity():
+    found = evaluate.conditions(["clean", "haze+flare", "multipath+ripple"], 0.9, 0.8)
+    assert [(c.name, c.severity) for c in found] == [
+        ("clean", 0),
+        ("haze+flare", 0.9),
+        ("multipath+ripple", 0.8),
+    ]
+    with pytest.raises(ValueError, match="has one severity"):
+        evaluate.conditions(["spatter+ripple"], 0.9, 0.8)
+    with pytest.raises(ValueError, match="mean spatter"):
+        evaluate.conditions(["flare+spater"], 0.9, None)
+
+
+def test_the_command_line_takes_a_pair():
+    cfg = conf.load_config("evaluate", ["conditions=[clean,low_light+missing_data]"])
+    assert list(cfg.conditions) == ["clean", "low_light+missing_data"]
