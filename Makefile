@@ -50,7 +50,7 @@ export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/
 	$(BIN)/python -m mitigate.export $(RUN) $(NAME) $(ARGS)
 
 test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 $(ARGS)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup $(ARGS)
 
 lint: $(VENV)/.stamp ## check style and formatting
 	$(BIN)/ruff check .

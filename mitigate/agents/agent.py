@@ -24,8 +24,9 @@ class Agent(Protocol):
 
     An agent that works with a prompt has it in an attribute ``system_prompt``, read at ``reset``.
     ``views`` (attribute, optional): 12 for a panorama, 1 for a camera ahead.
-    ``taken(action)`` (optional): somebody else drives, and took ``action`` after the agent's last
-    answer; what it planned is forgotten.
+    ``taken(action, metres, radians)`` (optional): somebody else drives; since the agent's last
+    answer that took it ``metres`` ahead and ``radians`` to the left, which is most like ``action``
+    (-1: like none). What the agent planned is forgotten.
     ``aim`` (attribute, optional): the point [2] of the plan that it is walking to, or None.
     """
 

@@ -150,10 +150,16 @@ class Rig:
         self.groups = [g for kind in CHANNELS for g in _groups(self.cameras, kind, turn)]
 
     def told(self) -> dict[str, dict[str, Any]]:
-        """Kind, field of view and yaw (degrees to the right) of each camera, by name."""
+        """Kind, field of view, yaw (degrees to the right) of each camera, by name, and whether it
+        looks level."""
         sign = 1 if self.turn == "right" else -1
         return {
-            camera.name: {"kind": camera.kind, "hfov": camera.hfov, "yaw": sign * camera.yaw % 360}
+            camera.name: {
+                "kind": camera.kind,
+                "hfov": camera.hfov,
+                "yaw": sign * camera.yaw % 360,
+                "level": camera.level,
+            }
             for camera in self.cameras
         }
 

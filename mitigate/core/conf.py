@@ -32,8 +32,8 @@ KINDS = {
 def main(program: Callable[[], None], primary: str) -> None:
     """Call ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``).
 
-    Exits with status 1 and one paragraph for ValueError, FileNotFoundError and config errors, with
-    130 for Ctrl-C.
+    Exits with status 1 and one paragraph for ValueError, OSError and config errors, with 130 for
+    Ctrl-C.
     """
     if os.environ.get("HYDRA_FULL_ERROR"):
         return program()
@@ -42,13 +42,20 @@ def main(program: Callable[[], None], primary: str) -> None:
         program()
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary)}")
-    except (ValueError, FileNotFoundError) as error:
+    except ValueError as error:
         sys.exit(f"error: {error}")
+    except OSError as error:
+        sys.exit(f"error: {error if error.strerror is None else _told(error)}")
     except KeyboardInterrupt:
-        print("\ninterrupted: the same command goes on from the last checkpoint", file=sys.stderr)
+        print("\ninterrupted: the same command goes on from what is finished", file=sys.stderr)
         sys.exit(130)
     finally:
         del os.environ["HYDRA_FULL_ERROR"]
+
+
+def _told(error: OSError) -> str:
+    """What the system said, and of which file."""
+    return f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
 
 
 def explain(error: Exception, primary: str) -> str:

@@ -12,7 +12,10 @@ from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.replay.walk import Answers
 from mitigate.worlds.recorded import Recording
+from mitigate.worlds.recorded.steps import NONE
 
+FAR = 0.5  # metres, two steps (ours)
+FEW = 8  # runs of steps that are too few to be resampled (ours)
 BLOCK = 10  # consecutive steps that are drawn as one: neighbours are alike (ours)
 
 
@@ -21,15 +24,16 @@ class Changes:
     """Of an agent under one condition, over all drives.
 
     changed: share of the steps whose action differs from that on clean frames. stops, missed: steps
-    at which it stops and did not, and the other way round. aim: median metres by which the point
-    that it walks to moved, NaN if it has none. agreement: share of the steps at which it does what
-    the driver did, or None where that is not known. steps: how many.
+    at which it stops and did not, and the other way round. aim: share of the steps at which the
+    point that it walks to moved by more than ``FAR``, None if it has none. agreement: share of the
+    steps at which it does what the driver did, of those that one of its actions can name, or None
+    where that is not known. steps: how many.
     """
 
     changed: Estimate
     stops: int
     missed: int
-    aim: float
+    aim: Estimate | None
     agreement: Estimate | None
     steps: int
 
@@ -42,27 +46,32 @@ def compare(
     changed = [a.actions != b.actions for a, b in pairs]
     stops = sum(int(((b.actions == STOP) & (a.actions != STOP)).sum()) for a, b in pairs)
     missed = sum(int(((a.actions == STOP) & (b.actions != STOP)).sum()) for a, b in pairs)
-    moved = np.concatenate([np.hypot(*(b.aims - a.aims).T) for a, b in pairs])
-    moved = moved[np.isfinite(moved)]
-    known = [(r, found[r.name]) for r in recordings if r.driven is not None]
-    agrees = [answers.actions == r.driven for r, answers in known]
+    moved = [np.hypot(*(b.aims - a.aims).T) for a, b in pairs]
+    moved = [part[np.isfinite(part)] > FAR for part in moved if np.isfinite(part).any()]
+    known = [(r.driven.actions, found[r.name].actions) for r in recordings if r.driven is not None]
+    agrees = [(mine == his)[his != NONE] for his, mine in known if (his != NONE).any()]
     return Changes(
         _share(changed),
         stops,
         missed,
-        float(np.median(moved)) if len(moved) else float("nan"),
+        _share(moved) if moved else None,
         _share(agrees) if agrees else None,
         sum(map(len, changed)),
     )
 
 
 def _share(walks: Sequence[np.ndarray]) -> Estimate:
-    """The share of true steps with its interval, by resampling runs of ``BLOCK`` steps."""
-    steps = np.concatenate(walks).astype(float)
-    blocks = [part for walk in walks for part in _blocks(walk)]
-    values = np.array([part.mean() for part in blocks])
-    found = bootstrap.share(values)
-    return Estimate(float(steps.mean()), found.low, found.high)
+    """The share of true steps with its interval: by resampling runs of ``BLOCK`` steps, or, of
+    fewer than ``FEW`` runs, Wilson's score interval, each run counting once."""
+    value = float(np.concatenate(walks).astype(float).mean())
+    blocks = np.array([part.mean() for walk in walks for part in _blocks(walk)])
+    if len(blocks) >= FEW and np.ptp(blocks) > 0:
+        found = bootstrap.share(blocks)
+        return Estimate(value, found.low, found.high)
+    n, z = len(blocks), bootstrap.Z
+    middle = (value + z * z / (2 * n)) / (1 + z * z / n)
+    half = z * np.sqrt(value * (1 - value) / n + z * z / (4 * n * n)) / (1 + z * z / n)
+    return Estimate(value, max(0.0, float(middle - half)), min(1.0, float(middle + half)))
 
 
 def _blocks(walk: np.ndarray) -> list[np.ndarray]:

@@ -17,27 +17,28 @@ from typing import Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
-from omegaconf import MISSING, DictConfig
+from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find
 
-DECISIONS, TABLE = "decisions.jsonl", "table.md"
+DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
 
 
 @dataclass
 class TopicsConfig:
-    """As ``worlds/recorded/bags.py`` has it."""
+    """As ``worlds/recorded/topics.py`` has it."""
 
     rgb: str | None = None
     depth: str | None = None
     pose: str | None = None
     info: str | None = None
+    depth_info: str | None = None
 
 
 @dataclass
 class StepConfig:
-    """As ``worlds/recorded/source.py`` has it."""
+    """As ``worlds/recorded/steps.py`` has it."""
 
     metres: float = 0.25
     degrees: float = 15.0
@@ -57,6 +58,8 @@ class ReplayConfig:
     size: int = 64
     hfov: float | None = None
     unit: float | None = None
+    yaw: float = 0.0
+    cameras: list[str] | None = None
     step: StepConfig = field(default_factory=StepConfig)
     topics: TopicsConfig = field(default_factory=TopicsConfig)
     out: str | None = None
@@ -84,18 +87,60 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
 
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     others = [name for name in names if name != "clean"]
+    if not others or cfg.severity == 0:
+        raise ValueError("Clean walks alone have nothing to compare: name a corruption.")
     met = conditions(["clean", *others], cfg.severity, cfg.severity_depth)
     agents = load_agents(list(cfg.agents))
+    out = Path(cfg.out or f"{cfg.runs}/replay/{_name(paths)}-s{cfg.severity:g}")
+    settings = _settings(cfg, paths, agents)
+    _check_earlier(out, settings)
     recordings = load_recordings(cfg, paths, {agent.views for agent in agents.values()})
-    out = Path(cfg.out or f"{cfg.runs}/replay/{Path(paths[0]).stem}-s{cfg.severity:g}")
     out.mkdir(parents=True, exist_ok=True)
+    for picture in out.glob("*.png"):  # of an earlier run
+        picture.unlink()
+    with atomic_text(out / SETTINGS) as file:
+        json.dump(settings, file, indent=1)
     return replay(agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed)
+
+
+def _name(paths: Sequence[str]) -> str:
+    """A name for the drives: of the first, and how many more."""
+    first = Path(paths[0])
+    more = f"+{len(paths) - 1}" if len(paths) > 1 else ""
+    return (first.stem if first.is_file() else first.name) + more
+
+
+def _settings(cfg: DictConfig, paths: Sequence[str], agents: Mapping[str, Any]) -> dict[str, Any]:
+    """What makes the report what it is, as data."""
+    from mitigate.core.checkpoint import weights_sha
+
+    said = OmegaConf.to_container(cfg, resolve=True)
+    assert isinstance(said, dict)
+    kept = {str(key): value for key, value in said.items() if key not in ("out", "runs", "suite")}
+    kept["conditions"] = kept["conditions"] or list(cfg.suite.conditions)
+    shas = {name: weights_sha(agent) for name, agent in agents.items()}
+    return {**kept, "drives": [str(Path(path).resolve()) for path in paths], "weights": shas}
+
+
+def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
+    """Raise ValueError if ``out`` holds another report."""
+    if not (out / SETTINGS).is_file():
+        return
+    held = json.loads((out / SETTINGS).read_text(encoding="utf-8"))
+    other = [name for name, value in settings.items() if held.get(name) != value]
+    if other:
+        raise ValueError(
+            f"{out} holds a replay with another {other[0]} ({held.get(other[0])!r:.60}). Name "
+            "another folder (out=...), or delete this one."
+        )
 
 
 def load_agents(weights: Sequence[str]) -> dict[str, Any]:
     """The agents of folders of weights, by names that differ."""
     from mitigate.evaluation.evaluate import name_of
 
+    if len(set(weights)) < len(weights):
+        raise ValueError(f"agents=[{','.join(weights)}] names one folder twice.")
     names = [name_of(folder) for folder in weights]
     if len(set(names)) < len(names):
         names = [folder.rstrip("/") for folder in weights]
@@ -121,9 +166,11 @@ def load_recordings(cfg: DictConfig, paths: Sequence[str], views: set[int]) -> d
     from mitigate.worlds.recorded import Step, Topics, load, open_recording
 
     topics, step = Topics(**cfg.topics), Step(**cfg.step)
+    how = {"topics": topics, "hfov": cfg.hfov, "unit": cfg.unit, "yaw": cfg.yaw}
+    how["cameras"] = None if cfg.cameras is None else list(cfg.cameras)
     found: dict[int, list[Any]] = {count: [] for count in views}
     for path in paths:
-        for source in open_recording(path, topics=topics, hfov=cfg.hfov, unit=cfg.unit):
+        for source in open_recording(path, **how):
             for count in views:
                 drive = load(source, views=count, size=cfg.size, step=step)
                 words = cfg.instruction or drive.instruction
@@ -171,7 +218,8 @@ def replay(
                     continue
                 here = answers.setdefault(corruption.name, {})
                 for drive in drives:
-                    here[drive.name] = walk(agent, drive, corruption, seed)
+                    clean = answers["clean"].get(drive.name)
+                    here[drive.name] = walk(agent, drive, corruption, seed, clean=clean)
                     told = {"agent": name, "condition": corruption.name}
                     told |= {"severity": corruption.severity, "seed": seed}
                     made = lines(told, drive, answers["clean"][drive.name], here[drive.name])
@@ -191,10 +239,17 @@ def replay(
 
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     """Why a corruption cannot be met here; empty if it can."""
-    kind = corruption.modality
-    if kind in ("rgb", "depth") and kind not in drives[0].frames:
-        return f"the drive has no {kind} frames"
-    if corruption.name == "white_box" and not hasattr(agent, "system_prompt"):
+    from mitigate.corruptions.registry import parts
+
+    lacking = [
+        (part, drive.name)
+        for drive in drives
+        for part in corruption.modalities
+        if part in ("rgb", "depth") and part not in drive.frames
+    ]
+    if lacking:
+        return f"{lacking[0][1]} has no {lacking[0][0]} frames"
+    if "white_box" in parts(corruption.name) and not hasattr(agent, "system_prompt"):
         return "the agent has no system prompt"
     return ""
 
@@ -213,7 +268,7 @@ def _picture(
     from mitigate.replay import report
     from mitigate.replay.walk import walk
 
-    seen = [c for c in met if c.name in found and c.modality in ("rgb", "depth")]
+    seen = [c for c in met if c.name in found and {"rgb", "depth"} & set(c.modalities)]
     if not seen:
         return []
     worst = max(seen, key=lambda c: found[c.name].changed.value)
@@ -225,9 +280,10 @@ def _picture(
     steps = report.spread([int(i) for i in differs[drive.name].nonzero()[0]])
     if not steps:
         return []
-    again = walk(agent, drive, worst, seed, keep=steps)
+    clean = answers["clean"][drive.name]
+    again = walk(agent, drive, worst, seed, keep=steps, clean=clean)
     path = out / f"{name.replace('/', '-')}-{worst.name}.png"
-    return [report.picture(drive, worst, answers["clean"][drive.name], again, path)]
+    return [report.picture(drive, worst, clean, again, path)]
 
 
 _paths: list[str] = []  # the drives of the command line

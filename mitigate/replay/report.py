@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -23,6 +22,7 @@ from mitigate.worlds.recorded import Recording
 
 Found = Mapping[str, Mapping[str, Changes]]  # agent -> condition -> changes
 SHOWN = 6  # decisions in a picture
+WIDE = 800  # pixels of a cell, from which there is one in a row
 SIDE = 160  # pixels: height of a view in a picture
 
 
@@ -57,16 +57,17 @@ def _conditions(found: Found) -> list[str]:
 def _others(found: Found) -> list[str]:
     """What else is known of each agent and condition."""
     lines = [
-        "False stops: it stops where it did not on clean frames; missed stops: the reverse. Aim: "
-        "median metres by which the point moved that it walks to. As the driver: share of the "
-        "steps, in %, at which it does what whoever drove did.",
+        "False stops: it stops where it did not on clean frames; missed stops: the reverse. Aim "
+        "moved: share of the steps, in %, at which the point that it walks to is more than 0.5 m "
+        "from that on clean frames. As the driver: share of the steps, in %, at which it does what "
+        "whoever drove did.",
         "",
-        "| agent | condition | false stops | missed stops | aim | as the driver |",
+        "| agent | condition | false stops | missed stops | aim moved | as the driver |",
         "|---|---|---:|---:|---:|---:|",
     ]
     for agent, of in found.items():
         for name, changes in of.items():
-            aim = "–" if math.isnan(changes.aim) else f"{changes.aim:.2f}"
+            aim = "–" if changes.aim is None else _percent(changes.aim)
             agrees = "–" if changes.agreement is None else _percent(changes.agreement)
             cells = (agent, label(name), changes.stops, changes.missed, aim, agrees)
             lines.append(f"| {' | '.join(map(str, cells))} |")
@@ -115,19 +116,30 @@ def picture(
     """Draw steps at which the decision changed: what there was to see, what the agent saw, and
     what it answered to each. ``found.seen`` holds them."""
     shown = RGB if RGB in recording.frames else DEPTH
-    if corruption.modality in recording.frames:
-        shown = corruption.modality
-    rows = []
+    own = [part for part in corruption.modalities if part in recording.frames]
+    shown = own[0] if own else shown
+    cells = []
     for step, frames in sorted(found.seen.items()):
         before, after = recording.frames[shown][step], frames[shown]
         views = np.concatenate([_view(before, before), _gap(), _view(after, before)], 1)
         was, now = (ACTIONS.get(int(a.actions[step]), "?") for a in (clean, found))
-        title = np.full((26, views.shape[1], 3), 255, np.uint8)
-        text = f"step {step}, {recording.times[step]:.1f} s: {was} -> {now} ({corruption.name})"
-        cv2.putText(title, text, (4, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 0), 1, cv2.LINE_AA)
-        rows += [title, views]
-    cv2.imwrite(str(path), np.concatenate(rows)[..., ::-1])
+        text = f"step {step}, {recording.times[step]:.1f} s: {was} -> {now}"
+        cells.append(np.concatenate([_title(text, views.shape[1]), views]))
+    across = 1 if cells[0].shape[1] > WIDE else 3
+    cells += [np.full_like(cells[0], 255)] * (-len(cells) % across)
+    rows = [np.concatenate(cells[i : i + across], 1) for i in range(0, len(cells), across)]
+    holes = "; white: no reading" if shown == DEPTH else ""
+    about = f"{recording.name}: {shown} clean, and under {corruption.name}{holes}"
+    whole = np.concatenate([_title(about, rows[0].shape[1]), *rows])
+    cv2.imwrite(str(path), whole[..., ::-1])
     return path
+
+
+def _title(text: str, width: int) -> np.ndarray:
+    """A line of text, uint8 [26, width, 3]."""
+    line = np.full((26, width, 3), 255, np.uint8)
+    cv2.putText(line, text, (4, 18), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 0), 1, cv2.LINE_AA)
+    return line
 
 
 def _view(frame: np.ndarray, clean: np.ndarray) -> np.ndarray:
@@ -144,4 +156,4 @@ def _view(frame: np.ndarray, clean: np.ndarray) -> np.ndarray:
 
 
 def _gap() -> np.ndarray:
-    return np.full((SIDE, 8, 3), 255, np.uint8)
+    return np.full((SIDE, 4, 3), 255, np.uint8)

@@ -13,6 +13,7 @@ from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import instructed
 from mitigate.worlds.recorded import RecordedWorld, Recording
+from mitigate.worlds.recorded.steps import answered
 from mitigate.worlds.world import Corrupted
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
@@ -37,15 +38,18 @@ def walk(
     corruption: Corruption,
     seed: int,
     keep: Collection[int] = (),
+    clean: Answers | None = None,
 ) -> Answers:
     """Show ``agent`` the drive under ``corruption`` and return its answers.
 
-    After each it is told what the driver did (``taken``, ``agents/agent.py``), where that is known.
-    ``keep``: steps whose frames are returned. Raises ValueError if the drive lacks what the agent
-    reads.
+    After each it is told what the driver did (``taken``, ``agents/agent.py``). Where that is not
+    known, it is told what it answered on clean frames (``clean``; None: this is that walk), so that
+    nothing but frames and words differs. ``keep``: steps whose frames are returned. Raises
+    ValueError if the drive lacks what the agent reads.
     """
     world = RecordedWorld(recording)
     met = Corrupted(world, corruption, seed)
+    done = recording.driven if clean is None else recording.driven or answered(clean.actions)
     episode = world.episode()
     observation = met.reset(episode)
     actions, aims, seen = [], [], {}
@@ -62,8 +66,9 @@ def walk(
             aims.append((np.nan, np.nan) if aim is None else tuple(aim))
             if step in keep:
                 seen[step] = {name: np.asarray(observation[name]) for name in recording.frames}
-            if recording.driven is not None and hasattr(agent, "taken"):
-                agent.taken(int(recording.driven[step]))
+            if done is not None and hasattr(agent, "taken"):
+                here = done.actions[step], done.metres[step], done.radians[step]
+                agent.taken(int(here[0]), float(here[1]), float(here[2]))
             observation = met.step(action)
     return Answers(np.array(actions), np.array(aims, np.float64), seen)
 
@@ -84,7 +89,7 @@ def lines(
             "clean": ACTIONS.get(int(clean.actions[step]), str(clean.actions[step])),
         }
         if recording.driven is not None:
-            line["driver"] = ACTIONS[int(recording.driven[step])]
+            line["driver"] = ACTIONS.get(int(recording.driven.actions[step]), "other")
         if np.isfinite(aim).all():
             line["aim"] = [round(float(value), 3) for value in aim]
         made.append(line)

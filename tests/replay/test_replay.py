@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import subprocess
 import sys
 
@@ -15,6 +16,7 @@ from mitigate.corruptions import CLEAN, Corruption
 from mitigate.replay.changes import compare
 from mitigate.replay.walk import Answers, walk
 from mitigate.worlds.recorded import Recording
+from mitigate.worlds.recorded.steps import NONE, answered
 
 T = 30
 MITIGATE = [sys.executable, "-c", "from mitigate.cli import main; main()"]
@@ -31,8 +33,8 @@ class ByBrightness:
     def act(self, observation):
         return FORWARD if observation[RGB].mean() > 100 else RIGHT
 
-    def taken(self, action):
-        self.heard.append(action)
+    def taken(self, action, metres, radians):
+        self.heard.append((action, round(metres, 3), round(radians, 3)))
 
 
 def drive(name="lab", driven=None) -> Recording:
@@ -42,15 +44,23 @@ def drive(name="lab", driven=None) -> Recording:
         DEPTH: rng.uniform(1, 5, (T, 16, 16, 1)).astype(np.float32),
     }
     poses = np.stack([np.zeros(T), 0.25 * np.arange(T), np.zeros(T)], 1)
-    return Recording(name, "go on", frames, np.arange(T) * 1.0, poses, driven)
+    done = None if driven is None else answered(np.array(driven))
+    return Recording(name, "go on", frames, np.arange(T) * 1.0, poses, done)
 
 
 def test_an_agent_is_shown_every_step_and_told_what_the_driver_did():
-    agent, driven = ByBrightness(), np.array([FORWARD] * (T - 1) + [STOP])
+    agent, driven = ByBrightness(), [FORWARD] * (T - 1) + [STOP]
     found = walk(agent, drive(driven=driven), CLEAN, 0)
     assert agent.told == "go on"
     assert found.actions.tolist() == [FORWARD] * T
-    assert agent.heard == driven.tolist()
+    assert agent.heard == [(FORWARD, 0.25, 0.0)] * (T - 1) + [(STOP, 0.0, 0.0)]
+
+
+def test_where_nobody_knows_who_drove_all_walks_are_told_the_clean_answers():
+    agent, clean = ByBrightness(), walk(ByBrightness(), drive(), CLEAN, 0)
+    dark = walk(agent, drive(), Corruption("low_light", 0.9), 0, clean=clean)
+    assert (dark.actions == RIGHT).mean() > 0.9
+    assert agent.heard == [(FORWARD, 0.25, 0.0)] * T
 
 
 def test_a_corruption_changes_the_answers_and_is_the_same_again():
@@ -80,7 +90,7 @@ def answers(actions, aims=None) -> Answers:
 
 
 def test_changes_are_counted_against_clean_answers_and_against_the_driver():
-    drives = [drive("a", np.array([FORWARD] * T)), drive("b", np.array([LEFT] * T))]
+    drives = [drive("a", [FORWARD] * T), drive("b", [LEFT] * T)]
     clean = {"a": answers([FORWARD] * T), "b": answers([FORWARD] * (T - 1) + [STOP])}
     found = {"a": answers([FORWARD] * 15 + [STOP] * 15), "b": answers([FORWARD] * T)}
     changes = compare(drives, clean, found)
@@ -88,23 +98,46 @@ def test_changes_are_counted_against_clean_answers_and_against_the_driver():
     assert changes.changed.low < 16 / 60 < changes.changed.high
     assert (changes.stops, changes.missed, changes.steps) == (15, 1, 60)
     assert changes.agreement.value == pytest.approx(15 / 60)
-    assert np.isnan(changes.aim)
+    assert changes.aim is None
+
+
+def test_steps_that_no_action_names_count_for_no_agreement():
+    back = drive("a", [NONE] * 10 + [FORWARD] * 20)
+    same = {"a": answers([FORWARD] * T)}
+    assert compare([back], same, same).agreement.value == 1.0
+
+
+def test_a_short_drive_has_an_honest_interval():
+    short = compare([drive()], {"lab": answers([1] * 10)}, {"lab": answers([1, 2] * 5)})
+    assert short.changed.low < 0.2 and short.changed.high > 0.8
 
 
 def test_the_aim_is_compared_where_both_have_one():
     here, there = np.zeros((T, 2)), np.tile([3.0, 4.0], (T, 1))
     here[:5] = np.nan
     of = compare([drive()], {"lab": answers([1] * T, here)}, {"lab": answers([1] * T, there)})
-    assert of.aim == pytest.approx(5.0)
+    assert of.aim.value == 1.0
 
 
 def test_an_odometer_counts_what_was_done_in_place_of_its_answer():
     told, own = Odometer(), Odometer()
-    for answer, done in ((FORWARD, LEFT), (RIGHT, FORWARD), (LEFT, LEFT)):
+    turn = math.radians(15)
+    for answer, done, metres, radians in (
+        (FORWARD, LEFT, 0.0, turn), (RIGHT, FORWARD, 0.25, 0.0), (LEFT, LEFT, 0.0, turn),
+    ):  # fmt: skip
         told.add(answer)
-        told.correct(done)
+        told.correct(done, metres, radians)
         own.add(done)
-    assert np.allclose(told.moves(), own.moves())
+    assert np.allclose(told.moves(), own.moves(), atol=1e-6)
+
+
+def test_an_odometer_counts_an_arc_as_it_was():
+    odometer = Odometer()
+    for _ in range(4):
+        odometer.add(LEFT)
+        odometer.correct(FORWARD, 0.5, math.radians(20))
+    assert odometer.metres == pytest.approx(2.0)
+    assert odometer.heading == pytest.approx(math.radians(80))
 
 
 def test_the_command_writes_decisions_tables_and_pictures(tmp_path):
@@ -129,6 +162,7 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path):
     clean = [line for line in lines if line["condition"] == "clean"]
     assert all(line["action"] == line["clean"] for line in clean)
     assert (out / "changes.png").is_file() and (out / "table.md").is_file()
+    assert json.loads((out / "replay.json").read_text())["drives"] == [str(bag)]
     assert "Foreign object" in done.stdout
 
 
@@ -139,6 +173,7 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path):
         (["none"], "no recording"),
         (["tests", "agents=[checkpoints/nothing]"], "nothing"),
         (["tests", "conditions=[fog2]"], "fog2"),
+        (["tests", "suite=clean"], "nothing to compare"),
         (["tests", "colour=red"], "colour"),
     ],
 )

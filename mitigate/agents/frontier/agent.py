@@ -135,7 +135,7 @@ class FrontierAgent(nn.Module):
         self._before = pose[:2] if action == FORWARD else None
         return action
 
-    def taken(self, action: int) -> None:
+    def taken(self, action: int, metres: float, radians: float) -> None:
         """Somebody else drives: forget the route, and plan anew at the next step."""
         self._planned = 0
         if action != FORWARD:

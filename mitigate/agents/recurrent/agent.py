@@ -147,6 +147,6 @@ class RecurrentAgent(nn.Module):
         self._odometer.add(action)
         return action
 
-    def taken(self, action: int) -> None:
+    def taken(self, action: int, metres: float, radians: float) -> None:
         """Somebody else drives: count what was done in place of the last answer."""
-        self._odometer.correct(action)
+        self._odometer.correct(action, metres, radians)

@@ -26,12 +26,13 @@ class Odometer:
         self.heading += math.radians(TURN_DEGREES) * ((action == LEFT) - (action == RIGHT))
         self.metres += FORWARD_METRES * (action == FORWARD)
 
-    def correct(self, action: int) -> None:
-        """Count ``action`` in place of the last one."""
+    def correct(self, action: int, metres: float, radians: float) -> None:
+        """Count in place of the last action another one, or none (-1), which went so far."""
         self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
         self.metres -= FORWARD_METRES * (self.last == FORWARD)
-        self.steps -= 1
-        self.add(action)
+        self.last = action
+        self.heading += radians
+        self.metres += max(0.0, metres)
 
     def moves(self) -> np.ndarray:
         """float32 [9]: which action was the last one (none, or one of four), sine and cosine of the

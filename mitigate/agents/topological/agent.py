@@ -230,7 +230,7 @@ class TopologicalAgent(nn.Module):
             action = self.controller.action(checked.pose(observation))
         return action
 
-    def taken(self, action: int) -> None:
+    def taken(self, action: int, metres: float, radians: float) -> None:
         """Somebody else drives: forget the route, and decide anew at the next step."""
         self.controller, self._chosen = Controller(), None
         self.decisions, self._final = 0, False  # the limit is of its own walks

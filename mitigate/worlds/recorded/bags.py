@@ -2,99 +2,67 @@
 
 Nothing of ROS need be installed. Read are images (``sensor_msgs`` Image and CompressedImage),
 ``CameraInfo`` and poses (``nav_msgs/Odometry``, ``geometry_msgs/PoseStamped`` and
-``PoseWithCovarianceStamped``) in REP 103's axes: x ahead, z up. A text file beside the bag,
-with its name and ``.txt``, may hold the words.
+``PoseWithCovarianceStamped``) in REP 103's axes: x ahead, y to the left, z up. Times are those of
+the messages' headers, where they have one. A text file beside the bag, with its name and ``.txt``,
+may hold the words.
 """
 
 from __future__ import annotations
 
-import re
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mitigate.core.names import unknown
-from mitigate.core.observation import DEPTH, RGB
-from mitigate.worlds.recorded.messages import image, lens, place
-from mitigate.worlds.recorded.source import LONGEST, SLOP, Lens, between, near, words
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.worlds.recorded.messages import image, lens, place, stamp
+from mitigate.worlds.recorded.source import LONGEST, SLOP, Lens, near, placed, words
+from mitigate.worlds.recorded.topics import Topics, chosen
 
-IMAGES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
-INFO = "sensor_msgs/msg/CameraInfo"
-POSES = (
-    *("nav_msgs/msg/Odometry", "geometry_msgs/msg/PoseStamped"),
-    "geometry_msgs/msg/PoseWithCovarianceStamped",
-)
-
-
-@dataclass(frozen=True)
-class Topics:
-    """Names of topics; None: the only one there is that fits."""
-
-    rgb: str | None = None
-    depth: str | None = None
-    pose: str | None = None
-    info: str | None = None  # of the RGB camera
+KINDS = (RGB, DEPTH)
 
 
 class Bag:
     """A drive in a bag; the rest as ``source.py`` says of a Source.
 
-    Args: path: a file or a folder. topics: of what is read. hfov: degrees, where the bag has no
-    CameraInfo. Raises ValueError for a bag that is damaged or has no such topics, and
-    ModuleNotFoundError, saying what to do, without ``rosbags``.
+    Args: path: a file or a folder. topics: of what is read. hfov: degrees, of cameras without
+    CameraInfo. yaw: degrees to the right of the robot's heading that its cameras look.
+    Raises ValueError for a bag that is damaged or has no such topics, and without ``rosbags``.
     """
 
     stepped = False
 
-    def __init__(self, path: Path, topics: Topics, hfov: float | None) -> None:
+    def __init__(self, path: Path, topics: Topics, hfov: float | None, yaw: float = 0.0) -> None:
         self.path, self.name, self.instruction = path, path.stem, words(path.with_suffix(".txt"))
         with self._open() as reader:
             there = {name: info.msgtype for name, info in reader.topics.items()}
-            self.images = _images(path, there, topics)
-            placing = [name for name, kind in there.items() if kind in POSES]
-            pose = _pick(path, "pose", topics.pose, placing, there)
-            infos = [name for name, kind in there.items() if kind == INFO]
-            named = topics.info
-            info = {kind: _info_of(topic, infos, named) for kind, topic in self.images.items()}
-            stamps, places, lenses = self._index(reader, pose, info)
-        self._pair(stamps, places)
-        wide = {kind: Lens(kind, 90.0 if hfov is None else hfov) for kind in self.images}
-        if hfov is not None:
-            lenses = {}
-        elif lacking := [topic for kind, topic in self.images.items() if kind not in lenses]:
-            raise ValueError(
-                f"{path} has no CameraInfo for {lacking[0]}, so nobody knows how wide it sees: "
-                "give hfov=69 (degrees, horizontally), or topics.info=TOPIC."
-            )
-        self.cameras: Mapping[str, Lens] = wide | lenses
+            self.topics = chosen(path, there, topics)
+            self.kinds = [kind for kind in KINDS if kind in self.topics]
+            stamps, places, lenses = self._index(reader, hfov)
+        self._pair(stamps, places, yaw)
+        self.cameras: Mapping[str, Lens] = {
+            kind: lenses[kind] if kind in lenses else self._wide(kind, hfov) for kind in self.kinds
+        }
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
-        wanted = {kind: {int(self.paired[kind][i]) for i in chosen} for kind in self.images}
-        held: dict[str, dict[int, np.ndarray]] = {kind: {} for kind in self.images}
-        waiting = list(chosen)
+        wanted = {kind: [int(self.paired[kind][i]) for i in chosen] for kind in self.kinds}
+        last = {kind: {n: at for at, n in enumerate(w)} for kind, w in wanted.items()}
+        held: dict[str, dict[int, np.ndarray]] = {kind: {} for kind in self.kinds}
+        given, counts = 0, dict.fromkeys(self.kinds, -1)
         with self._open() as reader:
-            counts = dict.fromkeys(self.images, -1)
-            for kind, _, message in self._messages(reader, dict(self.images), decode=wanted):
+            decode = {kind: set(numbers) for kind, numbers in wanted.items()}
+            for kind, _, message in self._messages(reader, self.kinds, decode):
                 counts[kind] += 1
                 if message is not None:
                     held[kind][counts[kind]] = image(message, kind, self.path)
-                while waiting and all(
-                    int(self.paired[k][waiting[0]]) in held[k] for k in self.images
-                ):
-                    first = waiting.pop(0)
-                    yield {k: held[k][int(self.paired[k][first])] for k in self.images}
-                    self._forget(held, waiting)
-
-    def _forget(self, held: dict[str, dict[int, np.ndarray]], waiting: Sequence[int]) -> None:
-        """Drop the frames that no later instant shows."""
-        for kind, frames in held.items():
-            least = int(self.paired[kind][waiting[0]]) if waiting else 1 << 62
-            for index in [i for i in frames if i < least]:
-                del frames[index]
+                while given < len(chosen) and all(wanted[k][given] in held[k] for k in self.kinds):
+                    yield {k: held[k][wanted[k][given]] for k in self.kinds}
+                    given += 1
+                    for k in self.kinds:  # drop what no later instant shows
+                        held[k] = {n: f for n, f in held[k].items() if last[k][n] >= given}
 
     # ----------------------------------------------------------------------------- reading
 
@@ -105,7 +73,7 @@ class Bag:
             from rosbags.highlevel import AnyReader
             from rosbags.typesys import Stores, get_typestore
         except ModuleNotFoundError as error:
-            raise ModuleNotFoundError(
+            raise ValueError(
                 "Bags are read by rosbags, which is not installed: pip install 'mitigate[bags]'."
             ) from error
         try:
@@ -117,127 +85,99 @@ class Bag:
         except Exception as error:
             if isinstance(error, ValueError) and str(self.path) in str(error):  # ours
                 raise
-            raise ValueError(f"{self.path} cannot be read as a bag: {error}.") from error
+            raise ValueError(
+                f"{self.path} cannot be read as a bag: {error}. One whose end is missing is "
+                "mended by `rosbag reindex` (ROS 1), `ros2 bag reindex` or `mcap recover`."
+            ) from error
 
     def _messages(
-        self, reader: Any, topics: Mapping[str, str], decode: Mapping[str, set[int]] | None = None
+        self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
     ) -> Iterator[tuple[str, float, Any]]:
-        """(kind, seconds, message) in order; of those that ``decode`` does not list, None."""
-        kinds = {topic: kind for kind, topic in topics.items()}
-        chosen = [c for c in reader.connections if c.topic in kinds]
-        counts = dict.fromkeys(topics, -1)
-        for connection, stamp, raw in reader.messages(connections=chosen):
-            kind = kinds[connection.topic]
-            counts[kind] += 1
-            needed = decode is None or counts[kind] in decode.get(kind, ())
-            message = reader.deserialize(raw, connection.msgtype) if needed else None
-            yield kind, stamp / 1e9, message
+        """(name, seconds, message) of these topics in the order of the bag. ``decode``: which of a
+        name's messages are wanted, counted from 0; the others are None; names not in it: all."""
+        by_topic: dict[str, list[str]] = {}
+        for name in names:
+            by_topic.setdefault(self.topics[name], []).append(name)
+        connections = [c for c in reader.connections if c.topic in by_topic]
+        counts = dict.fromkeys(names, -1)
+        for connection, received, raw in reader.messages(connections=connections):
+            time = stamp(raw, reader.is2) or received / 1e9
+            for name in by_topic[connection.topic]:
+                counts[name] += 1
+                needed = name not in decode or counts[name] in decode[name]
+                message = reader.deserialize(raw, connection.msgtype) if needed else None
+                yield name, time, message
 
     def _index(
-        self, reader: Any, pose: str | None, info: Mapping[str, str | None]
+        self, reader: Any, hfov: float | None
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
         """When each image was taken, (time, x, y, heading) of each pose, and the lenses."""
-        topics = dict(self.images) | ({"pose": pose} if pose else {})
-        topics |= {f"info {kind}": topic for kind, topic in info.items() if topic}
-        stamps: dict[str, list[float]] = {kind: [] for kind in self.images}
+        stamps: dict[str, list[float]] = {kind: [] for kind in self.kinds}
         places: list[tuple[float, ...]] = []
         lenses: dict[str, Lens] = {}
-        shared = _by_topic(topics)
-        read = {kind: set(range(LONGEST)) for kind in shared if kind not in self.images}
-        for name, time, message in self._messages(reader, shared, decode=read):
+        images: dict[str, set[int]] = {kind: set() for kind in self.kinds}
+        for name, time, message in self._messages(reader, list(self.topics), images):
             if name in stamps:
                 stamps[name].append(time)
                 if len(stamps[name]) > LONGEST:
                     raise ValueError(f"{self.path} has more than {LONGEST} images: cut it.")
-            elif name == "pose":
+            elif name == POSE:
                 places.append((time, *place(message)))
             else:
-                for kind in name.removeprefix("info ").split("+"):
-                    lenses.setdefault(kind, lens(kind, message, self.path))
+                kind = name.removeprefix("info ")
+                unusable = kind not in lenses and hfov is not None and not message_focal(message)
+                if kind not in lenses and not unusable:
+                    lenses[kind] = lens(kind, message, self.path)
         return stamps, places, lenses
 
-    def _pair(self, stamps: Mapping[str, list[float]], places: Sequence[tuple[float, ...]]) -> None:
+    def _wide(self, kind: str, hfov: float | None) -> Lens:
+        if hfov is None:
+            option = "info" if kind == RGB else "depth_info"
+            raise ValueError(
+                f"{self.path} has no CameraInfo for {self.topics[kind]}, so nobody knows how wide "
+                f"it sees: give hfov=69 (degrees, horizontally), or topics.{option}=TOPIC."
+            )
+        return Lens(kind, hfov)
+
+    def _pair(
+        self, stamps: Mapping[str, list[float]], places: Sequence[tuple[float, ...]], yaw: float
+    ) -> None:
         """Set times, poses and, of each instant, the index of each camera's image."""
         for kind, found in stamps.items():
             if not found:
-                raise ValueError(f"{self.path} has no message on {self.images[kind]}.")
-        leading = RGB if RGB in stamps else DEPTH
-        times = np.array(stamps[leading])
+                raise ValueError(
+                    f"{self.path} has no message on {self.topics[kind]}; topics.{kind}=none leaves "
+                    "it out."
+                )
+        if POSE in self.topics and not places:
+            raise ValueError(
+                f"{self.path} has no message on {self.topics[POSE]}; topics.pose=none goes without."
+            )
+        order = {kind: np.argsort(found, kind="stable") for kind, found in stamps.items()}
+        times = np.sort(stamps[self.kinds[0]])
         kept = np.ones(len(times), bool)
         paired = {}
         for kind, found in stamps.items():
-            paired[kind], away = near(times, np.array(found))
+            nearest, away = near(times, np.sort(found))
+            paired[kind] = order[kind][nearest]
             kept &= away <= SLOP
         poses = None
         if places:
-            table = np.array(sorted(places))
-            kept &= near(times, table[:, 0])[1] <= SLOP
-            poses = between(times, table[:, 0], table[:, 1:])[kept]
+            poses, known = placed(times, np.array(places))
+            poses[:, 2] -= math.radians(yaw)
+            kept &= known
         if not kept.any():
             raise ValueError(
-                f"{self.path}: no image has one of each other topic within {SLOP} s (images "
+                f"{self.path}: no image has one of each other topic near it in time (images "
                 f"{len(times)}, poses {len(places)}). Choose others: topics.rgb=, topics.depth=, "
                 "topics.pose=."
             )
-        self.times, self.poses = times[kept], poses
+        self.times, self.poses = times[kept], None if poses is None else poses[kept]
         self.paired = {kind: index[kept] for kind, index in paired.items()}
+        self.dropped = int((~kept).sum())
 
 
-def _by_topic(topics: Mapping[str, str]) -> dict[str, str]:
-    """As ``topics``, but for one CameraInfo of both cameras: "info rgb+depth"."""
-    found: dict[str, str] = {}
-    for kind, topic in topics.items():
-        before = next((k for k, t in found.items() if t == topic and k.startswith("info")), None)
-        if before:
-            found[f"{before}+{kind.removeprefix('info ')}"] = found.pop(before)
-        else:
-            found[kind] = topic
-    return found
-
-
-def _images(path: Path, there: Mapping[str, str | None], topics: Topics) -> dict[str, str]:
-    """The topics of RGB and depth images, those that there are."""
-    listed = [name for name, kind in there.items() if kind in IMAGES]
-    deep = [name for name in listed if "depth" in name.lower()]
-    coloured = [name for name in listed if name not in deep and not re.search("infra|mask", name)]
-    rgb = _pick(path, RGB, topics.rgb, coloured, there)
-    depth = _pick(path, DEPTH, topics.depth, deep, there)
-    found = {kind: name for kind, name in ((RGB, rgb), (DEPTH, depth)) if name}
-    if not found:
-        raise ValueError(f"{path} has no topic with images. It has {_told(there)}.")
-    return found
-
-
-def _pick(
-    path: Path,
-    what: str,
-    named: str | None,
-    fitting: Sequence[str],
-    there: Mapping[str, str | None],
-) -> str | None:
-    """The topic that is named, or the only one that fits; None if none does."""
-    if named is not None:
-        if named not in there:
-            raise ValueError(f"{path}: {unknown('topic', named, there)}")
-        return named
-    if len(fitting) > 1:
-        raise ValueError(
-            f"{path} has several topics for {what}: {', '.join(fitting)}. Choose one: "
-            f"topics.{what}={fitting[0]}"
-        )
-    return fitting[0] if fitting else None
-
-
-def _info_of(topic: str, infos: Sequence[str], named: str | None) -> str | None:
-    """The CameraInfo beside an image topic, by ROS's custom ``<camera>/camera_info``."""
-    if named is not None:
-        return named
-    while "/" in topic.strip("/"):
-        topic = topic.rpartition("/")[0]
-        if f"{topic}/camera_info" in infos:
-            return f"{topic}/camera_info"
-    return infos[0] if len(infos) == 1 else None
-
-
-def _told(there: Mapping[str, str | None]) -> str:
-    return ", ".join(f"{name} ({kind})" for name, kind in list(there.items())[:12]) or "no topic"
+def message_focal(message: Any) -> bool:
+    """Whether a CameraInfo states a focal length."""
+    matrix = np.asarray(getattr(message, "k", getattr(message, "K", None))).reshape(-1)
+    return len(matrix) == 9 and bool(matrix[0] > 0)

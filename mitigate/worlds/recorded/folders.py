@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.files import RECORDING
+from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.frame_files import SUFFIXES
@@ -30,7 +31,9 @@ from mitigate.worlds.recorded import tum
 from mitigate.worlds.recorded.source import Lens, words
 from mitigate.worlds.recorded.tum import number
 
-CAMERAS, STEPS, EPISODE, WORDS = "cameras.json", "steps.jsonl", "episode.json", "instruction.txt"
+CAMERAS, STEPS, EPISODE = "cameras.json", "steps.jsonl", "episode.json"
+POSES, WORDS = "poses.csv", "instruction.txt"
+MOST_TURNED = 50.0  # radians: eight turns, not degrees (ours)
 
 
 @dataclass(frozen=True)
@@ -45,6 +48,7 @@ class Frames:
     times: np.ndarray
     poses: np.ndarray | None
     stepped: bool
+    dropped: int
     unit: float
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
@@ -59,67 +63,93 @@ class Frames:
         wanted = self.cameras[camera].kind
         if (frame.shape[-1] == 3) != (wanted == RGB):
             raise ValueError(f"{path} is no {wanted} frame, but lies among those of {camera!r}.")
-        return np.nan_to_num(frame[..., 0], posinf=0, neginf=0) if wanted == DEPTH else frame
+        if wanted == RGB:
+            return frame
+        depth = frame[..., 0]
+        return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
 
 
-def open_folder(path: Path, hfov: float | None, unit: float | None) -> list[Frames]:
-    """The drives in a folder; ``hfov`` (degrees) and ``unit`` (metres of a count of depth) where
-    the folder does not say.
+def open_folder(
+    path: Path, hfov: float | None, unit: float | None, cameras: Sequence[str] | None = None
+) -> list[Frames]:
+    """The drives in a folder, or in those below it; ``hfov`` (degrees) and ``unit`` (metres of a
+    count of depth) where the folder does not say; ``cameras``: those that are read of a recording
+    by ``mitigate run``.
 
     Raises FileNotFoundError if there is none, ValueError for what is damaged or does not fit.
     """
     if (path / RECORDING).is_file():
+        if unit is not None:
+            raise ValueError(f"{path} says the unit of its depth itself: leave unit= out.")
         episodes = sorted(file.parent for file in path.glob(f"*/*/{STEPS}"))
-        found = [drive for folder in episodes if (drive := _recorded(folder, path, hfov))]
-    elif tum.is_one(path):
+        read = (_recorded(folder, path, hfov, cameras) for folder in episodes)
+        return [drive for drive in read if drive is not None]
+    if cameras:
+        raise ValueError(f"cameras= chooses of a recording by mitigate run, which {path} is not.")
+    if tum.is_one(path):
+        *found, dropped = tum.read(path, hfov)
         per_count = tum.UNIT if unit is None else unit
-        found = [Frames(path.name, words(path / WORDS), *tum.read(path, hfov), False, per_count)]
-    elif (path / RGB).is_dir() or (path / DEPTH).is_dir():
-        found = [_simple(path, hfov, unit)]
-    else:
-        folders = sorted(folder for folder in path.iterdir() if folder.is_dir())
-        found = [drive for f in folders if _is_drive(f) for drive in open_folder(f, hfov, unit)]
-    if not found:
-        raise FileNotFoundError(
-            f"{path} holds no drive: neither {RECORDING} (by mitigate run record=FOLDER) nor "
-            f"{' and '.join(tum.LISTS)} (TUM RGB-D) nor the folders rgb/ and depth/, here or one "
-            "folder below. A rosbag2 folder has metadata.yaml."
-        )
-    return found
+        return [Frames(path.name, words(path / WORDS), *found, False, dropped, per_count)]
+    if (path / tum.TRAJECTORY).is_file():
+        raise ValueError(f"{path} has {tum.TRAJECTORY}, but not its lists {', '.join(tum.LISTS)}.")
+    return [_simple(path, hfov, unit)]
 
 
-def _is_drive(folder: Path) -> bool:
+def is_drive(folder: Path) -> bool:
+    """Whether a folder holds frames in one of the forms above."""
     return any((folder / name).exists() for name in (RECORDING, *tum.LISTS, RGB, DEPTH))
 
 
-def _recorded(folder: Path, top: Path, hfov: float | None) -> Frames | None:
-    """An episode that ``mitigate run`` recorded; None for one without a frame."""
+def _recorded(
+    folder: Path, top: Path, hfov: float | None, chosen: Sequence[str] | None
+) -> Frames | None:
+    """An episode that ``mitigate run`` recorded; None for one without a frame. One that was cut off
+    ends with its last whole step."""
     told, steps = _json(folder / EPISODE), _lines(folder / STEPS)
-    listed = _json(folder / CAMERAS) if (folder / CAMERAS).is_file() else None
+    listed = _json(folder / CAMERAS) if (folder / CAMERAS).is_file() else {}
     names = sorted(p.name for p in folder.iterdir() if p.is_dir())
-    files = {name: _ordered(folder / name) for name in names}
-    files = {name: there for name, there in files.items() if there}
+    for camera in chosen or ():
+        if camera not in names:
+            raise ValueError(unknown("camera", camera, names))
+    files = {n: _ordered(folder / n) for n in names if not chosen or n in chosen}
+    files = {name: there for name, there in files.items() if there and _level(listed, name)}
     if not steps or not files:
         return None
     cameras = {name: _lens(name, there[0], listed, hfov) for name, there in files.items()}
     name = folder.relative_to(top).as_posix()
-    count = _one_count(name, {**{n: len(f) for n, f in files.items()}, STEPS: len(steps)})
+    counts = [len(steps), *map(len, files.values())]
+    if max(counts) - min(counts) > 1:
+        raise ValueError(
+            f"{folder} has {min(counts)} to {max(counts)} frames of its cameras and "
+            f"{len(steps)} steps: it is not whole."
+        )
+    steps = steps[: min(counts)]
     poses = None
     if all(_is_place(step) for step in steps):
         poses = np.array([(*from_vlnce(s["position"]), s["heading"]) for s in steps], np.float64)
-    words = str(told.get("text") or told.get("category") or "")
+    said = str(told.get("text") or told.get("category") or "")
     unit = float(_json(top / RECORDING).get("unit") or 0.001)
-    return Frames(name, words, cameras, files, np.arange(count) * 1.0, poses, True, unit)
+    times = np.arange(len(steps)) * 1.0
+    return Frames(name, said, cameras, files, times, poses, True, 0, unit)
 
 
-def _lens(name: str, first: Path, listed: Any, hfov: float | None) -> Lens:
+def _level(listed: Mapping[str, Any], name: str) -> bool:
+    """Whether a camera looks level, as far as is told."""
+    own = listed.get(name)
+    return not isinstance(own, dict) or own.get("level") is not False
+
+
+def _lens(name: str, first: Path, listed: Mapping[str, Any], hfov: float | None) -> Lens:
     """The lens of a camera, as the recording says, or by its first frame and ``hfov``."""
-    own = listed.get(name) if isinstance(listed, dict) else None
-    if isinstance(own, dict) and own.get("kind") in (RGB, DEPTH):
-        wide = own.get("hfov") or hfov or 90.0
-        return Lens(own["kind"], float(wide), float(own.get("yaw") or 0.0))
-    kind = frame_files.modality(first)
-    return Lens(kind, 90.0 if hfov is None else hfov)
+    own = listed.get(name)
+    if not isinstance(own, dict) or own.get("kind") not in (RGB, DEPTH):
+        return Lens(frame_files.modality(first), 90.0 if hfov is None else hfov)
+    wide = own.get("hfov")
+    if wide is None and hfov is None:
+        raise ValueError(f"{first.parent}: nobody said how wide the camera sees: give hfov=79.")
+    if wide is not None and hfov is not None:
+        raise ValueError(f"{first.parent} says how wide it sees ({wide:g}): leave hfov= out.")
+    return Lens(own["kind"], float(wide or hfov or 0), float(own.get("yaw") or 0.0))
 
 
 def _is_place(step: Any) -> bool:
@@ -136,38 +166,38 @@ def _simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
     files = {kind: _ordered(path / kind) for kind in (RGB, DEPTH)}
     files = {kind: there for kind, there in files.items() if there}
     counts = {f"{kind}/": len(there) for kind, there in files.items()}
-    poses = None
-    if (path / "poses.csv").is_file():
-        text = (path / "poses.csv").read_text(encoding="utf-8", errors="replace")
-        lines = [line.split(",") for line in text.splitlines() if line.strip()]
-        if lines and not _isnumber(lines[0][0]):
-            lines = lines[1:]  # a heading
-        counts["poses.csv"] = len(lines)
-        wrong = [n for n, line in enumerate(lines, 1) if len(line) != 3]
-        if wrong:
-            raise ValueError(f"{path}/poses.csv, line {wrong[0]}, is not x,y,heading.")
-        file = path / "poses.csv"
-        poses = np.array([[number(w, file, n) for w in line] for n, line in enumerate(lines, 1)])
-    count = _one_count(str(path), counts)
+    poses = _poses(path / POSES) if (path / POSES).is_file() else None
+    if poses is not None:
+        counts[POSES] = len(poses)
+    if len(set(counts.values())) != 1 or not files:
+        told = ", ".join(f"{count} in {where}" for where, count in counts.items()) or "no frame"
+        raise ValueError(f"{path} must hold as many of each, one a step, but has {told}.")
+    stems = [[file.stem for file in there] for there in files.values()]
+    if len(stems) == 2 and stems[0] != stems[1] and set(stems[0]) & set(stems[1]):
+        raise ValueError(f"{path}: some frames of rgb/ have no partner of their name in depth/.")
     cameras = {kind: Lens(kind, 90.0 if hfov is None else hfov) for kind in files}
     per_count = 0.001 if unit is None else unit
-    times = np.arange(count) * 1.0
-    return Frames(path.name, words(path / WORDS), cameras, files, times, poses, True, per_count)
+    times = np.arange(len(stems[0])) * 1.0
+    return Frames(path.name, words(path / WORDS), cameras, files, times, poses, True, 0, per_count)
 
 
-def _isnumber(word: str) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
-
-
-def _one_count(name: str, counts: Mapping[str, int]) -> int:
-    if not counts or max(counts.values()) != min(counts.values()) or not max(counts.values()):
-        told = ", ".join(f"{count} in {where}" for where, count in counts.items())
-        raise ValueError(f"{name} must hold as many of each, one a step, but has {told}.")
-    return next(iter(counts.values()))
+def _poses(file: Path) -> np.ndarray:
+    """float64 [N, 3] of lines "x,y,heading", with or without these names above them."""
+    text = file.read_text(encoding="utf-8", errors="replace")
+    lines = [
+        [word.strip() for word in line.split(",")] for line in text.splitlines() if line.strip()
+    ]
+    if lines and any(word.isalpha() and word.lower() != "nan" for word in lines[0]):
+        if lines[0] != ["x", "y", "heading"]:
+            raise ValueError(f"{file} has the columns {','.join(lines[0])}, not x,y,heading.")
+        lines = lines[1:]
+    wrong = [n for n, line in enumerate(lines, 1) if len(line) != 3]
+    if wrong:
+        raise ValueError(f"{file}, line {wrong[0]}, is not x,y,heading.")
+    poses = np.array([[number(w, file, n) for w in line] for n, line in enumerate(lines, 1)])
+    if len(poses) and np.ptp(poses[:, 2]) > 0 and np.abs(poses[:, 2]).max() > MOST_TURNED:
+        raise ValueError(f"{file} has headings up to {np.abs(poses[:, 2]).max():g}: give radians.")
+    return poses.reshape(-1, 3)
 
 
 def _ordered(folder: Path) -> list[Path]:
@@ -189,7 +219,13 @@ def _json(file: Path) -> dict[str, Any]:
 
 
 def _lines(file: Path) -> list[Any]:
-    try:
-        return [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines() if line]
-    except (OSError, ValueError, RecursionError) as error:
-        raise ValueError(f"{file} cannot be read ({error}).") from error
+    """The JSON lines of a file; a last one that was cut off is left out."""
+    found = []
+    lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    for place, line in enumerate(lines, 1):
+        try:
+            found.append(json.loads(line))
+        except (ValueError, RecursionError) as error:
+            if place < len(lines):
+                raise ValueError(f"{file}, line {place}, cannot be read ({error}).") from error
+    return found

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import numpy as np
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.worlds.recorded.source import Lens, plan_pose, rotated
 
+FISHEYE = ("equidistant", "fisheye")  # distortion models of ROS
 LARGEST_SIDE = 1 << 13  # pixels of an image (ours)
 _COLOURS = {  # encoding: channels, and what makes RGB of them
     "rgb8": (3, None),
@@ -25,15 +27,25 @@ _DEPTHS = {"16UC1": ("u2", 0.001), "mono16": ("u2", 0.001), "32FC1": ("f4", 1.0)
 
 
 def place(message: Any) -> tuple[float, float, float]:
-    """The plan pose in a message that holds one. Raises ValueError if it is not finite."""
+    """The plan pose in a message that holds one; NaN for a rotation that is none."""
     while not hasattr(message, "orientation"):
         message = message.pose
     turned = message.orientation
     ahead = rotated((turned.x, turned.y, turned.z, turned.w), (1.0, 0.0, 0.0))
-    found = plan_pose(float(message.position.x), float(message.position.y), ahead)
-    if not np.isfinite(found).all():
-        raise ValueError(f"A pose is not finite: {found}.")
-    return found
+    return plan_pose(float(message.position.x), float(message.position.y), ahead)
+
+
+def stamp(raw: bytes, ros2: bool) -> float:
+    """Seconds in the header that a serialised message begins with; 0 if it has none.
+
+    A ROS 1 header is a counter and a time, little endian; CDR's has four bytes in front, the second
+    of which says the order of bytes.
+    """
+    if len(raw) < 12:
+        return 0.0
+    order = "<" if not ros2 or raw[1] & 1 else ">"
+    seconds, nano = struct.unpack_from(f"{order}Ii" if not ros2 else f"{order}iI", raw, 4)
+    return seconds + nano / 1e9
 
 
 def lens(kind: str, message: Any, path: Path) -> Lens:
@@ -42,8 +54,17 @@ def lens(kind: str, message: Any, path: Path) -> Lens:
     matrix = np.asarray(getattr(message, "k", getattr(message, "K", None)), np.float64).reshape(-1)
     if matrix.shape != (9,) or not (matrix[0] > 0 and matrix[4] > 0 and np.isfinite(matrix).all()):
         raise ValueError(f"{path}: its CameraInfo has no focal lengths ({matrix.tolist()[:9]}).")
-    focal, centre = (matrix[0], matrix[4]), (matrix[2], matrix[5])
-    return Lens(kind, focal=tuple(map(float, focal)), centre=tuple(map(float, centre)))  # type: ignore[arg-type]
+    size = (int(message.width), int(message.height))
+    if min(size) < 1:
+        raise ValueError(f"{path}: its CameraInfo says pictures of {size[0]} x {size[1]}.")
+    model = str(getattr(message, "distortion_model", ""))
+    if model in FISHEYE:
+        raise ValueError(
+            f"{path}: the {kind} camera has a fisheye lens ({model}), which is read as a pinhole: "
+            "record rectified images, and their CameraInfo."
+        )
+    focal, centre = (float(matrix[0]), float(matrix[4])), (float(matrix[2]), float(matrix[5]))
+    return Lens(kind, focal=focal, centre=centre, size=size)
 
 
 def image(message: Any, kind: str, path: Path) -> np.ndarray:

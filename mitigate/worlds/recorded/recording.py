@@ -15,10 +15,13 @@ import numpy as np
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation, Sensor, cameras
 from mitigate.core.progress import Progress
 from mitigate.worlds.episodes import Episode, Instruction
-from mitigate.worlds.recorded.source import Lens, Source, Step, driven
+from mitigate.worlds.recorded.source import Lens, Source
+from mitigate.worlds.recorded.steps import Driven, Step, driven
 from mitigate.worlds.world import Expert
 
 LARGEST = 1 << 32  # bytes of the frames of a drive (ours)
+FARTHEST = 100.0  # metres: half of an indoor frame's readings are nearer (ours)
+OVER = 4  # pixels of a side of what is drawn into, for one of a view that is not filled (ours)
 OFF = 3.0  # degrees that a camera may look beside its view of the panorama (ours)
 
 
@@ -28,7 +31,7 @@ class Recording:
 
     frames: "rgb" uint8 [T, S, S, 3] and "depth" float32 metres [T, S, S, 1], of a panorama
     [T, 12, S, S, c]; those that there are. times: float64 [T], seconds since the first.
-    poses: float64 [T, 3], or None. driven: int [T], the action that whoever drove took, or None.
+    poses: float64 [T, 3], or None. driven: what whoever drove did, or None.
     """
 
     name: str
@@ -36,7 +39,7 @@ class Recording:
     frames: Mapping[str, np.ndarray]
     times: np.ndarray
     poses: np.ndarray | None
-    driven: np.ndarray | None
+    driven: Driven | None
 
     @property
     def sensors(self) -> dict[str, Sensor]:
@@ -53,6 +56,8 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
 
     Raises ValueError for a source without the cameras, and for one that is too long.
     """
+    if source.stepped and step != Step():
+        raise ValueError(f"{source.name} is recorded step by step: leave step.* out.")
     chosen = np.arange(len(source.times))
     if not source.stepped:
         chosen = step.choose(source.times, source.poses)
@@ -73,8 +78,17 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
         for row, shown in enumerate(source.frames(chosen.tolist())):
             for (kind, view), camera in looks.items():
                 place = frames[kind][row] if views == 1 else frames[kind][row, view]
-                place[...] = square(shown[camera], source.cameras[camera], size)
+                try:
+                    place[...] = square(shown[camera], source.cameras[camera], size)
+                except (ValueError, cv2.error) as error:
+                    raise ValueError(f"{source.name}, {camera}: {error}.") from error
             progress.advance()
+        if source.dropped:
+            progress.say(
+                f"{source.name}: {source.dropped} frames were left out, as no pose or no frame of "
+                "the other camera was near in time"
+            )
+    _check_metres(source.name, frames.get(DEPTH))
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
     taken = None if poses is None else driven(poses)
@@ -86,8 +100,15 @@ def _looks(source: Source, views: int) -> dict[tuple[str, int], str]:
     looks: dict[tuple[str, int], str] = {}
     for name, lens in source.cameras.items():
         beside = abs((lens.yaw - 30.0 * lens.view + 180) % 360 - 180)
-        if beside <= OFF and (views > 1 or lens.view == 0):
-            looks.setdefault((lens.kind, lens.view), name)
+        if beside > OFF or (views == 1 and lens.view != 0):
+            continue
+        if (lens.kind, lens.view) in looks:
+            raise ValueError(
+                f"{source.name} has two {lens.kind} cameras that look the same way, {name} and "
+                f"{looks[lens.kind, lens.view]}: say which, cameras=[rgb,depth] (it has "
+                f"{_told(source)})."
+            )
+        looks[lens.kind, lens.view] = name
     for kind in sorted({kind for kind, _ in looks}, reverse=True):
         there = sum(k == kind for k, _ in looks)
         if there < views:
@@ -116,16 +137,51 @@ def square(frame: np.ndarray, lens: Lens, size: int) -> np.ndarray:
     frame = frame.reshape(*frame.shape[:2], -1)
     height, width = frame.shape[:2]
     fx, fy, cx, cy = lens.of(height, width)
-    left, right, top, bottom = (round(v) for v in (cx - fx, cx + fx, cy - fy, cy + fy))
-    inside = frame[max(0, top) : max(0, bottom), max(0, left) : max(0, right)]
-    pad = ((max(0, -top), max(0, bottom - height)), (max(0, -left), max(0, right - width)), (0, 0))
-    whole = np.pad(inside, pad) if any(map(any, pad)) else inside
+    edges = (cx - fx, cx + fx, cy - fy, cy + fy)
+    if min(edges[0], edges[2], width - edges[1], height - edges[3]) < -0.5:
+        return _inside(frame, edges, size, depth)
+    left, right, top, bottom = (round(edge) for edge in edges)
+    whole = frame[max(0, top) : bottom, max(0, left) : right]
     if whole.shape[:2] != (size, size):
-        shrinks = size < max(whole.shape[:2])
-        kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
-        kind = cv2.INTER_NEAREST_EXACT if depth else kind  # holes stay holes, edges edges
-        whole = cv2.resize(whole, (size, size), interpolation=kind)
+        whole = _resized(whole, size, size, depth)
     return whole.reshape(size, size, -1)
+
+
+def _inside(
+    frame: np.ndarray, edges: tuple[float, float, float, float], size: int, depth: bool
+) -> np.ndarray:
+    """A view of which the frame fills a part: drawn larger, so that its edges fall where they
+    are, and then reduced."""
+    height, width = frame.shape[:2]
+    left, right, top, bottom = edges
+    large = OVER * size
+    across, down = large / (right - left), large / (bottom - top)
+    x0, x1 = (round(min(large, max(0, (x - left) * across))) for x in (0, width))
+    y0, y1 = (round(min(large, max(0, (y - top) * down))) for y in (0, height))
+    canvas = np.zeros((large, large, frame.shape[2]), frame.dtype)
+    if x1 > x0 and y1 > y0:
+        cut = frame[max(0, round(top)) : round(bottom), max(0, round(left)) : round(right)]
+        canvas[y0:y1, x0:x1] = _resized(cut, x1 - x0, y1 - y0, depth).reshape(y1 - y0, x1 - x0, -1)
+    return _resized(canvas, size, size, depth).reshape(size, size, -1)
+
+
+def _resized(frame: np.ndarray, width: int, height: int, depth: bool) -> np.ndarray:
+    """Colours by area where they shrink; of depth the nearest, so that holes stay holes."""
+    shrinks = width < frame.shape[1] or height < frame.shape[0]
+    kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
+    return cv2.resize(
+        frame, (width, height), interpolation=cv2.INTER_NEAREST_EXACT if depth else kind
+    )
+
+
+def _check_metres(name: str, depth: np.ndarray | None) -> None:
+    """Raise ValueError for depth that cannot be metres."""
+    valid = depth[depth > 0] if depth is not None else np.zeros(0)
+    if len(valid) and float(np.median(valid)) > FARTHEST:
+        raise ValueError(
+            f"Half of {name}'s depth is farther than {np.median(valid):.0f} m: that is not metres. "
+            "Of 16-bit PNG set unit= (metres of a count)."
+        )
 
 
 class RecordedWorld:

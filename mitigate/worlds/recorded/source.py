@@ -14,29 +14,53 @@ from typing import Protocol
 
 import numpy as np
 
-from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP, VIEW_STEP_DEGREES
+from mitigate.core.observation import VIEW_STEP_DEGREES
 
-SLOP = 0.1  # seconds between what belongs to one instant, at most (ours; a frame at 10 Hz)
+SLOP = 0.1  # seconds between frames of one instant, at most (ours; a frame at 10 Hz)
+GAP = 2.0  # seconds between two poses, at most, for a place between them to be known (ours)
 LONGEST = 1 << 20  # instants of a drive (ours): 9 hours at 30 Hz
+NARROW, WIDE = 10.0, 179.0  # degrees that a camera sees
+ASPECT = 0.02  # share by which a picture's aspect may differ from its CameraInfo's (ours)
 
 
 @dataclass(frozen=True)
 class Lens:
-    """A pinhole camera: kind "rgb" or "depth"; focal lengths and centre in pixels, None for those
-    that its pictures' size gives (``hfov``); yaw: degrees to the right of the heading."""
+    """A pinhole camera: kind "rgb" or "depth"; yaw: degrees to the right of the heading.
+
+    focal, centre: in pixels of pictures of ``size`` (width, height); None: what ``hfov``, the
+    horizontal field of view in degrees, gives. Raises ValueError for one that sees too little or
+    too much.
+    """
 
     kind: str
     hfov: float = 90.0
     yaw: float = 0.0
     focal: tuple[float, float] | None = None
     centre: tuple[float, float] | None = None
+    size: tuple[int, int] | None = None
+
+    def __post_init__(self) -> None:
+        wide = self.hfov
+        if self.focal is not None and self.size is not None:
+            wide = math.degrees(2 * math.atan2(self.size[0] / 2, self.focal[0]))
+        if not NARROW <= wide <= WIDE:
+            raise ValueError(f"A camera that sees {wide:.3g} degrees is none (10 to 179).")
 
     def of(self, height: int, width: int) -> tuple[float, float, float, float]:
-        """Focal lengths and centre (fx, fy, cx, cy) in pixels of pictures of this size."""
-        if self.focal is not None and self.centre is not None:
-            return (*self.focal, *self.centre)
-        focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
-        return focal, focal, width / 2, height / 2
+        """Focal lengths and centre (fx, fy, cx, cy) in pixels of pictures of this size. Raises
+        ValueError for pictures of another shape than ``size``."""
+        if self.focal is None or self.centre is None or self.size is None:
+            focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
+            return focal, focal, width / 2, height / 2
+        across, down = width / self.size[0], height / self.size[1]
+        if abs(across / down - 1) > ASPECT:
+            raise ValueError(
+                f"pictures of {width} x {height} are not of the camera that CameraInfo is of "
+                f"({self.size[0]} x {self.size[1]}): name its topic (topics.info=, "
+                "topics.depth_info=)"
+            )
+        (fx, fy), (cx, cy) = self.focal, self.centre
+        return fx * across, fy * down, cx * across, cy * down
 
     @property
     def view(self) -> int:
@@ -49,7 +73,8 @@ class Source(Protocol):
 
     times: float64 [N], seconds, growing. poses: float64 [N, 3] = (x, y, heading) in the plan frame
     of ``core/observation.py``, or None where they are not known. stepped: each instant is one step
-    of an agent; else the camera's own rate.
+    of an agent; else the camera's own rate. dropped: instants that were left out, as no pose or no
+    frame of the other camera was near.
     """
 
     name: str
@@ -58,67 +83,12 @@ class Source(Protocol):
     times: np.ndarray
     poses: np.ndarray | None
     stepped: bool
+    dropped: int
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Of each instant ``chosen``, in order, the frame of each camera: uint8 [H, W, 3], or
         float32 metres [H, W], 0 where there is no reading. Raises ValueError for what is
         damaged."""
-
-
-@dataclass(frozen=True)
-class Step:
-    """How far apart the instants are that an agent is shown: as far as its own steps take it.
-
-    metres, degrees: moved or turned since the last one. seconds: where poses are not known.
-    """
-
-    metres: float = 0.25
-    degrees: float = 15.0
-    seconds: float = 0.5
-
-    def __post_init__(self) -> None:
-        for name in ("metres", "degrees", "seconds"):
-            value = getattr(self, name)
-            if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"step.{name}={value:g} must be above 0.")
-
-    def choose(self, times: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
-        """Which instants are shown: the first, then each that is a step away from the last."""
-        chosen = [0]
-        for index in range(1, len(times)):
-            last = chosen[-1]
-            if poses is None:
-                away = times[index] - times[last] >= self.seconds
-            else:
-                moved = np.hypot(*(poses[index, :2] - poses[last, :2]))
-                turned = abs(turn(poses[last, 2], poses[index, 2]))
-                # nearly: a step of exactly this length must not be missed by rounding
-                away = moved > 0.98 * self.metres or turned > 0.98 * math.radians(self.degrees)
-            if away:
-                chosen.append(index)
-        return np.array(chosen)
-
-
-def turn(before: float, after: float) -> float:
-    """Radians turned to the left from one heading to another, -pi to pi."""
-    return (after - before + math.pi) % (2 * math.pi) - math.pi
-
-
-def driven(poses: np.ndarray) -> np.ndarray:
-    """The low-level actions int [N] that whoever drove took at poses [N, 3]; at the last, STOP.
-
-    A step that did both counts as what it did more of, one unit being 0.25 m or 15 degrees.
-    """
-    actions = np.full(len(poses), STOP)
-    step = Step()
-    for index in range(len(poses) - 1):
-        moved = float(np.hypot(*(poses[index + 1, :2] - poses[index, :2]))) / step.metres
-        turned = turn(poses[index, 2], poses[index + 1, 2]) / math.radians(step.degrees)
-        if moved >= abs(turned):
-            actions[index] = FORWARD
-        else:
-            actions[index] = LEFT if turned > 0 else RIGHT
-    return actions
 
 
 def plan_pose(x: float, y: float, forward: np.ndarray) -> tuple[float, float, float]:
@@ -127,11 +97,11 @@ def plan_pose(x: float, y: float, forward: np.ndarray) -> tuple[float, float, fl
 
 
 def rotated(quaternion: Sequence[float], axis: Sequence[float]) -> np.ndarray:
-    """``axis`` [3] turned by a quaternion (x, y, z, w). Raises ValueError for one that is none."""
+    """``axis`` [3] turned by a quaternion (x, y, z, w); NaN for one that is no rotation."""
     found = np.asarray(quaternion, np.float64)
     length = float(np.linalg.norm(found))
     if not (found.shape == (4,) and np.isfinite(length) and length > 1e-6):
-        raise ValueError(f"The quaternion {found.tolist()} is no rotation.")
+        return np.full(3, np.nan)
     x, y, z, w = found / length
     u, v = np.array([x, y, z]), np.asarray(axis, np.float64)
     return v + 2 * np.cross(u, np.cross(u, v) + w * v)
@@ -146,11 +116,21 @@ def near(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]
     return nearest, np.abs(others[nearest] - times)
 
 
-def between(times: np.ndarray, at: np.ndarray, poses: np.ndarray) -> np.ndarray:
-    """Poses [N, 3] at ``times``, on the line between those at the times ``at`` (growing)."""
+def placed(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Poses [N, 3] at ``times``, on the line between those of ``table`` [M, 4] = (time, x, y,
+    heading), and which are known: bool [N], none in a gap of more than ``GAP`` seconds."""
+    table = table[np.isfinite(table).all(1)]
+    if not len(table):
+        return np.zeros((len(times), 3)), np.zeros(len(times), bool)
+    at, first = np.unique(table[:, 0], return_index=True)
+    poses = table[first, 1:]
     headings = np.interp(times, at, np.unwrap(poses[:, 2]))
     xy = [np.interp(times, at, poses[:, column]) for column in (0, 1)]
-    return np.stack([*xy, headings], 1)
+    after = np.searchsorted(at, times)
+    inside = (after > 0) & (after < len(at))
+    gaps = np.diff(at)[np.clip(after - 1, 0, max(0, len(at) - 2))] if len(at) > 1 else np.inf
+    known = (inside & (gaps <= GAP)) | (near(times, at)[1] <= SLOP)
+    return np.stack([*xy, headings], 1), known
 
 
 def words(file: Path) -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from mitigate.core.observation import DEPTH, RGB
-from mitigate.worlds.recorded.source import LONGEST, SLOP, Lens, between, near, plan_pose, rotated
+from mitigate.worlds.recorded.source import LONGEST, SLOP, Lens, near, placed, plan_pose, rotated
 
 LISTS, TRAJECTORY = ("rgb.txt", "depth.txt"), "groundtruth.txt"
 UNIT = 1 / 5000  # metres of a count; TUM RGB-D benchmark, file formats
@@ -24,8 +24,9 @@ def is_one(path: Path) -> bool:
 
 def read(
     path: Path, hfov: float | None
-) -> tuple[dict[str, Lens], dict[str, list[Path]], np.ndarray, np.ndarray | None]:
-    """Cameras, the files of each, times and poses of a folder; an instant is an RGB image with what
+) -> tuple[dict[str, Lens], dict[str, list[Path]], np.ndarray, np.ndarray | None, int]:
+    """Cameras, the files of each, times and poses of a folder, and how many instants were left out,
+    as nothing of the other lists was near; an instant is an RGB image with what
     is nearest in time. The agent's way is that of the camera's optical axis.
 
     Raises ValueError for what is damaged, and if nothing fits together.
@@ -45,16 +46,16 @@ def read(
             kept &= away <= SLOP
     poses = None
     if (path / TRAJECTORY).is_file():
-        at, places = _trajectory(path / TRAJECTORY)
-        kept &= near(times, at)[1] <= SLOP
-        poses = between(times, at, places)[kept]
+        poses, known = placed(times, _trajectory(path / TRAJECTORY))
+        kept &= known
     if not kept.any():
         raise ValueError(f"{path}: no frame of one list is within {SLOP} s of the others' lines.")
     files = {
         k: [f for f, keep in zip(there, kept, strict=True) if keep] for k, there in files.items()
     }
     cameras = {kind: Lens(kind, HFOV if hfov is None else hfov) for kind in files}
-    return cameras, files, times[kept], poses
+    poses = None if poses is None else poses[kept]
+    return cameras, files, times[kept], poses, int((~kept).sum())
 
 
 def _listed(path: Path, name: str) -> list[tuple[float, Path]]:
@@ -68,8 +69,8 @@ def _listed(path: Path, name: str) -> list[tuple[float, Path]]:
     return sorted(found)
 
 
-def _trajectory(file: Path) -> tuple[np.ndarray, np.ndarray]:
-    """Times [N] and plan poses [N, 3] of lines "time x y z qx qy qz qw"."""
+def _trajectory(file: Path) -> np.ndarray:
+    """float64 [N, 4]: time and plan pose of lines "time x y z qx qy qz qw"."""
     rows = []
     for line, words in _table(file, least=8):
         numbers = [number(word, file, line) for word in words[:8]]
@@ -77,8 +78,7 @@ def _trajectory(file: Path) -> tuple[np.ndarray, np.ndarray]:
         rows.append((numbers[0], *plan_pose(numbers[1], numbers[2], ahead)))
     if not rows:
         raise ValueError(f"{file} holds no pose.")
-    table = np.array(sorted(rows))
-    return table[:, 0], table[:, 1:]
+    return np.array(sorted(rows))
 
 
 def _table(file: Path, least: int) -> Iterator[tuple[int, list[str]]]:

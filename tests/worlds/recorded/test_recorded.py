@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import struct
 from pathlib import Path
 
 import cv2
@@ -13,8 +14,11 @@ import pytest
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.replay.export_drive import write_bag, write_frames
 from mitigate.worlds.recorded import RecordedWorld, Step, load, open_recording
+from mitigate.worlds.recorded.messages import stamp
 from mitigate.worlds.recorded.recording import square
-from mitigate.worlds.recorded.source import Lens, driven
+from mitigate.worlds.recorded.source import Lens, placed
+from mitigate.worlds.recorded.steps import NONE, driven
+from mitigate.worlds.recorded.topics import IMAGES, INFO, Topics, chosen
 
 SIZE = 32
 
@@ -57,7 +61,7 @@ def test_a_folder_gives_its_frames_poses_words_and_what_the_driver_did(folder):
     assert np.array_equal(found.frames[RGB], np.stack([s[RGB] for s in wanted]))
     assert np.allclose(found.frames[DEPTH], np.stack([s[DEPTH] for s in wanted]), atol=6e-4)
     assert np.allclose(found.poses, np.stack([s[POSE] for s in wanted]), atol=1e-5)
-    assert found.driven.tolist() == [FORWARD, FORWARD, LEFT, FORWARD, RIGHT, STOP]
+    assert found.driven.actions.tolist() == [FORWARD, FORWARD, LEFT, FORWARD, RIGHT, STOP]
 
 
 @pytest.mark.parametrize("form", ["bag", "mcap"])
@@ -69,12 +73,10 @@ def test_a_bag_gives_what_the_folder_gives(folder, tmp_path, form):
     for name in (RGB, DEPTH):
         assert np.array_equal(first.frames[name], second.frames[name]), name
     assert np.allclose(first.poses, second.poses, atol=1e-5)
-    assert first.driven.tolist() == second.driven.tolist()
+    assert first.driven.actions.tolist() == second.driven.actions.tolist()
 
 
 def test_a_bag_says_which_topics_there_are_and_takes_one_that_is_named(tmp_path):
-    from mitigate.worlds.recorded import Topics
-
     bag = write_bag(tmp_path / "robot", steps(walk()), "bag")
     with pytest.raises(ValueError, match="/camera/color/image_raw"):
         open_recording(bag, topics=Topics(rgb="/camera/colour/image_raw"))
@@ -215,13 +217,97 @@ def test_the_world_shows_the_next_instant_whatever_the_agent_does(folder):
 
 def test_a_turn_across_the_back_counts_as_a_small_one():
     poses = np.array([(0, 0, math.pi - 0.05), (0, 0, -math.pi + 0.2)])
-    assert driven(poses).tolist() == [LEFT, STOP]
+    assert driven(poses).actions.tolist() == [LEFT, STOP]
+    assert driven(poses).radians[0] == pytest.approx(0.25)
+
+
+def test_backwards_and_sideways_are_none_of_an_agents_actions():
+    poses = np.array([(0, 0, 0), (0, -0.25, 0), (0.25, -0.25, 0), (0.25, 0, 0)], float)
+    done = driven(poses)
+    assert done.actions.tolist() == [NONE, NONE, FORWARD, STOP]
+    assert done.metres.tolist() == pytest.approx([-0.25, 0, 0.25, 0])
+
+
+def test_an_arc_is_told_as_it_was():
+    poses = np.array([(0, 0, 0), (-0.1, 0.4, math.radians(25))])
+    done = driven(poses)
+    assert done.metres[0] == pytest.approx(0.41, abs=0.01)
+    assert done.radians[0] == pytest.approx(math.radians(25))
+
+
+def test_the_end_of_a_drive_is_shown():
+    times, poses = np.arange(10.0), np.stack([np.zeros(10), 0.1 * np.arange(10), np.zeros(10)], 1)
+    assert Step().choose(times, poses).tolist() == [0, 3, 6, 9]
+    assert Step().choose(times[:8], poses[:8]).tolist() == [0, 3, 7]
+
+
+def test_places_are_known_between_two_poses_but_not_in_a_gap():
+    table = np.array([(0, 0, 0, 0), (1, 0, 1, 0.2), (10, 0, 2, 0.4), (11, np.nan, 0, 0)])
+    poses, known = placed(np.array([0.5, 5.0, 10.05, 10.5]), table)
+    assert known.tolist() == [True, False, True, False]
+    assert poses[0].tolist() == pytest.approx([0, 0.5, 0.1])
+
+
+def test_the_lens_of_another_size_is_scaled_and_of_another_shape_refused():
+    lens = Lens(RGB, focal=(64, 64), centre=(64, 48), size=(128, 96))
+    assert lens.of(48, 64) == (32, 32, 32, 24)
+    with pytest.raises(ValueError, match="not of the camera"):
+        lens.of(64, 64)
+    with pytest.raises(ValueError, match="degrees"):
+        Lens(RGB, focal=(1e5, 1e5), centre=(1, 1), size=(64, 48))
+
+
+def test_a_camera_that_sees_little_takes_little_memory():
+    frame = np.full((2000, 3000, 3), 90, np.uint8)
+    seen = square(frame, Lens(RGB, hfov=10.5), 64)
+    assert seen.shape == (64, 64, 3) and 0 < (seen > 0).mean() < 0.02
+
+
+def test_a_serialised_header_says_when_it_was():
+    ros1 = struct.pack("<III", 7, 12, 500_000_000)
+    cdr = b"\x00\x01\x00\x00" + struct.pack("<iI", 12, 500_000_000)
+    assert stamp(ros1, ros2=False) == stamp(cdr, ros2=True) == 12.5
+    assert stamp(b"", ros2=True) == 0.0
+
+
+def test_topics_of_a_camera_that_is_called_depth_camera():
+    there = {
+        "/depth_camera/image_raw": IMAGES[0],
+        "/depth_camera/depth/image_raw": IMAGES[0],
+        "/depth_camera/camera_info": INFO,
+        "/odom": "nav_msgs/msg/Odometry",
+    }
+    found = chosen(Path("a.bag"), there, Topics())
+    assert found[RGB] == "/depth_camera/image_raw"
+    assert found[DEPTH] == "/depth_camera/depth/image_raw"
+    assert found["info depth"] == found["info rgb"] == "/depth_camera/camera_info"
+    assert DEPTH not in chosen(Path("a.bag"), there, Topics(depth="none"))
+    with pytest.raises(ValueError, match="not sensor_msgs"):
+        chosen(Path("a.bag"), there, Topics(rgb="/odom"))
+
+
+def test_options_without_effect_are_refused(folder, tmp_path):
+    bag = write_bag(tmp_path / "robot", steps(walk()), "bag")
+    with pytest.raises(ValueError, match="unit="):
+        open_recording(bag, unit=0.001)
+    with pytest.raises(ValueError, match="no bag"):
+        open_recording(folder, topics=Topics(rgb="/a"))
+    with pytest.raises(ValueError, match="step by step"):
+        load(open_recording(folder)[0], views=1, size=SIZE, step=Step(metres=0.5))
+
+
+def test_a_folder_of_drives_gives_all(tmp_path):
+    write_bag(tmp_path / "a", steps(walk()), "mcap")
+    write_frames(tmp_path / "b", steps(walk()), "go")
+    assert [drive.name for drive in open_recording(tmp_path)] == ["a", "b"]
 
 
 @pytest.mark.parametrize(
     ("spoil", "says"),
     [
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,0\n"), "as many of each"),
+        (lambda f: (f / "poses.csv").write_text("heading,x,y\n" + "90,0,0\n" * 6), "columns"),
+        (lambda f: (f / "poses.csv").write_text("0,0,90\n0,0,0\n" * 3), "radians"),
         (lambda f: (f / "poses.csv").write_text("0,0\n" * 6), "not x,y,heading"),
         (lambda f: (f / "poses.csv").write_text("0,0,nan\n" * 6), "no finite number"),
         (lambda f: (f / "rgb" / "000002.png").write_bytes(b"\x89PNG cut"), "000002.png"),
