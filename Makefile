@@ -4,6 +4,9 @@ VENV ?= .venv
 RECIPE ?= da_per_episode
 SWEEP ?= default
 ARGS ?=
+NPROC ?= 1
+# processes that train one agent together; a dead one ends the others, and all go on from the last checkpoint
+RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --max-restarts 3 --nproc-per-node $(NPROC))
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
@@ -27,8 +30,8 @@ $(VENV)/.stamp-%: $(VENV)/.stamp
 
 install: $(VENV)/.stamp ## make the environment in .venv and stop
 
-train: $(VENV)/.stamp $(if $(filter encoder swap_encoder,$(RECIPE)),$(VENV)/.stamp-encoders) ## train and evaluate: RECIPE=da_per_episode ARGS="severity=0.6 seed=1"
-	$(BIN)/python -m mitigate.train recipe=$(RECIPE) $(ARGS)
+train: $(VENV)/.stamp $(if $(filter encoder swap_encoder,$(RECIPE)),$(VENV)/.stamp-encoders) ## train and evaluate: RECIPE=da_per_episode ARGS="severity=0.6 seed=1" NPROC=2
+	$(BIN)/python $(RANKS) -m mitigate.train recipe=$(RECIPE) $(ARGS)
 
 evaluate: $(VENV)/.stamp ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"
 	$(BIN)/python -m mitigate.evaluate $(ARGS)

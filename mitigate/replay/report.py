@@ -124,7 +124,8 @@ def picture(
         views = np.concatenate([_view(before, before), _gap(), _view(after, before)], 1)
         was, now = (ACTIONS.get(int(a.actions[step]), "?") for a in (clean, found))
         text = f"step {step}, {recording.times[step]:.1f} s: {was} -> {now}"
-        cells.append(np.concatenate([_title(text, views.shape[1]), views]))
+        cell = np.concatenate([_title(text, views.shape[1]), views])
+        cells.append(np.pad(cell, ((0, 0), (0, 16), (0, 0)), constant_values=255))
     across = 1 if cells[0].shape[1] > WIDE else 3
     cells += [np.full_like(cells[0], 255)] * (-len(cells) % across)
     rows = [np.concatenate(cells[i : i + across], 1) for i in range(0, len(cells), across)]

@@ -56,14 +56,22 @@ class Ranks:
             )
         return jobs[self.number :: self.count]
 
-    def average(self, parameters: Iterable[nn.Parameter], values: dict[str, Tensor]) -> None:
-        """Replace gradients, and the figures to log, by their means over the ranks."""
+    def average(
+        self, parameters: Iterable[nn.Parameter], values: dict[str, Tensor], weight: float = 1.0
+    ) -> None:
+        """Replace gradients, and the figures to log, by their means over the ranks, each counting
+        as its ``weight`` (``Recipe.weight``): what one process would have on all their pieces."""
         if self.count == 1:
             return
-        grads = [p.grad for p in parameters if p.grad is not None]
-        for tensor in (*grads, *values.values()):
-            dist.all_reduce(tensor)
-            tensor /= self.count
+        whole = torch.tensor(float(weight), device=next(iter(values.values())).device)
+        dist.all_reduce(whole)
+        share = weight / max(float(whole), 1e-12)
+        for parameter in parameters:
+            if parameter.grad is None:  # it had no part in this rank's pieces
+                parameter.grad = torch.zeros_like(parameter)
+            dist.all_reduce(parameter.grad.mul_(share))
+        for value in values.values():
+            dist.all_reduce(value.mul_(share))
 
     def wait(self) -> None:
         """Return when all ranks are here."""

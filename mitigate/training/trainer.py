@@ -183,7 +183,7 @@ class Trainer:
         self.optimizer.zero_grad(set_to_none=True)
         values = accumulate(self.recipe, batch, self.precision, self.device)
         values = {name: value.float() for name, value in values.items()}
-        self.ranks.average(self.trained, values)
+        self.ranks.average(self.trained, values, self.recipe.weight(batch))
         loss = values["loss"]
         norm = torch.nn.utils.clip_grad_norm_(self.trained, self.grad_clip or math.inf)
         if not (torch.isfinite(loss) and torch.isfinite(norm)):
