@@ -7,7 +7,10 @@ from __future__ import annotations
 
 import os
 import re
+import shlex
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
@@ -19,6 +22,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
+from mitigate.core.signals import raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
 KINDS = {
@@ -33,11 +37,13 @@ def main(program: Callable[[], None], primary: str) -> None:
     """Call ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``).
 
     Exits with status 1 and one paragraph for ValueError, OSError and config errors, with 130 for
-    Ctrl-C.
+    Ctrl-C and 143 for SIGTERM, saying how to go on.
     """
     if os.environ.get("HYDRA_FULL_ERROR"):
         return program()
     os.environ["HYDRA_FULL_ERROR"] = "1"  # lets errors through to here
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, raise_ended)
     try:
         program()
     except (HydraException, OmegaConfBaseException) as error:
@@ -46,9 +52,10 @@ def main(program: Callable[[], None], primary: str) -> None:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {error if error.strerror is None else _told(error)}")
-    except KeyboardInterrupt:
-        print("\ninterrupted: the same command goes on from what is finished", file=sys.stderr)
-        sys.exit(130)
+    except KeyboardInterrupt as error:
+        again = shlex.join([*sys.argv[0].split(), *sys.argv[1:]])
+        print(f"\n{error or 'SIGINT'}: stopped. To go on: {again}", file=sys.stderr)
+        sys.exit(getattr(error, "status", 130))
     finally:
         del os.environ["HYDRA_FULL_ERROR"]
 

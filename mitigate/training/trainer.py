@@ -11,7 +11,7 @@ import math
 import time
 from collections import defaultdict
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import torch
 from torch import Tensor
@@ -20,6 +20,7 @@ from torch.optim.lr_scheduler import LambdaLR
 from mitigate.core import checkpoint, seeding
 from mitigate.core.precision import choose, computing
 from mitigate.core.progress import say
+from mitigate.core.signals import Ended, held
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
 from mitigate.training.ranks import Ranks
@@ -152,7 +153,11 @@ class Trainer:
             self.recipe, self.workers, self.steps, self.precision, self.device, self.ranks
         )
         for step in range(start, self.steps):
-            for name, value in self._step(step, batches).items():
+            with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
+                found = self._step(step, batches)
+                if ending.number is not None:
+                    self._stop(step + 1, ending.number)
+            for name, value in found.items():
                 sums[name] += value
             counted, done = counted + 1, step + 1
             journal.advance()
@@ -170,6 +175,12 @@ class Trainer:
                 if self.ranks.first:
                     self._save(done)
                 self.ranks.wait()
+
+    def _stop(self, done: int, number: int) -> NoReturn:
+        """Save after a signal that ends the training, and end it."""
+        self._save(done)
+        say(f"{self.name}: saved at step {done} in {self.folder}")
+        raise Ended(number)
 
     def _due(self, every: int, done: int) -> bool:
         return bool(every) and (done % every == 0 or done == self.steps)

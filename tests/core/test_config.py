@@ -14,13 +14,15 @@ from mitigate.bridge import run as bridge_run
 from mitigate.core import conf
 from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
+from mitigate.replay import export_drive, replay
 from mitigate.safeguard import guard
 from mitigate.training import table1, table2, train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 
 YAMLS = sorted(path.relative_to(conf.CONF) for path in conf.CONF.rglob("*.yaml"))
 PRIMARY = tuple(
-    module.__name__.split(".")[-1] for module in (train, evaluate, table1, table2, bridge_run)
+    module.__name__.split(".")[-1]
+    for module in (train, evaluate, table1, table2, bridge_run, replay, export_drive)
 )
 GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
@@ -39,7 +41,8 @@ def resolved(cfg: DictConfig) -> dict:
 def composed(path) -> dict:
     if len(path.parts) == 1:
         return resolved(conf.load_config(path.stem))
-    return resolved(conf.load_config("train", [f"{path.parent}={path.stem}"]))
+    command = "evaluate" if str(path.parent) == "launcher" else "train"
+    return resolved(conf.load_config(command, [f"{path.parent}={path.stem}"]))
 
 
 @pytest.mark.parametrize("path", YAMLS, ids=str)

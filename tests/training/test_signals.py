@@ -1,0 +1,98 @@
+"""A training that is ended by a signal saves, says how to go on, and ends as if it never was."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import torch
+
+from mitigate.training.ranks import Ranks
+from mitigate.training.recipe import Recipe
+from mitigate.training.trainer import Trainer
+
+ROOT = Path(__file__).parents[2]
+SCRIPT = """
+import sys
+from pathlib import Path
+import hydra
+from mitigate.core import conf
+from tests.training.test_signals import train
+
+@hydra.main(version_base="1.3", config_path=None)
+def program(cfg):
+    train(Path({folder!r}), {number})
+
+conf.main(program, "train")
+"""
+
+
+class Slow(Recipe):
+    """A line that is fitted; at step 3 it sends itself a signal, once."""
+
+    def __init__(self, folder: Path, number: int) -> None:
+        super().__init__()
+        self.note, self.number, self.line = folder / "sent", number, torch.nn.Linear(2, 1)
+        torch.nn.init.ones_(self.line.weight)
+
+    def batch(self, step):
+        return {"inputs": torch.full((4, 2), 0.1 * step), "step": step}
+
+    def forward(self, batch):
+        if batch["step"] == 3 and self.number and not self.note.exists():
+            self.note.touch()
+            os.kill(os.getpid(), self.number)
+            time.sleep(0.05)  # the step goes on
+        return {"loss": (self.line(batch["inputs"]) - 1).square().mean()}
+
+
+def train(folder: Path, number: int) -> torch.Tensor:
+    torch.manual_seed(0)
+    folder.mkdir(parents=True, exist_ok=True)
+    made = Slow(folder, number)
+    Trainer(made, steps=6, folder=folder / "run", lr=0.1, save_every=5, precision="fp32").fit()
+    return made.line.weight.detach()
+
+
+def run(folder: Path, number: int) -> subprocess.CompletedProcess:
+    script = folder / "program.py"
+    script.write_text(SCRIPT.format(folder=str(folder), number=number))
+    return subprocess.run(
+        [sys.executable, str(script)],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+    )
+
+
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, 130)])
+def test_it_saves_after_the_step_says_how_to_go_on_and_ends_as_an_unbroken_run(
+    tmp_path, number, status
+):
+    ended = run(tmp_path, int(number))
+    assert ended.returncode == status, ended.stderr
+    assert "saved at step 4" in ended.stdout
+    assert "To go on:" in ended.stderr and "program.py" in ended.stderr
+    assert "Traceback" not in ended.stderr
+    assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000004.pt"]
+    found = train(tmp_path, 0)
+    assert torch.equal(found, train(tmp_path / "unbroken", 0))
+
+
+def test_a_second_signal_ends_it_at_once(tmp_path):
+    from mitigate.core.signals import Ended, held
+
+    with pytest.raises(Ended) as ended, held() as first:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.01)
+        assert first.number == signal.SIGTERM
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(1)
+    assert ended.value.status == 143
+    assert Ranks().first
