@@ -40,6 +40,7 @@ class DriveConfig:
     split: str = "val_unseen"
     episodes: int = 3
     form: str = "frames"
+    runs: str = "runs"
     env: Any = MISSING
 
 
