@@ -47,6 +47,8 @@ class HardenEncoder(Recipe):
         alike, or the mean of all.
     """
 
+    here = True  # the frames are in this process
+
     def __init__(
         self,
         agent: Encoder,
@@ -110,23 +112,37 @@ class HardenEncoder(Recipe):
     def _clean(self, frames: Tensor) -> Tensor:
         return self.teacher(frames).float()
 
-    def batch(self, step: int) -> dict[str, Any]:
+    def jobs(self, step: int) -> list[tuple[int, int, int]]:
+        """Step, place and number of each frame."""
         assert self.frames is not None, "start() reads the frames"
         rng = generator(self.seed, "encoder batch", step)
-        chosen = rng.integers(len(self.frames), size=self.batch_size)
-        clean, changed, hit = [], [], []
-        for place, index in enumerate(chosen):
-            corruption, key = self.schedule.draw(self.seed, f"{step}-{place}", 0)
-            clean.append(self.frames.frames[index])
-            changed.append(corrupted(self.frames, index, corruption, key, self.agent.far()))
-            hit.append(float(not np.array_equal(changed[-1], clean[-1])))  # black-out spares some
+        chosen = rng.integers(len(self.frames), size=self.batch_size).tolist()
+        return [(step, place, index) for place, index in enumerate(chosen)]
+
+    def work(self, job: tuple[int, int, int]) -> tuple[int, np.ndarray]:
+        """The number of a frame, and the frame corrupted."""
+        step, place, index = job
+        assert self.frames is not None
+        corruption, key = self.schedule.draw(self.seed, f"{step}-{place}", 0)
+        return index, corrupted(self.frames, index, corruption, key, self.agent.far())
+
+    def collate(self, step: int, pieces: list[tuple[int, np.ndarray]]) -> dict[str, Any]:
+        assert self.frames is not None
+        chosen, changed = [index for index, _ in pieces], [frame for _, frame in pieces]
+        clean = [self.frames.frames[index] for index in chosen]
+        # black-out spares some
+        hit = [float(not np.array_equal(a, b)) for a, b in zip(changed, clean, strict=True)]
         self._last = np.stack(changed[:SHOWN])
         return {
             "frames": torch.from_numpy(np.stack(changed)),
-            **self._wanted(chosen, clean),
+            **self._wanted(np.array(chosen), clean),
             "corrupted": torch.tensor(hit),
             "episode_ids": [self.frames.names[self.frames.scene[index]] for index in chosen],
         }
+
+    def weight(self, batch: dict[str, Any]) -> float:
+        """Frames."""
+        return float(len(batch["frames"]))
 
     def _wanted(self, chosen: np.ndarray, clean: list[np.ndarray]) -> dict[str, Tensor]:
         """The clean features of a step's frames, or the frames to compute them from."""
@@ -140,7 +156,7 @@ class HardenEncoder(Recipe):
         parts = [
             dict(zip(tensors, part, strict=True)) for part in zip(*tensors.values(), strict=True)
         ]
-        return [{**part, "share": len(part["frames"]) / self.batch_size} for part in parts]
+        return [{**part, "share": len(part["frames"]) / self.weight(batch)} for part in parts]
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         wanted = batch["wanted"] if "wanted" in batch else self._clean(batch["clean"])

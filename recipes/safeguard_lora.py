@@ -15,6 +15,7 @@ from mitigate.safeguard.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.safeguard.model import LanguageModel, collate
 from mitigate.training.recipe import Recipe
 
+Encoded = tuple[int, list[int], list[int]]  # of a pair: its number, prompt and completion
 _HELD = 10**9  # pairs from here on are for evaluation
 
 
@@ -26,6 +27,8 @@ class SafeguardLora(Recipe):
     chats: chat files (``messages``) of further pairs.
     share: of a step's pairs that come from either, if given.
     """
+
+    here = True  # a pair is quick, and the model is large
 
     def __init__(
         self,
@@ -56,12 +59,21 @@ class SafeguardLora(Recipe):
             return self.chats[int(rng.integers(len(self.chats)))]
         return draw_pair(self.seed, index, self.texts, self.share)
 
-    def batch(self, step: int) -> dict[str, Any]:
-        return self._batch(range(step * self.pairs, (step + 1) * self.pairs))
+    def jobs(self, step: int) -> list[int]:
+        return list(range(step * self.pairs, (step + 1) * self.pairs))
 
-    def _batch(self, indices: range) -> dict[str, Any]:
-        encoded = [(index, *self.agent.encode_pair(self.pair(index))) for index in indices]
-        encoded.sort(key=lambda row: len(row[1]) + len(row[2]))
+    def work(self, job: int) -> Encoded:
+        return (job, *self.agent.encode_pair(self.pair(job)))
+
+    def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:
+        return self._batch(pieces)
+
+    def weight(self, batch: dict[str, Any]) -> float:
+        """Tokens of the completions."""
+        return float(sum(int(group["completion"].sum()) for group in batch["groups"]))
+
+    def _batch(self, pieces: list[Encoded]) -> dict[str, Any]:
+        encoded = sorted(pieces, key=lambda row: len(row[1]) + len(row[2]))
         pad = self.agent.tokenizer.pad_token_id
         groups = [
             encoded[i : i + self.micro_batch] for i in range(0, len(encoded), self.micro_batch)
@@ -73,7 +85,7 @@ class SafeguardLora(Recipe):
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
         """One group each, with its share of the step's tokens."""
-        tokens = sum(int(group["completion"].sum()) for group in batch["groups"])
+        tokens = self.weight(batch)
         return [{"group": group, "tokens": tokens} for group in batch["groups"]]
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
@@ -83,6 +95,7 @@ class SafeguardLora(Recipe):
 
     def evaluate(self, step: int) -> dict[str, float]:
         """Loss and accuracy on pairs that training never draws."""
-        held = self.micro_batches(self._batch(range(_HELD, _HELD + 4 * self.pairs)))
+        pieces = [self.work(index) for index in range(_HELD, _HELD + 4 * self.pairs)]
+        held = self.micro_batches(self._batch(pieces))
         values = [self(part) for part in held]
         return {n: float(sum(part[n] for part in values)) for n in ("loss", "accuracy")}

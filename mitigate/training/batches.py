@@ -103,7 +103,7 @@ class Batches:
         """Return the batch of ``step``; steps are asked for in order."""
         recipe = self.recipe
         if not self._ordered:
-            jobs = self._jobs(step) if self.workers is not None else []
+            jobs = [] if self.workers is None or recipe.here else self._jobs(step)
             if not jobs:
                 with precision.computing(self.kind, self.device):
                     return self._alone(step)

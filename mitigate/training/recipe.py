@@ -20,6 +20,7 @@ class Recipe(nn.Module):
     Parameters with ``requires_grad`` False are never given to the optimiser.
     """
 
+    here = False  # whether jobs are done in the training's own process, never by a worker
     ahead = False  # whether jobs depend on no weights, so that workers may do them ahead of time
 
     def start(self) -> None:
