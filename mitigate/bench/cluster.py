@@ -2,9 +2,9 @@
 
 A simulation by discrete events, not a measurement: episodes take times drawn from a lognormal
 distribution with the mean and spread that ``--mean`` and ``--spread`` state (of one episode under
-all conditions, as ``docs/scale.md`` measured them); workers take shares of some episodes at a time;
-nodes fail at random and come back. A finished episode's rows are kept, as both launchers do; the one
-at hand is lost, and the rest of the share goes back to the front of the queue.
+all conditions); workers take shares of some episodes at a time; nodes fail at random and come back.
+A finished episode's rows are kept, as both launchers do; the one at hand is lost, and the rest of
+the share goes back to the front of the queue.
 """
 
 from __future__ import annotations
@@ -43,70 +43,82 @@ class Outcome:
 
 def simulate(seconds: np.ndarray, share: int, cluster: Cluster, seed: int = 0) -> Outcome:
     """Run episodes of ``seconds`` [N] on ``cluster``, ``share`` at a time."""
-    rng = np.random.default_rng(seed)
-    waiting: deque[list[int]] = deque(
-        list(range(at, min(at + share, len(seconds)))) for at in range(0, len(seconds), share)
-    )
-    mean = cluster.days * 24 * HOUR
-    events: list[tuple[float, int, str, int]] = []  # time, order, kind, node or worker
-    order = 0
+    return _Simulation(seconds, share, cluster, seed).run()
 
-    def at(time: float, kind: str, who: int) -> None:
-        nonlocal order
-        order += 1
-        heapq.heappush(events, (time, order, kind, who))
 
-    held: dict[int, tuple[list[int], float, int]] = {}  # worker: its share, begun, its ticket
-    tickets = np.zeros(cluster.nodes * cluster.workers, np.int64)
-    due: dict[int, tuple[float, int]] = {}
-    idle: set[int] = set()
-    done, lost, failures, busy, now = 0, 0.0, 0, 0.0, 0.0
+class _Simulation:
+    """Events are (time, order, kind, node or worker)."""
 
-    def take(worker: int) -> None:
-        if not waiting:
-            idle.add(worker)
+    def __init__(self, seconds: np.ndarray, share: int, cluster: Cluster, seed: int) -> None:
+        self.seconds, self.cluster = seconds, cluster
+        self.rng = np.random.default_rng(seed)
+        numbers = list(range(len(seconds)))
+        self.waiting = deque(numbers[at : at + share] for at in range(0, len(numbers), share))
+        self.events: list[tuple[float, int, str, int]] = []
+        self.held: dict[int, tuple[list[int], float, float]] = {}  # worker: share, begun, due
+        self.idle: set[int] = set()
+        self.now = self.lost = self.busy = 0.0
+        self.order = self.done = self.failures = 0
+
+    def run(self) -> Outcome:
+        for node in range(self.cluster.nodes):
+            self.comes_back(node)
+        while self.done < len(self.seconds):
+            self.now, _, kind, who = heapq.heappop(self.events)
+            getattr(self, kind)(who)
+        whole = self.now * self.cluster.nodes * self.cluster.workers
+        idle = whole - self.busy - self.lost
+        return Outcome(self.now / HOUR, self.lost / HOUR, idle / HOUR, self.failures)
+
+    def comes_back(self, node: int) -> None:
+        """A node begins, or begins again."""
+        mean = self.cluster.days * 24 * HOUR
+        self._at(self.now + self.rng.exponential(mean), "fails", node)
+        for worker in self._workers(node):
+            self._take(worker)
+
+    def fails(self, node: int) -> None:
+        """A node is lost, with the episodes at hand; what its workers had left goes to others."""
+        self.failures += 1
+        for worker in self._workers(node):
+            self.idle.discard(worker)
+            if worker in self.held:
+                episodes, begun, _ = self.held.pop(worker)
+                self.lost += self.now - begun
+                self.waiting.appendleft(episodes)
+        self._at(self.now + 60 * self.cluster.back, "comes_back", node)
+        for worker in sorted(self.idle)[: len(self.waiting)]:
+            self.idle.discard(worker)
+            self._take(worker)
+
+    def finishes(self, worker: int) -> None:
+        """A worker is done with an episode, unless that was lost before."""
+        if worker not in self.held or self.held[worker][2] != self.now:
             return
-        begin(worker, waiting.popleft())
-
-    def begin(worker: int, episodes: list[int]) -> None:
-        tickets[worker] += 1
-        held[worker] = (episodes, now, int(tickets[worker]))
-        due[worker] = (now + seconds[episodes[0]], int(tickets[worker]))
-        at(due[worker][0], "done", worker)
-
-    for node in range(cluster.nodes):
-        at(rng.exponential(mean), "fails", node)
-        for worker in range(node * cluster.workers, (node + 1) * cluster.workers):
-            take(worker)
-    while done < len(seconds):
-        now, _, kind, who = heapq.heappop(events)
-        if kind == "done":
-            if who not in held or due[who] != (now, held[who][2]):
-                continue  # of a share that was lost
-            episodes, begun, _ = held.pop(who)
-            done, busy = done + 1, busy + now - begun
-            if len(episodes) > 1:
-                begin(who, episodes[1:])
-            else:
-                take(who)
-        elif kind == "fails":
-            failures += 1
-            for worker in range(who * cluster.workers, (who + 1) * cluster.workers):
-                idle.discard(worker)
-                if worker in held:
-                    episodes, begun, _ = held.pop(worker)
-                    lost += now - begun
-                    waiting.appendleft(episodes)
-            at(now + 60 * cluster.back, "back", who)
-            for worker in list(idle)[: len(waiting)]:
-                idle.discard(worker)
-                take(worker)
+        episodes, begun, _ = self.held.pop(worker)
+        self.done, self.busy = self.done + 1, self.busy + self.now - begun
+        if len(episodes) > 1:
+            self._begin(worker, episodes[1:])
         else:
-            at(now + rng.exponential(mean), "fails", who)
-            for worker in range(who * cluster.workers, (who + 1) * cluster.workers):
-                take(worker)
-    whole = now * cluster.nodes * cluster.workers
-    return Outcome(now / HOUR, lost / HOUR, (whole - busy - lost) / HOUR, failures)
+            self._take(worker)
+
+    def _workers(self, node: int) -> range:
+        return range(node * self.cluster.workers, (node + 1) * self.cluster.workers)
+
+    def _take(self, worker: int) -> None:
+        if self.waiting:
+            self._begin(worker, self.waiting.popleft())
+        else:
+            self.idle.add(worker)
+
+    def _begin(self, worker: int, episodes: list[int]) -> None:
+        due = self.now + float(self.seconds[episodes[0]])
+        self.held[worker] = (episodes, self.now, due)
+        self._at(due, "finishes", worker)
+
+    def _at(self, time: float, kind: str, who: int) -> None:
+        self.order += 1
+        heapq.heappush(self.events, (time, self.order, kind, who))
 
 
 def draw(count: int, mean: float, spread: float, seed: int) -> np.ndarray:
@@ -118,9 +130,9 @@ def draw(count: int, mean: float, spread: float, seed: int) -> np.ndarray:
 def table(options: argparse.Namespace) -> str:
     """The outcomes by share and failures as Markdown, each the median of the seeds."""
     lines = [
-        f"{options.episodes:,} episodes of {options.mean:g} s (all conditions), {options.nodes} nodes "
-        f"of {options.workers} workers, a failed node is back after {options.back:g} minutes; "
-        f"medians of {options.seeds} simulations",
+        f"{options.episodes:,} episodes of {options.mean:g} s (all conditions), {options.nodes} "
+        f"nodes of {options.workers} workers, a failed node is back after {options.back:g} "
+        f"minutes; medians of {options.seeds} simulations",
         "",
         "| a node fails each | episodes at a time | hours | failures | worker hours lost | idle |",
         "|---:|---:|---:|---:|---:|---:|",
@@ -144,21 +156,16 @@ def table(options: argparse.Namespace) -> str:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run from the command line."""
     parser = argparse.ArgumentParser(prog="python -m mitigate.bench.cluster", description=__doc__)
-    parser.add_argument(
-        "--episodes", type=int, default=7 * 5 * 1839, help="agents x severities x list"
-    )
-    parser.add_argument(
-        "--mean", type=float, default=17.0, help="seconds of an episode, all conditions"
-    )
-    parser.add_argument("--spread", type=float, default=0.5, help="standard deviation over mean")
-    parser.add_argument("--nodes", type=int, default=100)
-    parser.add_argument("--workers", type=int, default=16, help="of a node")
-    parser.add_argument(
-        "--days", type=float, nargs="+", default=[1.0, 30.0], help="between failures"
-    )
-    parser.add_argument("--back", type=float, default=10.0, help="minutes until a node is back")
-    parser.add_argument("--shares", type=int, nargs="+", default=[1, 8])
-    parser.add_argument("--seeds", type=int, default=5)
+    add = parser.add_argument
+    add("--episodes", type=int, default=7 * 5 * 1839, help="7 agents x 5 severities x R2R-CE's")
+    add("--mean", type=float, default=17.0, help="seconds of an episode under all conditions")
+    add("--spread", type=float, default=0.5, help="standard deviation over mean")
+    add("--nodes", type=int, default=100)
+    add("--workers", type=int, default=16, help="of a node")
+    add("--days", type=float, nargs="+", default=[1.0, 30.0], help="between failures of a node")
+    add("--back", type=float, default=10.0, help="minutes until a node is back")
+    add("--shares", type=int, nargs="+", default=[1, 8], help="episodes a worker takes at a time")
+    add("--seeds", type=int, default=5)
     print(table(parser.parse_args(arguments)))
 
 
