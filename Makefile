@@ -10,7 +10,7 @@ RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --ma
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install train evaluate sweep table table1 table2 export test lint bench doctor clean
+.PHONY: help install test-faults train evaluate sweep table table1 table2 export test lint bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9]+):.*## /\1|/' \
@@ -54,6 +54,9 @@ export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/
 
 test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup $(ARGS)
+
+test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
+	$(BIN)/python tools/faults.py $(ARGS)
 
 lint: $(VENV)/.stamp ## check style and formatting
 	$(BIN)/ruff check .
