@@ -13,8 +13,8 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .PHONY: help install test-faults train evaluate sweep table table1 table2 export test lint bench doctor clean
 
 help: ## list the targets
-	@grep -E '^[a-z0-9]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9]+):.*## /\1|/' \
-	  | awk -F'|' '{printf "  make %-10s %s\n", $$1, $$2}'
+	@grep -E '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /\1|/' \
+	  | awk -F'|' '{printf "  make %-11s %s\n", $$1, $$2}'
 
 $(VENV)/.stamp: pyproject.toml
 	@echo "setting up $(VENV) (minutes, once)"

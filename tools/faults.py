@@ -101,9 +101,8 @@ class Training:
 def break_training(recipe: str, out: Path, seed: int) -> dict[str, str]:
     """What each fault of a recipe's training came to: "survived", or what is wrong."""
     rng = random.Random(f"{seed} {recipe}")
-    unbroken, broken = (
-        Training(recipe, out / recipe / n / "run", rng) for n in ("whole", "broken")
-    )
+    unbroken = Training(recipe, out / recipe / "whole" / "run", rng)
+    broken = Training(recipe, out / recipe / "broken" / "run", rng)
     unbroken.finish()
     broken.seconds = unbroken.seconds
     faults: dict[str, Callable[[], str]] = {
@@ -144,12 +143,14 @@ def break_evaluation(out: Path, seed: int) -> dict[str, str]:
         process = start(command(name), out)
         time.sleep(rng.uniform(0.5, 0.8) * seconds)
         workers = children(children_of_server(process.pid))
-        for worker in workers[:1]:
-            os.kill(worker, number)
+        if not workers:
+            found[name] = "not run: it had no worker at that moment"
+            ended(process)
+            continue
+        os.kill(workers[0], number)
         if number == signal.SIGSTOP:
             time.sleep(3)
-            for worker in workers[:1]:
-                os.kill(worker, signal.SIGCONT)
+            os.kill(workers[0], signal.SIGCONT)
         status, said = ended(process)
         found[name] = "survived" if not status and rows(name) == rows("whole") else said or "rows"
     process = start(command("command killed"), out)
@@ -187,7 +188,7 @@ def small_disk(folder: Path, megabytes: int) -> Iterator[bool]:
 
 
 def break_disk(out: Path, seed: int) -> dict[str, str]:
-    """A training whose disk is full says so, leaves no half file, and goes on when there is room."""
+    """A training whose disk is full says so, and goes on when there is room."""
     rng = random.Random(seed)
     with small_disk(out / "disk", 20) as there:
         if not there:
