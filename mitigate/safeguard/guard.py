@@ -168,7 +168,7 @@ class _Draft:
         self.reasons: list[str] = []
         self.asked = self.taken = 0
         self.plain = not _readable(self.tidied) or _untouched(self.tidied)
-        self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.tidied))
+        self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.original))
         self.repair(set())
 
     def repair(self, empty: set[str]) -> None:
@@ -177,8 +177,8 @@ class _Draft:
             self.repaired, self.passages, self.styled = self.original, [self.original], False
             self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
             return
-        done = rules.repair(self.tidied, empty.__contains__)
-        self.repaired, self.reasons = done.text, list(done.reasons)
+        done = rules.repair(self.original, empty.__contains__)
+        self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.styled = done.marks >= MARKS
         if len(words(self.repaired)) > TOO_LONG:
             self.passages = [self.repaired]
@@ -261,8 +261,7 @@ def _untouched(text: str) -> bool:
         not MASK.search(text)
         and rules.lower_capitals(text) == text
         and rules.style_marks(text) < MARKS
-        and not rules.doubtful(text)
-        and not rules.injected(text)
+        and rules.repair(text).text == text
     )
 
 

@@ -1,0 +1,126 @@
+"""A text cut into pieces that can be judged and taken out one by one.
+
+Sentences first, whatever ends them: full stops before quotes and brackets, lines, markup, a capital
+verb where a full stop is missing. Then the parts of a sentence: what stands in brackets or quotes,
+behind a colon or a dash, between commas. Too many cuts do no harm, as what is kept keeps its place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+_BEFORE = (
+    r"(?<!\bDr)(?<!\bMr)(?<!\bMs)(?<!\bMrs)(?<!\bSt)(?<!\bProf)(?<!\bNo)(?<!\be\.g)(?<!\bi\.e)"
+    r"(?<!\bvs)(?<!\bapprox)"
+)
+_STARTS = (
+    "Walk|Go|Turn|Exit|Leave|Enter|Head|Continue|Proceed|Take|Make|Pass|Climb|Descend|Ascend|Stop|"
+    "Wait|Move|Cross|Follow|Veer|Bear|Keep|Step|Face|Start|Begin|Once|When|After|From|With|Then|"
+    "Next|You|There|Now|Find|Look|Come|Get|Stand|Facing|Starting|Upon|As|At|The|In|On|Hey|Hi|Hello|"
+    "Okay|Please|Kindly|First|Finally|I|So|Let|Just|Right|Left|Out|Up|Down|Past|Straight"
+)
+_END = re.compile(
+    rf"{_BEFORE}[.!?…。！？]+[\"'”’»)\]*_]*(?:\s+|$)"
+    r"|(?<=[a-z)])[.](?=[A-Z][a-z])|\s*\n+\s*"
+    rf"|(?<=[a-z0-9)\]>}}=\"'”’])\s+(?=(?:{_STARTS})\s+[a-z])"
+    rf"|(?<=:)\s+[\"“'‘]?(?=(?:{_STARTS})\s)"
+)
+_MARKUP = re.compile(
+    r"<!--.*?(?:-->|$)|```.*?(?:```|$)|<\|.*?\|>.*?<\|.*?\|>|<<\w+>>.*?<</\w+>>|/\*.*?(?:\*/|$)"
+    r"|<(\w+)\b[^<>]*>.*?</\1>|</?\w+(?:\s[^<>]*)?/?>(?:<\w+>.*?</\w+>)?"
+    r"|\[(\w+)\](?<!\[MASK\])(?<!\[UNK\])(?<!\[mask\]).*?\[/\2\]"
+    r"|(?:\[[A-Z]{3,}(?: [A-Z]+)+\])+(?:[^\[]*\[[A-Z]{3,}(?: [A-Z]+)+\])?"
+    r"|\{[^{}]*(?:\{[^{}]*\}[^{}]*)*:[^{}]*\}"
+    r"|(?:^|(?<=\s))#{1,6} [^\n.]*[\n.]?(?: ?(?<=\n)[^\n.]*\.?)?|(?:^|(?<=\s))// [^\n.]*\.?"
+    r"|(?:^|(?<=\n)|(?<=[.!?] ))---\n.*?\n---|(?:^|(?<=\n))- \[[x ]\][^\n]*"
+    r"|\*\*[^*\n]+\*\*[^.\n]*\.?|(?<![A-Za-z] )\b(?:System|User|Assistant|Human|AI|Bot)\s?:[^.!?]*[.!?]?",
+    re.DOTALL,
+)
+_OPEN_ENDED = re.compile(r"#|//|[A-Z]|\*\*")
+_MASKS = re.compile(r"^<(?:mask|unk)>$|^\[(?:MASK|UNK|mask)\]$")
+_ENCLOSED = re.compile(
+    r"\([^()]*\)|\[[^\[\]]*\]|\"[^\"]*\"|“[^”]*”|«[^»]*»|(?<!\w)'[^'\n]*(?:\w'\w[^'\n]*)*'(?!\w)"
+    r"|[^\x00-\u024f\u2000-\u206f]{2,}(?:\s*[^\x00-\u024f\u2000-\u206f]+)*"
+)
+_CUT = re.compile(r"(?<=[:;,])\s+|\s+[-–—]+\s+|\s+(?=(?:but|although|unless|which|or rather)\s)")
+
+
+@dataclass(frozen=True)
+class Piece:
+    """``text[start:end]`` of a text; ``markup``: whether it stands in tags or the like."""
+
+    start: int
+    end: int
+    markup: bool = False
+
+    def of(self, text: str) -> str:
+        """Return the piece of ``text``."""
+        return text[self.start : self.end]
+
+
+def sentence_pieces(text: str) -> list[Piece]:
+    """Return the sentences of ``text`` in order, without the spaces between them."""
+    found: list[Piece] = []
+    at = 0
+    for match in _MARKUP.finditer(text):
+        if _MASKS.match(match.group()) or not match.group().strip():
+            continue
+        found += _sentences(text, at, match.start(), markup=False)
+        found += _marked(text, match)
+        at = match.end()
+    return found + _sentences(text, at, len(text), markup=False)
+
+
+def parts(text: str, piece: Piece) -> list[Piece]:
+    """Return the parts of a sentence: enclosed ones, and what commas, colons, dashes divide; none
+    if there is but one."""
+    body, found, at = piece.of(text), [], 0
+    for match in _ENCLOSED.finditer(body):
+        found += list(_cut(body, at, match.start()))
+        found.append((match.start(), match.end()))
+        at = match.end()
+    found += list(_cut(body, at, len(body)))
+    made = [Piece(piece.start + a, piece.start + b, piece.markup) for a, b in found]
+    return made if len(made) > 1 else []
+
+
+def _marked(text: str, match: re.Match[str]) -> list[Piece]:
+    """Return the sentences of a match of markup; what runs on behind a heading, a comment or a
+    speaker's name is none."""
+    found = _sentences(text, match.start(), match.end(), markup=True)
+    if not _OPEN_ENDED.match(match.group()):
+        return found
+    for index, (piece, after) in enumerate(zip(found, found[1:], strict=False), 1):
+        if "\n" not in text[piece.end : after.start]:
+            rest = [Piece(p.start, p.end) for p in found[index:]]
+            return found[:index] + rest
+    return found
+
+
+def _sentences(text: str, start: int, end: int, markup: bool) -> list[Piece]:
+    found, at = [], start
+    for match in _END.finditer(text, start, end):
+        found.append((at, match.end()))
+        at = match.end()
+    found.append((at, end))
+    return [Piece(*s, markup) for a, b in found if (s := _stripped(text, a, b))]
+
+
+def _cut(body: str, start: int, end: int) -> Iterator[tuple[int, int]]:
+    at = start
+    for match in _CUT.finditer(body, start, end):
+        if span := _stripped(body, at, match.start()):
+            yield span
+        at = match.end()
+    if span := _stripped(body, at, end):
+        yield span
+
+
+def _stripped(text: str, start: int, end: int) -> tuple[int, int] | None:
+    while start < end and text[start].isspace():
+        start += 1
+    while end > start and text[end - 1].isspace():
+        end -= 1
+    return (start, end) if start < end else None
