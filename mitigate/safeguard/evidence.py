@@ -6,8 +6,9 @@ agent, of all cases, or of nothing that a route needs; or it takes back what the
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
 from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
@@ -16,6 +17,7 @@ from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.lexicon import FUNCTION, GROUPS, known_words
 from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.weights import WORDS
 
 LANDMARKS = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 VERBS = MOTION | STOPS | TURN_VERBS
@@ -60,6 +62,34 @@ _ELSE = re.compile(r"\b(?:instead|rather than|somewhere else|anywhere|elsewhere|
 
 @lru_cache(maxsize=8192)
 def features(piece: str, markup: bool = False) -> dict[str, float]:
+    """Return all evidence on a piece: what it is made of and what its words are worth."""
+    return composition(piece, markup) | worth(piece, WORDS)
+
+
+def worth(piece: str, table: Mapping[str, float]) -> dict[str, float]:
+    """Return what the words and pairs of words of a piece say, by a table of log odds."""
+    told = terms(piece)
+    single = [table[t] for t in told if t in table and "_" not in t]
+    double = [table[t] for t in told if t in table and "_" in t]
+    order = sorted(single + double)
+    return {
+        "words": sum(single) / math.sqrt(len(single) + 1),
+        "pairs": sum(double) / math.sqrt(len(double) + 1),
+        "worst words": sum(order[-3:]) / 3,
+        "best words": sum(order[:3]) / 3,
+    }
+
+
+@lru_cache(maxsize=8192)
+def terms(piece: str) -> frozenset[str]:
+    """Return the words of a piece and its pairs of neighbouring words, joined by "_"."""
+    found = words(MASK.sub(" ", plainly(piece).text))
+    joined = zip(["", *found], [*found, ""], strict=True)
+    return frozenset(found) | {f"{a}_{b}" for a, b in joined}
+
+
+@lru_cache(maxsize=8192)
+def composition(piece: str, markup: bool = False) -> dict[str, float]:
     """Return what a piece is made of, as counts, shares or flags about 0 to 3."""
     plain = plainly(piece)
     low = _IDIOMS.sub(" ", MASK.sub(" ", plain.text).lower().replace("’", "'"))

@@ -10,10 +10,11 @@ ones lack. Run it in a checkout: the banks are not in the package.
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import textwrap
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,7 +26,7 @@ from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import gate, routes, rules, trials
 from mitigate.safeguard.data import draw_pair, vary
-from mitigate.safeguard.evidence import VERBS, features, in_context
+from mitigate.safeguard.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
 from mitigate.safeguard.lexicon import GROUPS
 from mitigate.safeguard.pieces import parts, sentence_pieces
 from mitigate.safeguard.text import words
@@ -33,18 +34,19 @@ from mitigate.safeguard.text import words
 WEIGHTS = Path(__file__).parent / "weights.py"
 PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8
 RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text
+PRIOR = 0.5  # of a word, in the weight of examples
 TOTAL, SHARE = 2000.0, 1 / 3  # weight of all examples, and of the attacks among them (ours)
 
 
 @dataclass(frozen=True)
 class Example:
-    """A piece of text, whether it is an attack, how much it counts, its ``group`` for the folds."""
+    """A piece of text, whether it is an attack, how much it counts, its ``fold``."""
 
     text: str
     markup: bool
     attack: bool
     weight: float
-    group: str
+    fold: int
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -52,7 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.fit", description=__doc__)
     parser.add_argument("--write", action="store_true", help=f"replace {WEIGHTS.name}")
     write = parser.parse_args(arguments).write
-    text = module(fit_weights(), style_words(), common_words())
+    text = module(*fit_weights(), style_words())
     if not write:
         print(text, end="")
         return
@@ -62,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def module(
-    fitted: dict[str, dict[str, float]], marks: Iterable[str], common: Iterable[str]
+    fitted: Mapping[str, Mapping[str, float]], table: Mapping[str, float], marks: Iterable[str]
 ) -> str:
     """Return the text of ``weights.py``."""
     lines = [
@@ -74,23 +76,61 @@ def module(
         lines.append(f"{name}: dict[str, float] = {{")
         lines += [f'    "{key}": {value:.3f},' for key, value in weights.items()]
         lines.append("}")
-    for name, found in (("STYLE", marks), ("WORDS", common)):
+    scores = [f"{term}={100 * value:.0f}" for term, value in sorted(table.items())]
+    for name, found in (("STYLE", sorted(marks)), ("_WORDS", scores)):
         lines.append(f'{name} = bag(\n    """')
         lines += textwrap.wrap(
-            " ".join(sorted(found)), 96, initial_indent="    ", subsequent_indent="    "
-        )
+            " ".join(found), 96, initial_indent="    ", subsequent_indent="    ",
+            break_on_hyphens=False,
+        )  # fmt: skip
         lines.append('    """\n)')
+    lines.append("WORDS = {term: int(odds) / 100 for term, odds in (w.split(\"=\") for w in _WORDS)}")
     return "\n".join(lines) + "\n"
 
 
-def fit_weights() -> dict[str, dict[str, float]]:
-    """Return name -> weights of the three regressions."""
+def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
+    """Return name -> weights of the three regressions, and what words are worth."""
     examples = [*_attacks(), *_routes()]
-    rows = [features(e.text, e.markup) for e in examples]
-    own = _regression(rows, examples)
-    held = _held_out(rows, examples)
-    strange = {(e.text, e.markup): p for e, p in zip(examples, held, strict=True)}
-    return {"OWN": own, "CONTEXT": _context(own, strange), "PART": _part(own)}
+    whole = word_table(examples)
+    tables = [word_table([e for e in examples if e.fold != out]) for out in range(FOLDS)]
+    rows = [
+        composition(e.text, e.markup) | worth(e.text, tables[e.fold]) for e in examples
+    ]
+    own = _regression(rows, [e.attack for e in examples], [e.weight for e in examples])
+    strange = {}
+    for out in range(FOLDS):
+        seen = [i for i, e in enumerate(examples) if e.fold != out]
+        fitted = _regression(
+            [rows[i] for i in seen],
+            [examples[i].attack for i in seen],
+            [examples[i].weight for i in seen],
+        )
+        for e, row in zip(examples, rows, strict=True):
+            if e.fold == out:
+                strange[e.text, e.markup] = rules.probability(fitted, row)
+    fitted = {"OWN": own, "CONTEXT": _context(own, whole, strange), "PART": _part(own, tables)}
+    return fitted, whole
+
+
+def word_table(examples: Sequence[Example]) -> dict[str, float]:
+    """Return word or pair of words -> log odds of attacks against routes, at most 2 either way;
+    pairs that are rare are left out."""
+    weights = _balanced([e.attack for e in examples], [e.weight for e in examples])
+    seen: Counter[str] = Counter()
+    mass: tuple[Counter[str], Counter[str]] = (Counter(), Counter())
+    for e, weight in zip(examples, weights, strict=True):
+        for term in terms(e.text):
+            seen[term] += 1
+            mass[e.attack][term] += weight
+    whole = [sum(w for e, w in zip(examples, weights, strict=True) if e.attack is side)
+        for side in (False, True)]  # fmt: skip
+    return {
+        term: max(-2.0, min(2.0, math.log(
+            (mass[1][term] + PRIOR * SHARE) / whole[1] * whole[0] / (mass[0][term] + PRIOR * (1 - SHARE))
+        )))
+        for term, count in seen.items()
+        if count > 2 or "_" not in term
+    }  # fmt: skip
 
 
 def _attacks() -> list[Example]:
@@ -101,114 +141,113 @@ def _attacks() -> list[Example]:
         for family, group in prefixes(split).items()
         for line in group
     ]
-    found += [("ours", line, 1.0) for line in trials.fitting("fit_attacks")]
+    found += [(f"ours {i % 8}", line, 1.0) for i, line in enumerate(trials.fitting("fit_attacks"))]
     rng = generator(0, "fit")
     found += [("varied", vary(rng), 0.15) for _ in range(200)]
+    groups = sorted({group for group, _, _ in found})
     return [
-        Example(piece.of(line), piece.markup, True, weight, group)
+        Example(piece.of(line), bool(piece.block), True, weight, groups.index(group) % FOLDS)
         for group, line, weight in found
         for piece in sentence_pieces(line)
+        if not piece.tag
     ]
 
 
 def _routes() -> list[Example]:
-    found: list[tuple[str, float]] = []
+    found: list[tuple[str, float, int]] = []
     for task in ("route", "object"):
         for told in trials.told("tune", task):
-            found += [(part, 1.0) for part in told.parts] + [(told.plain, 1.0)]
-    found += [(routes.draw_route(generator(0, "fit", i)), 0.5) for i in range(600)]
-    found += [(line["text"], 6.0) for line in trials.half("near_misses", "tune")]
-    found += [(line, 4.0) for line in trials.fitting("fit_routes")]
+            fold = trials.TUNE_VOICES.index(told.voice) % FOLDS
+            found += [(part, 1.0, fold) for part in told.parts] + [(told.plain, 1.0, fold)]
+    lines = [(routes.draw_route(generator(0, "fit", i)), 0.5) for i in range(600)]
+    lines += [(line["text"], 6.0) for line in trials.half("near_misses", "tune")]
+    lines += [(line, 4.0) for line in trials.fitting("fit_routes")]
     for bank in ("lies", "honest"):
         for line in trials.half(bank, "tune"):
-            found += [(text, 1.0) for key, text in line.items() if key != "kind"]
+            lines += [(text, 1.0) for key, text in line.items() if key != "kind"]
+    found += [(text, weight, index % FOLDS) for index, (text, weight) in enumerate(lines)]
     return [
-        Example(piece.of(text), piece.markup, False, weight, str(index % FOLDS))
-        for index, (text, weight) in enumerate(found)
+        Example(piece.of(text), bool(piece.block), False, weight, fold)
+        for text, weight, fold in found
         for piece in sentence_pieces(text)
         if weight != 1.0 or gate.route_facts(piece.of(text))  # the others frame, and may go
     ]
 
 
-def _held_out(rows: list[dict[str, float]], examples: list[Example]) -> list[float]:
-    """Return each example's probability by a fit that saw no example of its group."""
-    groups = sorted({e.group for e in examples if e.attack})
-    fold = [groups.index(e.group) % FOLDS if e.attack else int(e.group) for e in examples]
-    found = [0.0] * len(rows)
-    for out in range(FOLDS):
-        seen = [i for i, number in enumerate(fold) if number != out]
-        fitted = _regression([rows[i] for i in seen], [examples[i] for i in seen])
-        for i, number in enumerate(fold):
-            if number == out:
-                found[i] = rules.probability(fitted, rows[i])
-    return found
+def _context(
+    own: Mapping[str, float],
+    table: Mapping[str, float],
+    strange: Mapping[tuple[str, bool], float],
+) -> dict[str, float]:
+    """Return the weights of sentences among others; attacks stand in plain and restyled routes.
 
-
-def _context(own: dict[str, float], strange: dict[tuple[str, bool], float]) -> dict[str, float]:
-    """Return the weights of sentences among others; attacks stand in plain and restyled routes."""
+    ``strange``: probabilities by fits that had not seen the sentence, where there are such.
+    """
     styled, plain = trials.told("tune"), trials.plainly_told("tune")
     heard = [(told.text, "") for told in (*styled, *plain)]
     heard += [(line["text"], "") for line in trials.half("near_misses", "tune")] * 3
     heard += [(line, "") for line in trials.fitting("fit_routes")]
     found = [a for a in trials.attacks("tune") if a.place == "any"]
-    for routes_ in (styled, plain):
-        heard += [(text, a.words) for a, _, _, text in trials.trials(found, routes_, 1)]
-    examples, rows = [], []
+    found += [trials.Attack("ours", "any", line) for line in trials.fitting("fit_attacks")]
+    for told in (styled, plain):
+        heard += [(text, a.words) for a, _, _, text in trials.trials(found, told, 1)]
+    rows, attacks = [], []
     for text, attack in heard:
         pieces = sentence_pieces(text)
         said = [piece.of(text) for piece in pieces]
-        known = [
-            strange.get((s, p.markup), rules.probability(own, features(s, p.markup)))
-            for s, p in zip(said, pieces, strict=True)
-        ]
-        around = in_context(said, known)
-        for s, p, row in zip(said, known, around, strict=True):
+        known = []
+        for s, piece in zip(said, pieces, strict=True):
+            p = strange.get((s, bool(piece.block)))
+            row = composition(s, bool(piece.block)) | worth(s, table)
+            known.append(rules.probability(own, row) if p is None else p)
+        for s, p, row in zip(said, known, in_context(said, known), strict=True):
             foreign = bool(attack) and s in attack
             if foreign or gate.route_facts(s) or not attack:
                 rows.append({"own": rules.logit(p), **row})
-                examples.append(Example(s, False, foreign, 1.0, ""))
-    return _regression(rows, examples)
+                attacks.append(foreign)
+    return _regression(rows, attacks, [1.0] * len(rows))
 
 
-def _part(own: dict[str, float]) -> dict[str, float]:
+def _part(own: Mapping[str, float], tables: Sequence[Mapping[str, float]]) -> dict[str, float]:
     """Return the weights of parts inside sentences."""
-    inside = [a for a in trials.attacks("tune") if a.place == "inside"]
     styled, plain = trials.told("tune"), trials.plainly_told("tune")
-    examples, rows = [], []
-
-    def add(text: str, attack: str, weight: float) -> None:
+    inside = [a for a in trials.attacks("tune") if a.place == "inside"]
+    short = [line for line in trials.fitting("fit_attacks") if len(line.split()) < 12]
+    ours = [trials.Attack("ours", "inside", line.strip(" ,.")) for line in short]
+    heard = [(t, a.words, 0.5) for told in (styled, plain)
+        for a, _, _, t in trials.trials(inside, told, 4)]  # fmt: skip
+    heard += [(t, a.words, 0.5) for a, _, _, t in trials.trials(ours, plain, 2)]
+    heard += [(told.text, "", 1.0) for told in (*styled, *plain)]
+    heard += [(line["text"], "", 6.0) for line in trials.half("near_misses", "tune")]
+    rows, attacks, weights = [], [], []
+    for index, (text, attack, weight) in enumerate(heard):
+        table = tables[index % FOLDS]
         for piece in sentence_pieces(text):
-            whole = rules.logit(rules.probability(own, features(piece.of(text), piece.markup)))
+            whole = piece.of(text)
+            p = rules.probability(own, composition(whole, bool(piece.block)) | worth(whole, table))
             for part in parts(text, piece):
                 said = part.of(text)
-                foreign = bool(attack) and (said.strip(",. ") in attack)
-                rows.append({"whole": whole, **features(said)})
-                examples.append(Example(said, False, foreign, weight, ""))
-
-    for routes_ in (styled, plain):
-        for attack, _, _, text in trials.trials(inside, routes_, 4):
-            add(text, attack.words, 0.5)
-    short = [line for line in trials.fitting("fit_attacks") if len(line.split()) < 12]
-    lines = [trials.Attack("ours", "inside", line.strip(" ,.")) for line in short]
-    for attack, _, _, text in trials.trials(lines, plain, 2):
-        add(text, attack.words, 0.5)
-    for told in (*styled, *plain):
-        add(told.text, "", 1.0)
-    for line in trials.half("near_misses", "tune"):
-        add(line["text"], "", 6.0)
-    return _regression(rows, examples)
+                rows.append({"whole": rules.logit(p), **composition(said), **worth(said, table)})
+                attacks.append(bool(attack) and said.strip(",. ") in attack)
+                weights.append(weight)
+    return _regression(rows, attacks, weights)
 
 
-def _regression(rows: list[dict[str, float]], examples: list[Example]) -> dict[str, float]:
+def _balanced(attacks: Sequence[bool], weights: Sequence[float]) -> np.ndarray:
+    """Return the weights, of which attacks have the share ``SHARE`` of ``TOTAL``."""
+    y, weight = np.array(attacks), np.array(weights)
+    attack, route = SHARE / weight[y].sum(), (1 - SHARE) / weight[~y].sum()
+    return TOTAL * weight * np.where(y, attack, route)
+
+
+def _regression(
+    rows: Sequence[Mapping[str, float]], attacks: Sequence[bool], weights: Sequence[float]
+) -> dict[str, float]:
     """Return bias and weights: Newton's method on the ridge-penalised log-likelihood."""
     names = list(rows[0])
     x = np.array([[1.0, *(row[name] for name in names)] for row in rows])
-    y = np.array([float(e.attack) for e in examples])
-    weight = np.array([e.weight for e in examples])
-    weight = np.where(y == 1, SHARE * weight / weight[y == 1].sum(), weight)
-    weight = np.where(y == 0, (1 - SHARE) * weight / weight[y == 0].sum(), weight) * TOTAL
-    ridge = np.full(x.shape[1], RIDGE)
-    ridge[0] = 1e-3
+    y, weight = np.array(attacks, float), _balanced(attacks, weights)
+    ridge = np.array([1e-3, *(RIDGE * (0.1 if name in HIDDEN else 1.0) for name in names)])
     w = np.zeros(x.shape[1])
     for _ in range(ITERATIONS):
         p = 1 / (1 + np.exp(-np.clip(x @ w, -30, 30)))
@@ -216,16 +255,6 @@ def _regression(rows: list[dict[str, float]], examples: list[Example]) -> dict[s
         curve = (x * (weight * p * (1 - p) + 1e-9)[:, None]).T @ x + np.diag(ridge)
         w -= np.linalg.solve(curve, slope)
     return dict(zip(("bias", *names), map(float, w), strict=True))
-
-
-def common_words() -> frozenset[str]:
-    """Return the words of all that the rules are fitted on, but for those in a code."""
-    text = [line for bank in ("fit_attacks", "fit_routes") for line in trials.fitting(bank)]
-    text += [a.words for a in trials.attacks("tune") if a.mechanism != "encoded"]
-    text += [f"{t.text} {t.plain}" for k in ("route", "object") for t in trials.told("tune", k)]
-    for bank in ("near_misses", "lies", "honest"):
-        text += [value for line in trials.half(bank, "tune") for value in line.values()]
-    return frozenset(word for line in text for word in words(line) if len(word) > 1)
 
 
 def style_words() -> list[str]:

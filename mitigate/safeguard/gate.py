@@ -16,7 +16,7 @@ from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import LANDMARKS, MOVES
 from mitigate.safeguard.text import MASK
 
-ATTACK = 0.5  # from here on a sentence is an attack by what it says itself
+ATTACK = 0.4  # from here on a sentence is an attack by what it says itself
 # categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
 CATEGORIES = bag(
     """
@@ -42,6 +42,13 @@ def route_facts(text: str) -> tuple[str, ...]:
     known = [name for name in said.landmarks if name in LANDMARKS or name in CATEGORIES]
     passed = [] if known else MOVES.findall(plain.lower())
     return (*said.directions, *known, *passed)
+
+
+def weight(text: str) -> int:
+    """Return how much ``text`` tells: 0 nothing, 1 things, 2 something of a way."""
+    if route_facts(text):
+        return 2
+    return int(bool(facts(MASK.sub("the", plainly(text).text)).landmarks))
 
 
 def sought(text: str) -> frozenset[str]:

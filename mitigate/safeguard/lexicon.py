@@ -155,5 +155,5 @@ def known_words() -> frozenset[str]:
         | frozenset(CANONICAL.values())
         | frozenset(word for phrase in PHRASES for word in phrase)
         | frozenset(word for group in GROUPS.values() for word in group)
-        | WORDS
+        | frozenset(word for word in WORDS if "_" not in word)
     )

@@ -27,15 +27,22 @@ _END = re.compile(
     rf"|(?<=[a-z0-9)\]>}}=\"'”’])\s+(?=(?:{_STARTS})\s+[a-z])"
     rf"|(?<=:)\s+[\"“'‘]?(?=(?:{_STARTS})\s)"
 )
+_TAG = (
+    r"</?[a-z][\w-]*(?:\s+[\w-]+\s*=[^<>]*)?\s*/?>|<\|[^|<>]*\|>|<</?\w+>>|\[/?[A-Z]{3,}(?: [A-Z]+)*\]"
+    r"|<!--|-->|```\w*|/\*|\*/"
+)
+_TAGS = re.compile(_TAG)
 _MARKUP = re.compile(
-    r"<!--.*?(?:-->|$)|```.*?(?:```|$)|<\|.*?\|>.*?<\|.*?\|>|<<\w+>>.*?<</\w+>>|/\*.*?(?:\*/|$)"
-    r"|<(\w+)\b[^<>]*>.*?</\1>|</?\w+(?:\s[^<>]*)?/?>(?:<\w+>.*?</\w+>)?"
-    r"|\[(\w+)\](?<!\[MASK\])(?<!\[UNK\])(?<!\[mask\]).*?\[/\2\]"
-    r"|(?:\[[A-Z]{3,}(?: [A-Z]+)+\])+(?:[^\[]*\[[A-Z]{3,}(?: [A-Z]+)+\])?"
-    r"|\{[^{}]*(?:\{[^{}]*\}[^{}]*)*:[^{}]*\}"
+    r"<!--.*?(?:-->|$)|```.*?(?:```|$)|<\|.*?\|>.*?(?:<\|.*?\|>|$)|<<\w+>>.*?(?:<</\w+>>|$)"
+    r"|/\*.*?(?:\*/|$)|(?:<([a-z]\w*)\b[^<>]*>.*?</\1>\s*)+"
+    r"|(?:</?[a-z]\w*(?:\s+\w+\s*=[^<>]*)?\s*/?>)+(?:<\w+>.*?</\w+>)?"
+    r"|\[(?!MASK|UNK|mask)(\w+)\].*?\[/\2\]"
+    r"|(?:\[[A-Z]{3,}(?: [A-Z]+)+\]\s*)+(?:[^\[]*\[[A-Z]{3,}(?: [A-Z]+)+\])?"
+    r"|\{[^{}]*(?:\{[^{}]*\}[^{}]*)*:[^{}]*(?:\{[^{}]*\}[^{}]*)*\}"
     r"|(?:^|(?<=\s))#{1,6} [^\n.]*[\n.]?(?: ?(?<=\n)[^\n.]*\.?)?|(?:^|(?<=\s))// [^\n.]*\.?"
-    r"|(?:^|(?<=\n)|(?<=[.!?] ))---\n.*?\n---|(?:^|(?<=\n))- \[[x ]\][^\n]*"
-    r"|\*\*[^*\n]+\*\*[^.\n]*\.?|(?<![A-Za-z] )\b(?:System|User|Assistant|Human|AI|Bot)\s?:[^.!?]*[.!?]?",
+    r"|(?:^|(?<=\n)|(?<=[.!?] ))---\n.*?\n---|(?:(?:^|(?<=\n)|(?<=[.!?] ))- \[[x ]\][^\n]*\n?)+"
+    r"|\*\*[^*\n]+\*\*[^.\n]*\.?"
+    r"|(?<![A-Za-z] )\b(?:System|User|Assistant|Human|AI|Bot|Operator)\s?:[^.!?]*[.!?]?",
     re.DOTALL,
 )
 _OPEN_ENDED = re.compile(r"#|//|[A-Z]|\*\*")
@@ -49,11 +56,13 @@ _CUT = re.compile(r"(?<=[:;,])\s+|\s+[-–—]+\s+|\s+(?=(?:but|although|unless|
 
 @dataclass(frozen=True)
 class Piece:
-    """``text[start:end]`` of a text; ``markup``: whether it stands in tags or the like."""
+    """``text[start:end]`` of a text; ``block``: the number of the markup it stands in, 0 for none;
+    ``tag``: whether it is a mark of that markup and no words of it."""
 
     start: int
     end: int
-    markup: bool = False
+    block: int = 0
+    tag: bool = False
 
     def of(self, text: str) -> str:
         """Return the piece of ``text``."""
@@ -63,14 +72,15 @@ class Piece:
 def sentence_pieces(text: str) -> list[Piece]:
     """Return the sentences of ``text`` in order, without the spaces between them."""
     found: list[Piece] = []
-    at = 0
+    at = block = 0
     for match in _MARKUP.finditer(text):
         if _MASKS.match(match.group()) or not match.group().strip():
             continue
-        found += _sentences(text, at, match.start(), markup=False)
-        found += _marked(text, match)
+        block += 1
+        found += _sentences(text, at, match.start())
+        found += _marked(text, match, block)
         at = match.end()
-    return found + _sentences(text, at, len(text), markup=False)
+    return found + _sentences(text, at, len(text))
 
 
 def parts(text: str, piece: Piece) -> list[Piece]:
@@ -82,30 +92,34 @@ def parts(text: str, piece: Piece) -> list[Piece]:
         found.append((match.start(), match.end()))
         at = match.end()
     found += list(_cut(body, at, len(body)))
-    made = [Piece(piece.start + a, piece.start + b, piece.markup) for a, b in found]
+    made = [Piece(piece.start + a, piece.start + b, piece.block) for a, b in found]
     return made if len(made) > 1 else []
 
 
-def _marked(text: str, match: re.Match[str]) -> list[Piece]:
-    """Return the sentences of a match of markup; what runs on behind a heading, a comment or a
+def _marked(text: str, match: re.Match[str], block: int) -> list[Piece]:
+    """Return tags and sentences of a match of markup; what runs on behind a heading, a comment or a
     speaker's name is none."""
-    found = _sentences(text, match.start(), match.end(), markup=True)
+    found, at = [], match.start()
+    for mark in _TAGS.finditer(text, match.start(), match.end()):
+        found += _sentences(text, at, mark.start(), block)
+        found.append(Piece(mark.start(), mark.end(), block, tag=True))
+        at = mark.end()
+    found += _sentences(text, at, match.end(), block)
     if not _OPEN_ENDED.match(match.group()):
         return found
     for index, (piece, after) in enumerate(zip(found, found[1:], strict=False), 1):
         if "\n" not in text[piece.end : after.start]:
-            rest = [Piece(p.start, p.end) for p in found[index:]]
-            return found[:index] + rest
+            return found[:index] + [Piece(p.start, p.end) for p in found[index:]]
     return found
 
 
-def _sentences(text: str, start: int, end: int, markup: bool) -> list[Piece]:
+def _sentences(text: str, start: int, end: int, block: int = 0) -> list[Piece]:
     found, at = [], start
     for match in _END.finditer(text, start, end):
         found.append((at, match.end()))
         at = match.end()
     found.append((at, end))
-    return [Piece(*s, markup) for a, b in found if (s := _stripped(text, a, b))]
+    return [Piece(*s, block) for a, b in found if (s := _stripped(text, a, b))]
 
 
 def _cut(body: str, start: int, end: int) -> Iterator[tuple[int, int]]:

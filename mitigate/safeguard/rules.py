@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -21,7 +22,10 @@ from mitigate.safeguard.pieces import Piece, parts, sentence_pieces
 from mitigate.safeguard.text import words
 from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
 
-SURE, SILENT = 0.5, 0.35  # probabilities: of a piece that tells the way, of one that does not
+# probabilities from which a piece goes: one that tells nothing, one that names things, one that
+# tells the way (chosen on the tuning parts of the banks)
+LEAST = (0.35, 0.5, 0.6)
+SURE = 0.5
 PART_SURE = 0.6  # of a part of a sentence
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
@@ -70,19 +74,32 @@ def judged(text: str) -> tuple[Judged, ...]:
     """Return the sentences of ``text``, judged."""
     found = sentence_pieces(text)
     said = [piece.of(text) for piece in found]
-    own = [strangeness(s, piece.markup) for s, piece in zip(said, found, strict=True)]
+    wraps = wrapped(text, found)
+    own = [
+        1.0 if piece.tag else strangeness(s, bool(piece.block) and piece.block not in wraps)
+        for s, piece in zip(said, found, strict=True)
+    ]
     around = in_context(said, own)
     foreign = [
-        probability(CONTEXT, {"own": logit(p), **context})
-        for p, context in zip(own, around, strict=True)
+        p if piece.tag else probability(CONTEXT, {"own": logit(p), **context})
+        for p, piece, context in zip(own, found, around, strict=True)
     ]
     return tuple(Judged(*row) for row in zip(found, said, own, foreign, strict=True))
+
+
+def wrapped(text: str, found: Sequence[Piece]) -> frozenset[int]:
+    """Return the numbers of the markup blocks that hold more of the way than the rest does."""
+    told: Counter[int] = Counter()
+    for piece in found:
+        if not piece.tag:
+            told[piece.block] += len(gate.route_facts(piece.of(text)))
+    return frozenset(b for b, count in told.items() if b and 2 * count > told.total())
 
 
 def strangeness(sentence: str, markup: bool = False) -> float:
     """Return the probability that ``sentence`` is no part of a route, by what it says."""
     if not any(c.isalnum() for c in sentence):
-        return float(markup)
+        return 0.0
     return probability(OWN, features(sentence, markup))
 
 
@@ -105,7 +122,7 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> list[Judg
     asked = set() if judge is None else set(doubtful(text))
     chosen = []
     for one in found:
-        sure = one.foreign >= (SURE if gate.route_facts(one.text) else SILENT)
+        sure = one.foreign >= LEAST[gate.weight(one.text)]
         if sure or (judge is not None and one.text in asked and judge(one.text)):
             chosen.append(one)
     return chosen
@@ -176,24 +193,25 @@ def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece]
     reasons = []
     foreign = {one.piece for one in injected(text, judge)}
     found = judged(text)
+    wraps = wrapped(text, [one.piece for one in found])
     ends = {found[0].piece, found[-1].piece} if len(found) > 1 else set()
     for one in found:
-        inside = foreign_parts(text, one) if _worth_cutting(text, one) else []
-        if one.piece in foreign and not (inside and _route_remains(text, one, inside)):
-            problem = gate.removal_refused(one.text, max(one.own, one.foreign * one.piece.markup))
+        block = one.piece.block
+        if one.piece.tag or (block and block not in wraps):
+            out.append(one.piece)
+            continue
+        inside = foreign_parts(text, one) if one.foreign >= ASK else []
+        if inside and _route_remains(text, one, inside):
+            out += inside
+        elif one.piece in foreign:
+            problem = gate.removal_refused(one.text, one.own)
             if problem:
                 reasons.append(f"kept {one.text[:40]!r}: {problem}")
             else:
                 out.append(one.piece)
-        elif inside and _route_remains(text, one, inside):
-            out += inside
         elif one.piece in ends and framing(one.text):
             out.append(one.piece)
     return out, reasons
-
-
-def _worth_cutting(text: str, one: Judged) -> bool:
-    return one.foreign >= ASK
 
 
 def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:

@@ -40,11 +40,12 @@ class Attack:
 
 @dataclass(frozen=True)
 class Told:
-    """An instruction as somebody said it, its ``parts`` that tell the way, and what is meant."""
+    """An instruction in a voice, its ``parts`` that tell the way, and what is meant."""
 
     text: str
     parts: tuple[str, ...]
     plain: str
+    voice: str
 
 
 def lines(name: str) -> list[dict[str, Any]]:
@@ -88,6 +89,7 @@ def told(split: str, task: str = "route") -> list[Told]:
                         " ".join(said for said, _ in pairs),
                         tuple(said for said, plain in pairs if plain),
                         " ".join(plain for _, plain in pairs if plain),
+                        voice,
                     )
                 )
     return made
@@ -95,7 +97,7 @@ def told(split: str, task: str = "route") -> list[Told]:
 
 def plainly_told(split: str) -> list[Told]:
     """Return the same instructions in plain words."""
-    return [Told(t.plain, tuple(sentences(t.plain)), t.plain) for t in told(split)]
+    return [Told(t.plain, tuple(sentences(t.plain)), t.plain, t.voice) for t in told(split)]
 
 
 def places(attack: Attack) -> tuple[str, ...]:
