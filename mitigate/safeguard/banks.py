@@ -14,8 +14,10 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from mitigate.corruptions.language.fidelity import facts
 from mitigate.safeguard import gate, trials
 from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.trials import Told
 
 GONE, LOST = 1 / 3, 1 / 2  # an attack is gone below, a sentence lost from this share of word pairs
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
@@ -33,6 +35,21 @@ def left(words: str, text: str) -> float:
     """Return the share of the word pairs of ``words`` that are in ``text``."""
     here, wanted = set(pairs(text)), pairs(words)
     return sum(pair in here for pair in wanted) / max(1, len(wanted))
+
+
+def lost_parts(told: Told, given: str) -> list[bool]:
+    """Return for each part that tells the way whether it is lost: a landmark that it names and that
+    is meant is gone, or most of it and with it a direction."""
+    here = facts(given)
+    meant = facts(told.plain)
+    lost = []
+    for part in told.parts:
+        said = facts(part)
+        named = set(said.landmarks) & set(meant.landmarks)
+        turned = set(said.directions) & set(meant.directions)
+        gone = left(part, given) <= LOST and bool(turned)
+        lost.append(gone or bool(named - set(here.landmarks)))
+    return lost
 
 
 def remains(attack: str, route: str, given: str) -> bool:
@@ -58,7 +75,7 @@ def attacked(repair: Repair, split: str, each: int) -> tuple[Counts, Counts, lis
             given = repair(heard)
             key = (attack.mechanism, place, manner)
             removed[key].append(not remains(attack.words, told.text, given))
-            gone = [left(part, given) <= LOST for part in told.parts]
+            gone = lost_parts(told, given)
             lost[key] += gone
             cases.append((key, removed[key][-1], sum(gone), heard, given))
     return removed, lost, cases
@@ -105,8 +122,7 @@ def unattacked(repair: Repair, split: str) -> dict[str, list[bool]]:
     for line in trials.half("near_misses", split):
         changed["near misses"].append(not same_words(line["text"], repair(line["text"])))
     for told in trials.told(split):
-        given = repair(told.text)
-        changed["styled texts, parts lost"] += [left(p, given) <= LOST for p in told.parts]
+        changed["styled texts, parts lost"] += lost_parts(told, repair(told.text))
     changed["plain texts"] = [t.text != repair(t.text) for t in trials.plainly_told(split)]
     changed["object goals, thing lost"] = [
         bool(gate.sought(t.plain)) and not (gate.sought(t.plain) & _things(repair(t.text)))
@@ -117,8 +133,6 @@ def unattacked(repair: Repair, split: str) -> dict[str, list[bool]]:
 
 
 def _things(text: str) -> set[str]:
-    from mitigate.corruptions.language.fidelity import facts
-
     return set(facts(text).landmarks) | gate.sought(text)
 
 

@@ -20,7 +20,7 @@ _ALIKE = str.maketrans(
 )
 _LEET = str.maketrans("0134578@$!", "oieastbasi")
 _SPELLED = re.compile(r"(?<![^\W_])(?:[A-Za-z](?:[.\-_*]|\s+)){4,}[A-Za-z](?![^\W_])")
-_CODES = re.compile(
+CODES = re.compile(
     r"(?:%[0-9A-Fa-f]{2}){2,}|(?:\\u[0-9A-Fa-f]{4}\s*){2,}|(?:\\x[0-9A-Fa-f]{2}\s*){2,}"
     r"|(?:&#x?[0-9A-Fa-f]+;\s*){2,}|\b[01]{7,8}(?:\s+[01]{7,8})*\b"
     r"|\b(?:0x)?[0-9A-Fa-f]{2}(?:[\s:][0-9A-Fa-f]{2}){3,}\b"
@@ -33,7 +33,8 @@ _WORD = re.compile(r"[A-Za-z]+(?:['’][a-z]+)?")
 _MIXED = re.compile(r"\b(?=[\w@$!]*[A-Za-z])(?=[\w@$!]*[0-9@$])[\w@$]+\b")
 _MEASURE = re.compile(r"\d+(?:st|nd|rd|th|m|cm|ft|feet|in|deg|x|s|am|pm|d)?$|[A-Za-z]\d+$", re.I)
 _CASE = re.compile(r"\b[a-z]+[A-Z]\w*\b|\b[A-Z]+[a-z]+[A-Z]\w*\b")
-_WIDE = re.compile(r"[\u2460-\u24ff\uff01-\uff5e\U0001d400-\U0001d7ff]")
+FANCY = r"\u2460-\u24ff\uff01-\uff5e\U0001d400-\U0001d7ff"  # of a class of characters
+_WIDE = re.compile(f"[{FANCY}]")
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ def _suspicious(text: str) -> bool:
     """Return whether an ASCII text may hide words."""
     if re.search(r"\d[A-Za-z]|[A-Za-z]\d|[@$%\\&=]|[01]{7}|[.\-] ?/? ?[.\-]", text):
         return True
-    if _SPELLED.search(text) or _CASE.search(text) or _CODES.search(text):
+    if _SPELLED.search(text) or _CASE.search(text) or CODES.search(text):
         return True
     found = _WORD.findall(text)
     return sum(word.lower() not in known_words() for word in found) > 0.4 * len(found)
@@ -97,10 +98,10 @@ def _unhidden(text: str, marks: set[str]) -> str:
 
 
 def _coded(text: str, marks: set[str]) -> str:
-    if not _CODES.search(text):
+    if not CODES.search(text):
         return text
     marks.add("code")
-    return _CODES.sub(" ", text)
+    return CODES.sub(" ", text)
 
 
 def _joined(match: re.Match[str]) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+import unicodedata
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
@@ -15,7 +16,7 @@ from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.language.fidelity import Facts, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.safeguard.decode import plainly
-from mitigate.safeguard.lexicon import FUNCTION, GROUPS, known_words
+from mitigate.safeguard.lexicon import FUNCTION, GROUPS, OTHERS, known_words
 from mitigate.safeguard.text import MASK, words
 from mitigate.safeguard.weights import WORDS
 
@@ -168,6 +169,19 @@ def _together(hits: dict[str, int], values: dict[str, float], told: Facts) -> di
         "not place": both("not") * (values["places"] > 0),
         "if place": both("if") * (values["places"] > 0),
     }
+
+
+def in_another_language(piece: str) -> bool:
+    """Return whether a piece is not English: other letters, or hardly a word that is known and some
+    that are small words elsewhere."""
+    if any(c.isalpha() for c in piece) and _foreign(piece) > 0.5:
+        return True
+    folded = unicodedata.normalize("NFKD", piece.replace("ß", "ss"))
+    found = words("".join(c for c in folded if not unicodedata.combining(c)))
+    unknown = sum(word not in known_words() and not word.isdigit() for word in found)
+    others = sum(word in OTHERS for word in found)
+    accents = sum(0x7F < ord(c) <= 0x24F for c in piece)
+    return len(found) > 1 and unknown > 0.5 * len(found) and others + min(1, accents) > 1
 
 
 def _foreign(piece: str) -> float:

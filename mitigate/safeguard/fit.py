@@ -34,6 +34,7 @@ from mitigate.safeguard.text import words
 WEIGHTS = Path(__file__).parent / "weights.py"
 PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8
 RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text
+ASIDE = 0.3  # weight of what a voice says beside the route
 PRIOR = 0.5  # of a word, in the weight of examples
 TOTAL, SHARE = 2000.0, 1 / 3  # weight of all examples, and of the attacks among them (ours)
 
@@ -144,6 +145,7 @@ def _attacks() -> list[Example]:
     found += [(f"ours {i % 8}", line, 1.0) for i, line in enumerate(trials.fitting("fit_attacks"))]
     rng = generator(0, "fit")
     found += [("varied", vary(rng), 0.15) for _ in range(200)]
+    found += [(f"aside {voice}", said, ASIDE) for voice, said in trials.asides("tune")]
     groups = sorted({group for group, _, _ in found})
     return [
         Example(piece.of(line), bool(piece.block), True, weight, groups.index(group) % FOLDS)

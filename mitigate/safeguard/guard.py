@@ -167,7 +167,7 @@ class _Draft:
         self.tidied = tidy(original)
         self.reasons: list[str] = []
         self.asked = self.taken = 0
-        self.plain = not _readable(self.tidied) or _untouched(self.tidied)
+        self.plain = not _readable(self.tidied) or _untouched(original)
         self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.original))
         self.repair(set())
 

@@ -136,6 +136,19 @@ FUNCTION = frozenset(
     for word in language._CLASSES[name].split()
 )
 
+# small words of French, German, Dutch, Spanish, Portuguese, Italian, Swedish, Polish and Turkish
+# that English has not
+OTHERS = bag(
+    """
+    le la les des du une et est dans pas ne vous votre nous que qui avec pour sur vers tout toute
+    ici au aux ce cette ou der das und nicht den dem ein eine einen einer ist sie du ihr im zur zum
+    mit auf von bis hier dich alle wenn dann geh het een niet van naar en dat je jij el los las
+    una un y no es por para con esta este aqui todo toda si se su al lo il gli che non sono di della
+    nel nella per qui tutto tutti o os da na em uma nao voce aqui och inte det som att till nie jest
+    tu do bir ve bu icin de det ein zu wir ich bleib stopp halt alto arrete reste
+    """
+) - bag("no do so halt un o es se si de en par van per la tu bu")
+
 
 @lru_cache(maxsize=1)
 def known_words() -> frozenset[str]:

@@ -11,6 +11,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from mitigate.safeguard.decode import CODES, FANCY
+
 _BEFORE = (
     r"(?<!\bDr)(?<!\bMr)(?<!\bMs)(?<!\bMrs)(?<!\bSt)(?<!\bProf)(?<!\bNo)(?<!\be\.g)(?<!\bi\.e)"
     r"(?<!\bvs)(?<!\bapprox)"
@@ -19,7 +21,7 @@ _STARTS = (
     "Walk|Go|Turn|Exit|Leave|Enter|Head|Continue|Proceed|Take|Make|Pass|Climb|Descend|Ascend|Stop|"
     "Wait|Move|Cross|Follow|Veer|Bear|Keep|Step|Face|Start|Begin|Once|When|After|From|With|Then|"
     "Next|You|There|Now|Find|Look|Come|Get|Stand|Facing|Starting|Upon|As|At|The|In|On|Hey|Hi|Hello|"
-    "Okay|Please|Kindly|First|Finally|I|So|Let|Just|Right|Left|Out|Up|Down|Past|Straight"
+    "Okay|Please|Kindly|First|Finally|Let|Just|Right|Left|Out|Up|Down|Past|Straight"
 )
 _END = re.compile(
     rf"{_BEFORE}[.!?…。！？]+[\"'”’»)\]*_]*(?:\s+|$)"
@@ -35,14 +37,18 @@ _TAGS = re.compile(_TAG)
 _MARKUP = re.compile(
     r"<!--.*?(?:-->|$)|```.*?(?:```|$)|<\|.*?\|>.*?(?:<\|.*?\|>|$)|<<\w+>>.*?(?:<</\w+>>|$)"
     r"|/\*.*?(?:\*/|$)|(?:<([a-z]\w*)\b[^<>]*>.*?</\1>\s*)+"
-    r"|(?:</?[a-z]\w*(?:\s+\w+\s*=[^<>]*)?\s*/?>)+(?:<\w+>.*?</\w+>)?"
+    r"|(?:</?[a-z]\w*(?:\s+\w+\s*=[^<>]*)?\s*/?>\s*)+(?:[^<>]{1,300}</[a-z]\w*>)?"
     r"|\[(?!MASK|UNK|mask)(\w+)\].*?\[/\2\]"
     r"|(?:\[[A-Z]{3,}(?: [A-Z]+)+\]\s*)+(?:[^\[]*\[[A-Z]{3,}(?: [A-Z]+)+\])?"
     r"|\{[^{}]*(?:\{[^{}]*\}[^{}]*)*:[^{}]*(?:\{[^{}]*\}[^{}]*)*\}"
     r"|(?:^|(?<=\s))#{1,6} [^\n.]*[\n.]?(?: ?(?<=\n)[^\n.]*\.?)?|(?:^|(?<=\s))// [^\n.]*\.?"
     r"|(?:^|(?<=\n)|(?<=[.!?] ))---\n.*?\n---|(?:(?:^|(?<=\n)|(?<=[.!?] ))- \[[x ]\][^\n]*\n?)+"
     r"|\*\*[^*\n]+\*\*[^.\n]*\.?"
-    r"|(?<![A-Za-z] )\b(?:System|User|Assistant|Human|AI|Bot|Operator)\s?:[^.!?]*[.!?]?",
+    r"|(?<![A-Za-z] )\b(?:System|User|Assistant|Human|AI|Bot|Operator)\s?:[^.!?]*[.!?]?"
+    rf"|(?:[{FANCY}]+[\s\u3000]*){{2,}}|\u202e[^\u202c]*\u202c?|[\U000e0020-\U000e007f]+"
+    r"|\S?(?:[\u200b-\u200d\u2060\ufeff]\s?[^\s\u200b]?){4,}"
+    r"|(?<![^\W\d_])(?:[\u0370-\u1dff\u2c80-\ua4cf\uac00-\ud7ff\uf900-\ufaff]{2,}[^A-Za-z\n]*)+"
+    rf"|{CODES.pattern}",
     re.DOTALL,
 )
 _OPEN_ENDED = re.compile(r"#|//|[A-Z]|\*\*")
@@ -74,7 +80,7 @@ def sentence_pieces(text: str) -> list[Piece]:
     found: list[Piece] = []
     at = block = 0
     for match in _MARKUP.finditer(text):
-        if _MASKS.match(match.group()) or not match.group().strip():
+        if _MASKS.match(match.group()) or not match.group().strip() or _mixed(text, match):
             continue
         block += 1
         found += _sentences(text, at, match.start())
@@ -96,9 +102,17 @@ def parts(text: str, piece: Piece) -> list[Piece]:
     return made if len(made) > 1 else []
 
 
+def _mixed(text: str, match: re.Match[str]) -> bool:
+    """Return whether letters of another script end within a word of Latin ones."""
+    last, after = match.group()[-1], text[match.end() : match.end() + 1]
+    return not last.isascii() and last.isalpha() and after.isalpha()
+
+
 def _marked(text: str, match: re.Match[str], block: int) -> list[Piece]:
     """Return tags and sentences of a match of markup; what runs on behind a heading, a comment or a
     speaker's name is none."""
+    if not any(c.isprintable() for c in match.group()):
+        return [Piece(match.start(), match.end(), block, tag=True)]
     found, at = [], match.start()
     for mark in _TAGS.finditer(text, match.start(), match.end()):
         found += _sentences(text, at, mark.start(), block)

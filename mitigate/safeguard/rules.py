@@ -16,7 +16,7 @@ from functools import lru_cache
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
 from mitigate.safeguard.decode import plainly
-from mitigate.safeguard.evidence import VERBS, features, in_context
+from mitigate.safeguard.evidence import VERBS, features, in_another_language, in_context
 from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.pieces import Piece, parts, sentence_pieces
 from mitigate.safeguard.text import words
@@ -27,6 +27,7 @@ from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
 LEAST = (0.35, 0.5, 0.6)
 SURE = 0.5
 PART_SURE = 0.6  # of a part of a sentence
+TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 SHOUTS = 2  # known words in capitals from which all are lowered; one may be on a sign (ours)
@@ -90,16 +91,26 @@ def judged(text: str) -> tuple[Judged, ...]:
 def wrapped(text: str, found: Sequence[Piece]) -> frozenset[int]:
     """Return the numbers of the markup blocks that hold more of the way than the rest does."""
     told: Counter[int] = Counter()
+    disguised = set()
     for piece in found:
+        said = piece.of(text)
+        if plainly(said).marks or in_another_language(said):
+            disguised.add(piece.block)
         if not piece.tag:
-            told[piece.block] += len(gate.route_facts(piece.of(text)))
-    return frozenset(b for b, count in told.items() if b and 2 * count > told.total())
+            told[piece.block] += len(gate.route_facts(said))
+    return frozenset(
+        b
+        for b, count in told.items()
+        if b and (count == told.total() if b in disguised else 2 * count > told.total())
+    )
 
 
 def strangeness(sentence: str, markup: bool = False) -> float:
     """Return the probability that ``sentence`` is no part of a route, by what it says."""
     if not any(c.isalnum() for c in sentence):
         return 0.0
+    if in_another_language(sentence):
+        return 0.99
     return probability(OWN, features(sentence, markup))
 
 
@@ -163,9 +174,11 @@ def foreign_parts(text: str, one: Judged) -> list[Piece]:
     found = []
     for part in body:
         said = part.of(text)
-        if any(c.isalnum() for c in said):
+        title = said[:1] in "\"'“«" and len(words(said)) <= TITLE
+        long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
+        if long and not title:
             values = {"whole": logit(one.own), **features(said)}
-            if probability(PART, values) >= PART_SURE:
+            if in_another_language(said) or probability(PART, values) >= PART_SURE:
                 found.append(part)
     return found
 

@@ -95,6 +95,18 @@ def told(split: str, task: str = "route") -> list[Told]:
     return made
 
 
+def asides(split: str) -> list[tuple[str, str]]:
+    """Return (voice, what it says that tells nothing of the way)."""
+    voices = TEST_VOICES if split == "test" else TUNE_VOICES
+    return [
+        (voice, said.strip())
+        for voice in voices
+        for line in lines(f"voices/{voice}")
+        for said, plain in line["parts"]
+        if not plain
+    ]
+
+
 def plainly_told(split: str) -> list[Told]:
     """Return the same instructions in plain words."""
     return [Told(t.plain, tuple(sentences(t.plain)), t.plain, t.voice) for t in told(split)]
