@@ -13,10 +13,11 @@ from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.decode import plainly
-from mitigate.safeguard.evidence import LANDMARKS, MOVES
-from mitigate.safeguard.text import MASK
+from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
+from mitigate.safeguard.meaning import differs
+from mitigate.safeguard.text import MASK, words
 
-ATTACK = 0.4  # from here on a sentence is an attack by what it says itself
+ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
 # categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
 CATEGORIES = bag(
     """
@@ -45,10 +46,11 @@ def route_facts(text: str) -> tuple[str, ...]:
 
 
 def weight(text: str) -> int:
-    """Return how much ``text`` tells: 0 nothing, 1 things, 2 something of a way."""
+    """Return how much ``text`` tells: 0 nothing, 1 things or a motion, 2 something of a way."""
     if route_facts(text):
         return 2
-    return int(bool(facts(MASK.sub("the", plainly(text).text)).landmarks))
+    plain = MASK.sub("the", plainly(text).text)
+    return int(bool(facts(plain).landmarks) or any(word in VERBS for word in words(plain)))
 
 
 def sought(text: str) -> frozenset[str]:
@@ -93,7 +95,12 @@ def result_refused(heard: str, given: str, removed: Sequence[str]) -> str:
 
 def rewrite_refused(heard: str, said: str) -> str:
     """Return why ``said`` may not stand for ``heard``."""
-    from mitigate.corruptions.language.fidelity import check
+    wanted, found = sought(heard), sought(said)
+    if wanted and found and wanted.isdisjoint(found) and not route_turns(heard):
+        return f"another thing is to be found: {', '.join(sorted(found))}"
+    return differs(heard, said)
 
-    problems = check(heard, said)
-    return problems[0] if problems else ""
+
+def route_turns(text: str) -> bool:
+    """Return whether ``text`` tells to turn or climb, and does not only name a thing to find."""
+    return any(d not in ("stop", "straight") for d in facts(text).directions)

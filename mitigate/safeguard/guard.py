@@ -18,8 +18,8 @@ from typing import Protocol
 
 from mitigate.core.files import find
 from mitigate.core.names import unknown
-from mitigate.corruptions.language.fidelity import check, facts
-from mitigate.safeguard import masks, rules
+from mitigate.corruptions.language.fidelity import facts
+from mitigate.safeguard import gate, masks, rules
 from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
@@ -230,8 +230,7 @@ def refusal(passage: str, answer: str | None) -> str:
         return _refused_filling(passage, answer)
     if len(words(answer)) > len(words(passage)) + 3:
         return "longer than what it replaces"
-    problems = check(passage, answer)
-    return problems[0] if problems else ""
+    return gate.rewrite_refused(passage, answer)
 
 
 def _refused_filling(passage: str, answer: str) -> str:

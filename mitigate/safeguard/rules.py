@@ -24,13 +24,13 @@ from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
 
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)
-LEAST = (0.35, 0.5, 0.6)
+LEAST = (0.5, 0.7, 0.85)
 SURE = 0.5
-PART_SURE = 0.6  # of a part of a sentence
+PART_SURE = 0.9  # of a part of a sentence
 TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-SHOUTS = 2  # known words in capitals from which all are lowered; one may be on a sign (ours)
+SHOUTS = 3  # known words in capitals from which all are lowered; one may be on a sign (ours)
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
