@@ -41,10 +41,12 @@ _TOLD = re.compile(
     r"\b(?:told|asked|tell|tells|says?|said|wants?|want|orders?|requires?|instructs?|requests?|"
     r"forbids?|reads|writes|announces|whispers|shouts)\b"
 )
-_SELF = re.compile(r"\b(?:where you (?:are|stand|sit|woke|started|began|happen)|in place|on the spot|"
-                   r"this (?:spot|place|room|location)|your (?:place|position|spot|bay|dock|post)|"
-                   r"(?:present|current) (?:position|location|place|job|task|goal)|not (?:to )?move|"
-                   r"(?:to|at) (?:the|your) (?:start|beginning|starting (?:point|position)))\b")
+_SELF = re.compile(
+    r"\b(?:where you (?:are|stand|sit|woke|started|began|happen)|in place|on the spot|"
+    r"this (?:spot|place|room|location)|your (?:place|position|spot|bay|dock|post)|"
+    r"(?:present|current) (?:position|location|place|job|task|goal)|not (?:to )?move|"
+    r"(?:to|at) (?:the|your) (?:start|beginning|starting (?:point|position)))\b"
+)
 _BACK = re.compile(r"\b(?:of (?:it|this|that|these|those|them)|all (?:of )?(?:this|that|it)|"
                    r"(?:do|did|follow|trust|believe|obey|use|to) (?:this|that|it|so|them|these)|"
                    r"what (?:comes|came|is|was|follows|you)|(?:the|this|that) (?:whole|rest)|"
@@ -57,8 +59,10 @@ _ABOUT = re.compile(
     r"request|job|errand|paragraph|description|journey|tour|run|episode|mission|part|parts|rest|"
     r"remainder|sides|landmarks?|verbs?|numbers?)\b(?! (?:down|up|of the|in the|to the|on the))"
 )
-_ELSE = re.compile(r"\b(?:instead|rather than|somewhere else|anywhere|elsewhere|another|other|"
-                   r"different|not the|any)\b")
+_ELSE = re.compile(
+    r"\b(?:instead|rather than|somewhere else|anywhere|elsewhere|another|other|"
+    r"different|not the|any)\b"
+)
 
 
 @lru_cache(maxsize=8192)

@@ -85,7 +85,7 @@ def module(
             break_on_hyphens=False,
         )  # fmt: skip
         lines.append('    """\n)')
-    lines.append("WORDS = {term: int(odds) / 100 for term, odds in (w.split(\"=\") for w in _WORDS)}")
+    lines.append('WORDS = {term: int(odds) / 100 for term, odds in (w.split("=") for w in _WORDS)}')
     return "\n".join(lines) + "\n"
 
 
@@ -94,9 +94,7 @@ def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
     examples = [*_attacks(), *_routes()]
     whole = word_table(examples)
     tables = [word_table([e for e in examples if e.fold != out]) for out in range(FOLDS)]
-    rows = [
-        composition(e.text, e.markup) | worth(e.text, tables[e.fold]) for e in examples
-    ]
+    rows = [composition(e.text, e.markup) | worth(e.text, tables[e.fold]) for e in examples]
     own = _regression(rows, [e.attack for e in examples], [e.weight for e in examples])
     strange = {}
     for out in range(FOLDS):

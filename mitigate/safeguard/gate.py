@@ -6,7 +6,6 @@ Whoever wants to change a text, a rule or a model, asks here; each function says
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import PLAIN, normal
@@ -42,7 +41,7 @@ def route_facts(text: str) -> tuple[str, ...]:
     said = facts(plain)
     known = [name for name in said.landmarks if name in LANDMARKS or name in CATEGORIES]
     passed = [] if known else MOVES.findall(plain.lower())
-    return (*said.directions, *known, *passed)
+    return (*said.directions, *known, *said.relations, *passed)
 
 
 def weight(text: str) -> int:
@@ -76,14 +75,13 @@ def removal_refused(piece: str, own: float) -> str:
     return ""
 
 
-def result_refused(heard: str, given: str, removed: Sequence[str]) -> str:
-    """Return why ``given`` may not stand for ``heard`` after ``removed`` was taken out."""
+def result_refused(heard: str, given: str) -> str:
+    """Return why ``given`` may not stand for the whole of ``heard``."""
     if not any(c.isalnum() for c in given):
         return "nothing would be left"
-    kept = route_facts(given)
-    if not kept and route_facts(heard):
-        return "nothing of the way would be left"
     wanted, left = sought(heard), sought(given)
+    if route_facts(heard) and not (route_facts(given) or left):
+        return "nothing of the way would be left"
     named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
     still = set(facts(plainly(given).text).landmarks)
     if wanted and not left and not (named & still):

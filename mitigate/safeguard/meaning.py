@@ -86,12 +86,33 @@ _RELATIONS = {
 _RELATION = {word: name for name, words in _RELATIONS.items() for word in words.split()}
 OPPOSED = frozenset(
     frozenset(pair.split())
-    for pair in (
-        "towards away|near far|towards far|into out|through past|through around|past into|"
-        "between near|before after|across around|through along|past towards|between along|"
-        "into near|near away|between far|past out|through before|into before|between past|"
-        "into around|between around|across past|out past|between through|near between"
-    ).split("|")
+    for pair in [
+        "towards away",
+        "near far",
+        "towards far",
+        "into out",
+        "through past",
+        "through around",
+        "past into",
+        "between near",
+        "before after",
+        "across around",
+        "through along",
+        "past towards",
+        "between along",
+        "near away",
+        "between far",
+        "past out",
+        "through before",
+        "into before",
+        "between past",
+        "into around",
+        "between around",
+        "across past",
+        "out past",
+        "between through",
+        "near between",
+    ]
 )
 _WEAK = bag(
     """
@@ -110,6 +131,77 @@ _CLAUSE = re.compile(
     r"[.;:!?]|,? (?:and )?then\b|,(?! (?:the|a|which|its?|on|in|past)\b)|\band (?=(?:go|turn|walk|"
     r"stop|wait|take|make|past|into|out|head|climb|towards|left|right|find|keep|continue|around|"
     r"across|stand|follow|move|step|up|down)\b)|\bafter (?:it|that)\b"
+)
+# words of two senses: a text that has the one sense alone may not become one that has the other
+_SENSES = tuple(
+    (bag(one), bag(other))
+    for one, other in (
+        (
+            "towards toward approach approaching nearer closer",
+            "away off distance retreat recede back",
+        ),
+        (
+            "slightly slight gentle gently little bit half shallow soft softly easy mild touch barely",
+            "sharply sharp hard steep steeply tight tightly abrupt abruptly full fully acute hairpin",
+        ),
+        (
+            "beside by near at close nearest closest reach",
+            "distant far away farthest furthest apart distance remote clear nowhere",
+        ),
+        ("before until short", "after beyond past behind once already following"),
+        ("after beyond once already following", "before until short"),
+        ("through", "around past along by skirt skirting outside"),
+        ("between middle", "beside along by side outside alongside past"),
+        ("around skirt", "through across over straight inside"),
+        ("past by pass beyond", "into enter inside entering"),
+        ("into enter inside entering", "past by beyond out outside leave"),
+        ("out outside leave", "into enter inside entering"),
+    )
+)
+_AGREE = frozenset(
+    frozenset(pair.split())
+    for pair in [
+        "towards near",
+        "towards before",
+        "near before",
+        "into through",
+        "into towards",
+        "through out",
+        "across through",
+        "near along",
+        "past along",
+        "past near",
+        "across past",
+        "along through",
+        "towards through",
+        "out away",
+        "under near",
+        "under through",
+        "across towards",
+        "towards along",
+        "into near",
+        "out through",
+        "across over",
+        "behind near",
+        "past after",
+        "near after",
+        "towards past",
+        "around past",
+        "along into",
+        "before past",
+        "under past",
+        "across into",
+        "out towards",
+        "out into",
+        "across out",
+        "between through",
+        "out near",
+        "through near",
+        "towards under",
+        "after into",
+        "after through",
+        "after towards",
+    ]
 )
 _SHADES = bag("dark pale light")
 _OPPOSITES = (("large", "small"), ("long", "short"), ("open", "closed"), ("dark", "pale"),
@@ -170,7 +262,8 @@ def meaning(text: str) -> Meaning:
         tuple(w for w in words if w in ("slightly", "sharply")),
         len(_DENY.findall(equal)),
         tuple(n.split()[0] for n in whole.numbers),
-        tuple(a for a in whole.attributes if a in COLOURS) + tuple(w for w in words if w in _SHADES),
+        tuple(a for a in whole.attributes if a in COLOURS)
+        + tuple(w for w in words if w in _SHADES),
         tuple(w for w in words if COMPASS.match(w)),
         frozenset(words),
     )
@@ -260,11 +353,19 @@ def _named(name: str, other: Meaning) -> bool:
 
 def _ways(old: Meaning, new: Meaning) -> str:
     for name, before in old.ways.items():
+        if name in _WEAK:
+            continue
         after = new.ways.get(name, frozenset())
         for was in before - after:
             for now in after - before:
                 if frozenset((was, now)) in OPPOSED:
                     return f"way changed: {was} -> {now} {name}"
+        strange = (frozenset((a, b)) not in _AGREE for a in before for b in after)
+        if before and after and before.isdisjoint(after) and all(strange):
+            return f"way changed: {_listed(before)} -> {_listed(after)} {name}"
+    for one, other in _SENSES:
+        if one & old.words and not other & old.words and other & new.words and not one & new.words:
+            return f"sense changed: {_listed(one & old.words)} -> {_listed(other & new.words)}"
     return ""
 
 

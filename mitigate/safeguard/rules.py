@@ -30,7 +30,8 @@ PART_SURE = 0.9  # of a part of a sentence
 TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-SHOUTS = 3  # known words in capitals from which all are lowered; one may be on a sign (ours)
+# known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
+SHOUTS, SHOUTED = 2, 0.15
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
@@ -49,7 +50,8 @@ class Judged:
 class Repaired:
     """``text`` after the rules, what they took out, and what they did and could not, in words.
 
-    ``marks``: how many words of the rest belong to a manner of speaking.
+    ``marks``: how many words of the rest, and of greetings that went, belong to a manner of
+    speaking.
     """
 
     text: str
@@ -121,7 +123,11 @@ def doubtful(text: str) -> list[str]:
     if len(found) < 2:
         return []
     least = 0.0 if any(j.foreign >= SURE for j in found) else ASK
-    return [j.text for j in found if least <= j.foreign < SURE and not gate.removal_refused(j.text, j.own)]
+    return [
+        j.text
+        for j in found
+        if least <= j.foreign < SURE and not gate.removal_refused(j.text, j.own)
+    ]
 
 
 def injected(text: str, judge: Callable[[str], bool] | None = None) -> list[Judged]:
@@ -154,7 +160,8 @@ def style_marks(text: str) -> int:
 def lower_capitals(text: str) -> str:
     """Return ``text`` with shouted words in lower case, but for a sentence's first letter."""
     shouted = [m.group().lower() for m in _SHOUT.finditer(text) if m.group() not in KEPT_CAPITALS]
-    if sum(word in known_words() for word in shouted) < SHOUTS:
+    known = sum(word in known_words() for word in shouted)
+    if known < max(SHOUTS, SHOUTED * len(text.split())):
         return text
 
     def quiet(match: re.Match[str]) -> str:
@@ -197,7 +204,8 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
     if removed:
         reasons.append(f"removed: {'; '.join(repr(s[:60]) for s in removed)}")
     left = without(quiet, out)
-    return Repaired(left, removed, tuple(reasons), style_marks(left))
+    framed = sum(style_marks(s) for s in removed if framing(s))
+    return Repaired(left, removed, tuple(reasons), style_marks(left) + framed)
 
 
 def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece], list[str]]:
@@ -244,10 +252,12 @@ def _allowed(text: str, out: list[Piece]) -> tuple[list[Piece], list[str]]:
     strange = {one.piece: one.foreign for one in judged(text)}
     out = list(out)
     while out:
-        problem = gate.result_refused(text, without(text, out), [p.of(text) for p in out])
+        problem = gate.result_refused(text, without(text, out))
         if not problem:
             break
-        back = min(out, key=lambda piece: (not gate.route_facts(piece.of(text)), strange.get(piece, 1.0)))
+        back = min(
+            out, key=lambda p: (not gate.route_facts(p.of(text)), strange.get(p, 1.0), p.start)
+        )
         out.remove(back)
         reasons.append(f"kept {back.of(text)[:40]!r}: {problem}")
     return out, reasons
@@ -275,7 +285,11 @@ def _closed(text: str) -> str:
             text = text.replace(opening, " ").replace(closing, " ")
     if text.count('"') % 2:
         text = text.replace('"', " ")
-    text = re.sub(r"(?<!\w)'(?=[^']*$)|(?<=[.!?])'(?=\s|$)", " ", text) if text.count("'") % 2 else text
+    text = (
+        re.sub(r"(?<!\w)'(?=[^']*$)|(?<=[.!?])'(?=\s|$)", " ", text)
+        if text.count("'") % 2
+        else text
+    )
     text = re.sub(r"\s*[,;:–—-]+\s*(?=[.!?]|$)", "", text)
     text = re.sub(r"\s+(?=[,.!?;])", "", text)
     return " ".join(text.split()).lstrip(".,;:!?- ")
