@@ -130,8 +130,9 @@ def _deciphered(text: str, marks: set[str]) -> str:
             made = read.lower().split()
             if sum(word in known_words() for word in made) > 0.5 * len(made):
                 marks.add("cipher")
-                known = dict(zip(found, made, strict=True))
-                return _WORD.sub(lambda match: known.get(match.group(), match.group()), text)
+                for word, plain in zip(found, made, strict=True):
+                    text = re.sub(rf"\b{re.escape(word)}\b", plain, text)
+                return text
     return _WORD.sub(lambda match: _unscrambled(match.group()), text)
 
 

@@ -121,15 +121,14 @@ def word_table(examples: Sequence[Example]) -> dict[str, float]:
         for term in terms(e.text):
             seen[term] += 1
             mass[e.attack][term] += weight
-    whole = [sum(w for e, w in zip(examples, weights, strict=True) if e.attack is side)
-        for side in (False, True)]  # fmt: skip
-    return {
-        term: max(-2.0, min(2.0, math.log(
-            (mass[1][term] + PRIOR * SHARE) / whole[1] * whole[0] / (mass[0][term] + PRIOR * (1 - SHARE))
-        )))
+    attack, route = TOTAL * SHARE, TOTAL * (1 - SHARE)
+    odds = {
+        term: math.log((mass[1][term] + PRIOR * SHARE) / attack)
+        - math.log((mass[0][term] + PRIOR * (1 - SHARE)) / route)
         for term, count in seen.items()
         if count > 2 or "_" not in term
-    }  # fmt: skip
+    }
+    return {term: max(-2.0, min(2.0, value)) for term, value in odds.items()}
 
 
 def _attacks() -> list[Example]:

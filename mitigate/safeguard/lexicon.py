@@ -26,13 +26,13 @@ GROUPS: dict[str, frozenset[str]] = {
     "text": bag(
         """
         episode episodes phrase phrases wording content contents input
-        text texts sentence sentences word    paragraph message messages  
+        text texts sentence sentences word    paragraph message messages
         document description   following follows  previous earlier former preceding
         latter  remainder   listed mentioned named described stated written writes
         wrote typed typing read reads reading printed said say says saying told tell tells telling
         asked ask asks meant mean means meaning quote comment  version correction term terms
         example  reader definition script route routes directions  trip goal goals target
-        destination    
+        destination
         """
     ),
     "annul": bag(
@@ -46,7 +46,7 @@ GROUPS: dict[str, frozenset[str]] = {
         overwrite terminate terminated quit unfinished unsubscribe expired outdated nonsense
         kidding mistake  wrong fake false lies lie untrue trap  tricked decoy decoys joke
         hoax never-mind nullified remove    reset  postponed rescheduled
-        changed  banned forbidden forbid forbids  off-limits sealed prohibited 
+        changed  banned forbidden forbid forbids  off-limits sealed prohibited
         """
     ),
     "invert": bag(
@@ -62,7 +62,7 @@ GROUPS: dict[str, frozenset[str]] = {
         """
         always never every each whenever wherever whatever whichever any anything anytime anywhere
         all everything nothing none nobody everyone forever indefinitely ever henceforth permanently
-        constantly continuously  solely      future  whole 
+        constantly continuously  solely      future  whole
         """
     ),
     "halt": bag(
@@ -87,8 +87,8 @@ GROUPS: dict[str, frozenset[str]] = {
         """
         pretend pretending act acting play playing role persona character imagine become becomes
         roleplay simulate simulated simulation name called identity  speak speaking answer
-        respond reply  translate  sing recite explain summarise summarize 
-        believe consider  treat suppose assume  human   somebody 
+        respond reply  translate  sing recite explain summarise summarize
+        believe consider  treat suppose assume  human   somebody
         story poem joke game movie film dream actor narrator
         """
     ),
@@ -120,11 +120,11 @@ GROUPS: dict[str, frozenset[str]] = {
     "past": bag("was were had did been went came said told wrote took made gave got saw took sent "
                 "used became began left's thought meant knew felt found heard stood lived changed"),
     "not": bag("not no never don't dont doesn't didn't can't cannot won't isn't aren't wasn't nor "
-               "nobody nothing none neither without mustn't shouldn't needn't isn't n't"),
+               "nobody nothing none neither without mustn't needn't n't"),
     "here": bag("here there this that these those it now spot place located location"),
     "time": bag("today tomorrow yesterday tonight morning evening afternoon week weeks month months "
                 "year years hour hours minute minutes moment later soon monday friday sunday "
-                "saturday ago once day days o'clock"),
+                "saturday ago once day days"),
     "go": bag("go goes going walk walking head heading proceed continue move enter entering exit "
               "exiting leave leaving turn turning climb descend ascend cross pass passing take make "
               "follow step veer bear approach keep come get reach past through into onto toward "

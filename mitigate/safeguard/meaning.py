@@ -12,108 +12,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from mitigate.corruptions.language.fidelity import COLOURS, COMPASS, facts
-from mitigate.corruptions.language.landmarks import PHRASES, PLAIN, normal
+from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
 from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.ways import AGREE, OPPOSED, OPPOSITES, RELATION, SENSES
+from mitigate.safeguard.wording import in_equal_words
 
-_EQUAL = tuple(
-    (re.compile(rf"\b(?:{pattern})", re.IGNORECASE), said)
-    for pattern, said in (
-        (r"in front of", "before"), (r"leaving (the [\w ]{3,20}?) to one side|(?:until|till) (the"
-         r" [\w ]{3,20}?) is behind you", r"past \1\2"), (r"(?:have )?left (the [\w ]{3,20}?) behind",
-         r"out of \1"), (r"indoors", "inside"), (r"outdoors", "outside"),
-        (r"(?:i am|i'm) looking for|look(?:ing)? for|locate|search for|hunt for", "find"),
-        (r"(?:turn|turning|keep|have|face|facing|with) (?:your )?back (?:to|on|towards?)\b", "away from"),
-        (r"your back (?:to|on)\b|(?:off|far away|clear|a (?:long|good) way(?: off)?) from\b|back away"
-         r" from|facing away from|face away from|turn to face away from|step away from", "away from"),
-        (r"turn (?:around )?(?:so that|until) (?=the [\w ]{3,20} is behind you)", "with "),
-        (r"in the direction of|head(?:ing)? (?:for|to)\b|make for|making for|aim for|on toward|"
-         r"(?:turn to )?fac(?:e|ing)(?= the| a)", "towards"),
-        (r"(?:a )?(?:slight(?:ly)?|gentl[ey]|half|little|bit|tiny bit|smidge)(?: turn)?(?: to the)?"
-         r" (?=left|right)", "slightly "),
-        (r"(left|right) (?:just )?(?:a |slightly )?(?:little|bit|slightly|touch)\b", r"slightly \1"),
-        (r"(?:a )?(?:sharp(?:ly)?|hard|steep(?:ly)?|tight|abrupt(?:ly)?)(?: turn)?(?: to the)? "
-         r"(?=left|right)", "sharply "),
-        (r"hard to the (?=left|right)", "sharply "),
-        (r"(?:a )?(?:bit|little)(?: way)?\b", ""),
-        (r"ninety degrees|90 ?(?:degrees|°)|a quarter turn", ""),
-        (r"come(?:s)? to (?:a |rest )?(?:stop|halt|standstill|rest)?|you(?:'re| are| will be) (?:done|there"
-         r"|finished)(?: once| when| as soon as)?|you (?:will )?have arrived(?: once| when)?|take a seat"
-         r"|stay(?: there)?(?! (?:on|to) the (?:left|right)| left| right)|stand(?= (?:by|at|in|on|near"
-         r"|next|beside|between|close|there|under|a long|far|behind))|end(?:s)? (?=at|by|in)|remain\b|"
-         r"halt(?:s|ing)?|do your waiting|hold\b|your stop is|that's your stop", "stop"),
-        (r"(?:the place to|place where you) (?:wait|stop|halt)|where you (?:wait|stop|halt)", "stop"),
-        (r"without stopping", "not stop"), (r"without (?:going|stepping|getting) (?:in|through|inside)"
-         r"|without enter(?:ing)?", "not enter"), (r"without\b", "not"),
-        (r"(?:ignore|skip|disregard|overlook|pay no attention to|leave out)\b", "past"),
-        (r"a couple of|a pair of|both(?: sets of)?", "two"), (r"first (?=two|three|four)", ""),
-        (r"prior to|ahead of|just short of|short of", "before"),
-        (r"(?:once|when|as soon as|after) you(?:'ve| have|'re| are)? (?:just )?(?:pass(?:ed)?|gone past|"
-         r"crossed|left|past|been through|come through|gone through)", "after"),
-        (r"(?:once|when)(?= (?:the|past|through)\b)", "after"), (r"(?:passing|pass|passes) (?=through"
-         r"|between|under|beside|over|in front)", "go "),
-        (r"(?:go|going|goes|walk|walking|keep|stroll|move)(?: on)? by(?= the| a| two| three)|"
-         r"pass(?:ing|es)?\b", "past"),
-        (r"by way of|via|using|use\b|by means of", "through"),
-        (r"(?:along|at) the (?:side|outside|edge) of|alongside|by the side of|to the side of|keep to"
-         r" the side of|next to|close to|within (?:arm's )?reach of|adjacent to|near enough to", "beside"),
-        (r"nearest(?: to)?|closest(?: to)?", "beside"),
-        (r"farthest(?: from)?|furthest(?: from)?|nowhere near|many steps away from|across the room "
-         r"from|a long way from|far from|away from(?= the wall)|clear of|at a distance from", "distant"),
-        (r"in(?:side)? the (?:gap|space) between|through the (?:gap|space) between|(?:through|down) the "
-         r"middle of", "between"),
-        (r"(?:circle|circling|rounding|round) (?:around )?(?=the|a |two|it)", "around "),
-        (r"(?:left|right) round\b", "left around"),
-        (r"(?:the )?(?:foot|base|lowest part) of|lowest", "bottom "), (r"highest", "top"),
-        (r"(?:walk|go|step|cut|straight|cross|head)?(?:ing)? ?(?:straight )?(?:across|over)(?= the| a)|"
-         r"cross(?:ing)?(?= the| a)", "across"),
-        (r"(?:exit|leave|leaving|go out|get out|walk out|come out|head out|out)(?= (?:by|through|from the"
-         r" \w+ by)\b)", "out"),
-        (r"(?:get|step|come|climb) off(?: of)?", "out of"), (r"(?:exit|leave|leaving|exiting|depart(?:ing)?"
-         r"|vacate)(?= (?:the|a|your|this))", "out of"),
-        (r"(?:enter|entering|enters|inside|go in|walk in|step in|get in|come in)(?= the| a)|in(?:to)? "
-         r"(?:the )?inside of|make your way in\b", "into"),
-        (r"going down|go downstairs|down the steps? of", "down"),
-    )
-)  # fmt: skip
-_RELATIONS = {
-    "towards": "towards toward to onto", "away": "away", "near": "beside by near at with",
-    "far": "distant", "into": "into inside enter in", "out": "out outside exit leave from",
-    "through": "through", "past": "past", "around": "around round", "between": "between",
-    "before": "before", "after": "after", "across": "across over", "under": "under beneath",
-    "behind": "behind", "along": "along",
-}  # fmt: skip
-_RELATION = {word: name for name, words in _RELATIONS.items() for word in words.split()}
-OPPOSED = frozenset(
-    frozenset(pair.split())
-    for pair in [
-        "towards away",
-        "near far",
-        "towards far",
-        "into out",
-        "through past",
-        "through around",
-        "past into",
-        "between near",
-        "before after",
-        "across around",
-        "through along",
-        "past towards",
-        "between along",
-        "near away",
-        "between far",
-        "past out",
-        "through before",
-        "into before",
-        "between past",
-        "into around",
-        "between around",
-        "across past",
-        "out past",
-        "between through",
-        "near between",
-    ]
-)
 _WEAK = bag(
     """
     bottom top foot base end side flight set seat place somewhere wherever way bit spot front back
@@ -132,80 +36,7 @@ _CLAUSE = re.compile(
     r"stop|wait|take|make|past|into|out|head|climb|towards|left|right|find|keep|continue|around|"
     r"across|stand|follow|move|step|up|down)\b)|\bafter (?:it|that)\b"
 )
-# words of two senses: a text that has the one sense alone may not become one that has the other
-_SENSES = tuple(
-    (bag(one), bag(other))
-    for one, other in (
-        (
-            "towards toward approach approaching nearer closer",
-            "away off distance retreat recede back",
-        ),
-        (
-            "slightly slight gentle gently little bit half shallow soft softly easy mild touch barely",
-            "sharply sharp hard steep steeply tight tightly abrupt abruptly full fully acute hairpin",
-        ),
-        (
-            "beside by near at close nearest closest reach",
-            "distant far away farthest furthest apart distance remote clear nowhere",
-        ),
-        ("before until short", "after beyond past behind once already following"),
-        ("after beyond once already following", "before until short"),
-        ("through", "around past along by skirt skirting outside"),
-        ("between middle", "beside along by side outside alongside past"),
-        ("around skirt", "through across over straight inside"),
-        ("past by pass beyond", "into enter inside entering"),
-        ("into enter inside entering", "past by beyond out outside leave"),
-        ("out outside leave", "into enter inside entering"),
-    )
-)
-_AGREE = frozenset(
-    frozenset(pair.split())
-    for pair in [
-        "towards near",
-        "towards before",
-        "near before",
-        "into through",
-        "into towards",
-        "through out",
-        "across through",
-        "near along",
-        "past along",
-        "past near",
-        "across past",
-        "along through",
-        "towards through",
-        "out away",
-        "under near",
-        "under through",
-        "across towards",
-        "towards along",
-        "into near",
-        "out through",
-        "across over",
-        "behind near",
-        "past after",
-        "near after",
-        "towards past",
-        "around past",
-        "along into",
-        "before past",
-        "under past",
-        "across into",
-        "out towards",
-        "out into",
-        "across out",
-        "between through",
-        "out near",
-        "through near",
-        "towards under",
-        "after into",
-        "after through",
-        "after towards",
-    ]
-)
 _SHADES = bag("dark pale light")
-_OPPOSITES = (("large", "small"), ("long", "short"), ("open", "closed"), ("dark", "pale"),
-    ("top", "bottom"), ("near", "far"), ("inside", "outside"))  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -240,7 +71,7 @@ def differs(heard: str, said: str) -> str:
 @lru_cache(maxsize=512)
 def meaning(text: str) -> Meaning:
     """Return what ``text`` means."""
-    equal = _equal(text)
+    equal = in_equal_words(text)
     turns: list[tuple[str, int]] = []
     levels: set[str] = set()
     ways: dict[str, set[str]] = {}
@@ -267,18 +98,6 @@ def meaning(text: str) -> Meaning:
         tuple(w for w in words if COMPASS.match(w)),
         frozenset(words),
     )
-
-
-def _equal(text: str) -> str:
-    """Return ``text`` in lower case with what says the same in the same words."""
-    equal = " ".join(text.lower().replace("’", "'").split())
-    for phrase, name in PHRASES.items():
-        spoken = " ".join(phrase)
-        if spoken in equal:
-            equal = re.sub(rf"\b{re.escape(spoken)}(?=s?\b)", name.replace(" ", ""), equal)
-    for pattern, said in _EQUAL:
-        equal = pattern.sub(said, equal)
-    return " ".join(equal.split())
 
 
 def _levels(clause: str) -> set[str]:
@@ -308,8 +127,8 @@ def _passed(clause: str) -> list[tuple[str, set[str]]]:
     since = 0
     for place, token in enumerate(tokens := tag(clause)):
         since += 1
-        if token.lower in _RELATION:
-            fresh = {_RELATION[token.lower]}
+        if token.lower in RELATION:
+            fresh = {RELATION[token.lower]}
             way = way | fresh if since <= 1 and way and token.lower != "to" else fresh
             since = 0
         name = normal(token.lower)
@@ -360,10 +179,10 @@ def _ways(old: Meaning, new: Meaning) -> str:
             for now in after - before:
                 if frozenset((was, now)) in OPPOSED:
                     return f"way changed: {was} -> {now} {name}"
-        strange = (frozenset((a, b)) not in _AGREE for a in before for b in after)
+        strange = (frozenset((a, b)) not in AGREE for a in before for b in after)
         if before and after and before.isdisjoint(after) and all(strange):
             return f"way changed: {_listed(before)} -> {_listed(after)} {name}"
-    for one, other in _SENSES:
+    for one, other in SENSES:
         if one & old.words and not other & old.words and other & new.words and not one & new.words:
             return f"sense changed: {_listed(one & old.words)} -> {_listed(other & new.words)}"
     return ""
@@ -378,7 +197,7 @@ def _rest(old: Meaning, new: Meaning) -> str:
             before, after = Counter(set(before)), Counter(set(after))
         if before != after:
             return f"{kind[:-1]} changed: {_listed(before)} -> {_listed(after)}"
-    for one, other in _OPPOSITES:
+    for one, other in OPPOSITES:
         for first, second in ((one, other), (other, one)):
             if first in old.words and first not in new.words and second in new.words - old.words:
                 return f"{first} -> {second}"

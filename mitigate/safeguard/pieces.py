@@ -8,7 +8,7 @@ behind a colon or a dash, between commas. Too many cuts do no harm, as what is k
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from mitigate.safeguard.decode import CODES, FANCY
@@ -30,8 +30,8 @@ _END = re.compile(
     rf"|(?<=:)\s+[\"“'‘]?(?=(?:{_STARTS})\s)"
 )
 _TAG = (
-    r"</?[a-z][\w-]*(?:\s+[\w-]+\s*=[^<>]*)?\s*/?>|<\|[^|<>]*\|>|<</?\w+>>|\[/?[A-Z]{3,}(?: [A-Z]+)*\]"
-    r"|<!--|-->|```\w*|/\*|\*/"
+    r"</?[a-z][\w-]*(?:\s+[\w-]+\s*=[^<>]*)?\s*/?>|<\|[^|<>]*\|>|<</?\w+>>"
+    r"|\[/?[A-Z]{3,}(?: [A-Z]+)*\]|<!--|-->|```\w*|/\*|\*/"
 )
 _TAGS = re.compile(_TAG)
 _MARKUP = re.compile(
@@ -152,3 +152,35 @@ def _stripped(text: str, start: int, end: int) -> tuple[int, int] | None:
     while end > start and text[end - 1].isspace():
         end -= 1
     return (start, end) if start < end else None
+
+
+def without(text: str, out: Iterable[Piece]) -> str:
+    """Return ``text`` without some pieces, with a capital where it now begins."""
+    out = sorted(out, key=lambda piece: piece.start)
+    if not out:
+        return text
+    kept, at = [], 0
+    for piece in out:
+        kept.append(text[at : piece.start].strip())
+        at = max(at, piece.end)
+    kept.append(text[at:].strip())
+    left = _closed(" ".join(part for part in kept if part))
+    return left[:1].upper() + left[1:] if not text.lstrip().startswith(left[:1]) else left
+
+
+def _closed(text: str) -> str:
+    """Return ``text`` without what removals leave: quotes and brackets of which one is gone, commas
+    before an end."""
+    for opening, closing in ("()", "[]", "{}", "“”", "«»"):
+        if text.count(opening) != text.count(closing):
+            text = text.replace(opening, " ").replace(closing, " ")
+    if text.count('"') % 2:
+        text = text.replace('"', " ")
+    text = (
+        re.sub(r"(?<!\w)'(?=[^']*$)|(?<=[.!?])'(?=\s|$)", " ", text)
+        if text.count("'") % 2
+        else text
+    )
+    text = re.sub(r"\s*[,;:–—-]+\s*(?=[.!?]|$)", "", text)
+    text = re.sub(r"\s+(?=[,.!?;])", "", text)
+    return " ".join(text.split()).lstrip(".,;:!?- ")

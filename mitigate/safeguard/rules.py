@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -18,7 +18,7 @@ from mitigate.safeguard import gate
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import VERBS, features, in_another_language, in_context
 from mitigate.safeguard.lexicon import known_words
-from mitigate.safeguard.pieces import Piece, parts, sentence_pieces
+from mitigate.safeguard.pieces import Piece, parts, sentence_pieces, without
 from mitigate.safeguard.text import words
 from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
 
@@ -261,35 +261,3 @@ def _allowed(text: str, out: list[Piece]) -> tuple[list[Piece], list[str]]:
         out.remove(back)
         reasons.append(f"kept {back.of(text)[:40]!r}: {problem}")
     return out, reasons
-
-
-def without(text: str, out: Iterable[Piece]) -> str:
-    """Return ``text`` without some pieces, with a capital where it now begins."""
-    out = sorted(out, key=lambda piece: piece.start)
-    if not out:
-        return text
-    kept, at = [], 0
-    for piece in out:
-        kept.append(text[at : piece.start].strip())
-        at = max(at, piece.end)
-    kept.append(text[at:].strip())
-    left = _closed(" ".join(part for part in kept if part))
-    return left[:1].upper() + left[1:] if not text.lstrip().startswith(left[:1]) else left
-
-
-def _closed(text: str) -> str:
-    """Return ``text`` without what removals leave: quotes and brackets of which one is gone, commas
-    before an end."""
-    for opening, closing in ("()", "[]", "{}", "“”", "«»"):
-        if text.count(opening) != text.count(closing):
-            text = text.replace(opening, " ").replace(closing, " ")
-    if text.count('"') % 2:
-        text = text.replace('"', " ")
-    text = (
-        re.sub(r"(?<!\w)'(?=[^']*$)|(?<=[.!?])'(?=\s|$)", " ", text)
-        if text.count("'") % 2
-        else text
-    )
-    text = re.sub(r"\s*[,;:–—-]+\s*(?=[.!?]|$)", "", text)
-    text = re.sub(r"\s+(?=[,.!?;])", "", text)
-    return " ".join(text.split()).lstrip(".,;:!?- ")

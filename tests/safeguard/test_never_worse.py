@@ -1,4 +1,4 @@
-"""The safeguard by rules never makes an instruction worse: properties, real texts, hand-written ones."""
+"""The safeguard by rules never makes an instruction worse: properties, real and written texts."""
 
 from __future__ import annotations
 
