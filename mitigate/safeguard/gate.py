@@ -28,8 +28,9 @@ CATEGORIES = bag(
 _SEEKS = re.compile(
     r"\b(?:find|finding|look(?:ing)? for|locate|locating|search(?:ing)? (?:for|out)|seek|spot|"
     r"fetch|hunt(?:ing)? (?:for|down|out)|where(?:'s| is| are)|need|want|"
-    r""
-    r"(?:go|walk|head|get|navigate|proceed|come|take me|make your way|move)(?: on| over| up)? to|in search of|see|reach|approach)"
+    r"(?:go|walk|head|get|navigate|"
+    r"proceed|come|take me|make your way|move)(?: on| over| up)? to|in search of|see|reach|"
+    r"approach)"
     r"\s+(?:me |us |out |a |an |the |any |some |one |your |my |nearest |closest |of )*"
     r"(?P<rest>[^.;:!?]*)",
     re.IGNORECASE,

@@ -122,7 +122,8 @@ GROUPS: dict[str, frozenset[str]] = {
     "not": bag("not no never don't dont doesn't didn't can't cannot won't isn't aren't wasn't nor "
                "nobody nothing none neither without mustn't needn't n't"),
     "here": bag("here there this that these those it now spot place located location"),
-    "time": bag("today tomorrow yesterday tonight morning evening afternoon week weeks month months "
+    "time": bag("today tomorrow yesterday tonight morning evening afternoon week weeks month "
+                "months "
                 "year years hour hours minute minutes moment later soon monday friday sunday "
                 "saturday ago once day days"),
     "go": bag("go goes going walk walking head heading proceed continue move enter entering exit "
