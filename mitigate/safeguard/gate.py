@@ -16,7 +16,7 @@ from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
 from mitigate.safeguard.meaning import differs
 from mitigate.safeguard.text import MASK, words
 
-ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
+ATTACK = 0.45  # from here on a sentence is an attack by what it says itself
 # categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
 CATEGORIES = bag(
     """

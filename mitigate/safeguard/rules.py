@@ -25,8 +25,10 @@ from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)
 LEAST = (0.5, 0.7, 0.85)
+PLAIN_LEAST = (0.45, 0.6, 0.7)  # where the rest is surely a route, in plain words
+PLAIN = 0.06  # mean strangeness of such a rest
 SURE = 0.5
-PART_SURE = 0.9  # of a part of a sentence
+PART_SURE = 0.85  # of a part of a sentence
 TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
@@ -137,9 +139,11 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> list[Judg
     """
     found = judged(text)
     asked = set() if judge is None else set(doubtful(text))
+    rest = [one.own for one in found if one.foreign < SURE]
+    least = PLAIN_LEAST if sum(rest) < PLAIN * len(rest) else LEAST
     chosen = []
     for one in found:
-        sure = one.foreign >= LEAST[gate.weight(one.text)]
+        sure = one.foreign >= least[gate.weight(one.text)]
         if sure or (judge is not None and one.text in asked and judge(one.text)):
             chosen.append(one)
     return chosen
@@ -177,9 +181,8 @@ def lower_capitals(text: str) -> str:
 
 def foreign_parts(text: str, one: Judged) -> list[Piece]:
     """Return the parts inside a sentence that are no part of the route."""
-    body = parts(text, one.piece)
     found = []
-    for part in body:
+    for part in parts(text, one.piece):
         said = part.of(text)
         title = said[:1] in "\"'“«" and len(words(said)) <= TITLE
         long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
@@ -221,7 +224,7 @@ def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece]
         if one.piece.tag or (block and block not in wraps):
             out.append(one.piece)
             continue
-        inside = foreign_parts(text, one) if one.foreign >= ASK else []
+        inside = foreign_parts(text, one)
         if inside and _route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from mitigate.corruptions.language.words import bag
 
 OWN: dict[str, float] = {
-    "bias": -0.595,
+    "bias": -0.597,
     "orders": 0.369,
     "text": 0.604,
     "annul": 0.239,
@@ -16,72 +16,72 @@ OWN: dict[str, float] = {
     "role": 0.239,
     "authority": 0.416,
     "haste": -0.071,
-    "if": -0.093,
+    "if": -0.094,
     "me": -0.130,
     "you": 0.134,
     "third": 0.268,
     "past": 0.111,
-    "not": 0.056,
+    "not": 0.057,
     "here": -0.013,
-    "time": 0.257,
+    "time": 0.262,
     "go": 0.076,
     "has orders": 0.264,
     "has text": 0.113,
-    "has annul": 0.237,
+    "has annul": 0.238,
     "has invert": 0.029,
     "has case": 0.967,
     "has halt": -0.210,
-    "has machine": 0.204,
+    "has machine": 0.203,
     "has role": 0.304,
     "has authority": 0.367,
     "has haste": -0.067,
     "has if": 0.211,
     "has me": 0.162,
-    "has you": -0.294,
+    "has you": -0.293,
     "has third": 0.081,
     "has past": 0.334,
-    "has not": -0.084,
-    "has here": -0.336,
-    "has time": 0.195,
-    "has go": 0.118,
-    "hidden": 0.281,
+    "has not": -0.083,
+    "has here": -0.335,
+    "has time": 0.201,
+    "has go": 0.119,
+    "hidden": 0.282,
     "alike": 2.774,
-    "wide": 1.410,
-    "spelled": 2.225,
+    "wide": 1.411,
+    "spelled": 2.226,
     "leet": 2.380,
-    "code": 0.342,
-    "cipher": 2.222,
-    "unknown": -0.030,
-    "alien": 0.039,
+    "code": 0.308,
+    "cipher": 2.219,
+    "unknown": 0.119,
+    "alien": 0.037,
     "foreign letters": 0.255,
-    "late verb": 0.102,
+    "late verb": 0.103,
     "no verb": 0.248,
     "on route": -0.022,
     "other things": 0.286,
-    "nothing": 0.280,
+    "nothing": 0.278,
     "turns": 0.073,
-    "places": -0.048,
-    "no place": 0.790,
-    "length": 0.412,
-    "short": -0.364,
+    "places": -0.047,
+    "no place": 0.789,
+    "length": 0.411,
+    "short": -0.365,
     "commas": -0.469,
-    "asks": 0.242,
-    "exclaims": 0.330,
+    "asks": 0.243,
+    "exclaims": 0.331,
     "quoted": 1.225,
     "quote in": -0.167,
-    "markup": 2.930,
+    "markup": 2.927,
     "role of": -0.026,
-    "reported": 0.060,
-    "self": 0.348,
-    "about": 1.025,
+    "reported": 0.059,
+    "self": 0.349,
+    "about": 1.024,
     "back to text": -0.400,
     "elsewhere": -0.118,
     "annul orders": 0.131,
     "invert orders": 0.680,
     "case orders": 0.034,
     "not orders": 0.053,
-    "halt nowhere": -0.305,
-    "halt here": 0.401,
+    "halt nowhere": -0.303,
+    "halt here": 0.400,
     "not go": 0.015,
     "both sides": 0.619,
     "case not": -0.291,
@@ -92,128 +92,128 @@ OWN: dict[str, float] = {
     "you role": 0.088,
     "authority said": 0.329,
     "machine you": 0.207,
-    "me no place": -0.191,
+    "me no place": -0.190,
     "past no you": 0.234,
     "annul place": -0.115,
-    "not place": 0.470,
+    "not place": 0.468,
     "if place": -0.434,
-    "words": 0.819,
+    "words": 0.820,
     "pairs": 0.547,
-    "worst words": 0.029,
-    "best words": 0.623,
+    "worst words": 0.028,
+    "best words": 0.622,
 }
 CONTEXT: dict[str, float] = {
-    "bias": 0.687,
-    "own": 0.877,
-    "first": -0.801,
-    "last": 0.086,
-    "stops early": 1.464,
+    "bias": 0.686,
+    "own": 0.876,
+    "first": -0.800,
+    "last": 0.085,
+    "stops early": 1.465,
     "stops before all": 0.375,
-    "denies the rest": -0.301,
-    "repeats the rest": -0.460,
-    "neighbour": 1.043,
-    "neighbours": 1.641,
+    "denies the rest": -0.300,
+    "repeats the rest": -0.458,
+    "neighbour": 1.042,
+    "neighbours": 1.643,
     "alone": -1.307,
-    "most": -2.136,
+    "most": -2.137,
 }
 PART: dict[str, float] = {
-    "bias": -1.256,
-    "whole": -0.063,
+    "bias": -1.269,
+    "whole": -0.064,
     "orders": 0.121,
-    "text": 0.470,
-    "annul": 0.467,
-    "invert": 0.222,
-    "case": 0.466,
-    "halt": 0.614,
-    "machine": 0.541,
-    "role": 0.109,
-    "authority": 0.711,
+    "text": 0.469,
+    "annul": 0.466,
+    "invert": 0.221,
+    "case": 0.470,
+    "halt": 0.613,
+    "machine": 0.540,
+    "role": 0.108,
+    "authority": 0.708,
     "haste": 0.043,
     "if": -0.256,
     "me": -0.963,
     "you": -0.132,
-    "third": 0.016,
-    "past": 0.004,
-    "not": -0.337,
+    "third": 0.018,
+    "past": 0.003,
+    "not": -0.336,
     "here": 0.012,
-    "time": 0.007,
-    "go": 0.419,
+    "time": 0.019,
+    "go": 0.421,
     "has orders": 0.021,
-    "has text": 0.561,
+    "has text": 0.562,
     "has annul": 0.460,
-    "has invert": 0.222,
+    "has invert": 0.221,
     "has case": 0.609,
-    "has halt": 0.334,
-    "has machine": 0.541,
-    "has role": 0.109,
-    "has authority": 0.710,
+    "has halt": 0.332,
+    "has machine": 0.540,
+    "has role": 0.108,
+    "has authority": 0.708,
     "has haste": 0.043,
     "has if": -0.091,
     "has me": -0.785,
-    "has you": -0.385,
-    "has third": 0.280,
-    "has past": 0.094,
-    "has not": -0.218,
-    "has here": -0.583,
-    "has time": 0.052,
-    "has go": -0.194,
-    "hidden": 2.325,
-    "alike": 3.672,
+    "has you": -0.384,
+    "has third": 0.284,
+    "has past": 0.093,
+    "has not": -0.217,
+    "has here": -0.582,
+    "has time": 0.065,
+    "has go": -0.190,
+    "hidden": 2.332,
+    "alike": 3.669,
     "wide": 0.000,
-    "spelled": 0.609,
-    "leet": 3.184,
+    "spelled": 0.608,
+    "leet": 3.187,
     "code": 0.000,
-    "cipher": 2.490,
-    "unknown": 1.677,
-    "alien": 0.570,
-    "foreign letters": 0.273,
-    "late verb": -0.111,
-    "no verb": -0.606,
+    "cipher": 2.488,
+    "unknown": 1.725,
+    "alien": 0.567,
+    "foreign letters": 0.268,
+    "late verb": -0.110,
+    "no verb": -0.600,
     "on route": 0.235,
-    "other things": -0.217,
-    "nothing": 0.180,
-    "turns": 0.445,
-    "places": -0.184,
-    "no place": 0.069,
-    "length": -0.471,
-    "short": -0.285,
-    "commas": 1.532,
-    "asks": -0.760,
-    "exclaims": -0.614,
-    "quoted": 0.848,
-    "quote in": 2.147,
+    "other things": -0.215,
+    "nothing": 0.167,
+    "turns": 0.443,
+    "places": -0.185,
+    "no place": 0.077,
+    "length": -0.475,
+    "short": -0.283,
+    "commas": 1.535,
+    "asks": -0.759,
+    "exclaims": -0.612,
+    "quoted": 0.847,
+    "quote in": 2.148,
     "markup": 0.000,
-    "role of": -0.066,
-    "reported": 0.294,
-    "self": -0.166,
+    "role of": -0.068,
+    "reported": 0.290,
+    "self": -0.165,
     "about": 0.405,
     "back to text": -0.223,
-    "elsewhere": 0.977,
+    "elsewhere": 0.979,
     "annul orders": 0.537,
-    "invert orders": 0.834,
-    "case orders": 0.218,
-    "not orders": 0.262,
-    "halt nowhere": 0.459,
+    "invert orders": 0.835,
+    "case orders": 0.216,
+    "not orders": 0.260,
+    "halt nowhere": 0.462,
     "halt here": 0.126,
-    "not go": 0.434,
-    "both sides": 1.031,
-    "case not": 0.123,
-    "case go": 0.312,
+    "not go": 0.436,
+    "both sides": 1.032,
+    "case not": 0.121,
+    "case go": 0.313,
     "case halt": 0.085,
     "me past": -0.104,
-    "third past": 0.210,
+    "third past": 0.208,
     "you role": -0.176,
     "authority said": 0.251,
-    "machine you": 0.220,
-    "me no place": -0.318,
-    "past no you": -0.090,
-    "annul place": 0.099,
+    "machine you": 0.217,
+    "me no place": -0.317,
+    "past no you": -0.092,
+    "annul place": 0.101,
     "not place": 0.472,
-    "if place": -0.023,
-    "words": 1.439,
-    "pairs": 0.953,
-    "worst words": -0.120,
-    "best words": -0.653,
+    "if place": -0.022,
+    "words": 1.444,
+    "pairs": 0.951,
+    "worst words": -0.124,
+    "best words": -0.658,
 }
 STYLE = bag(
     """
@@ -530,8 +530,8 @@ _WORDS = bag(
     each_direction=200 each_doorway=176 each_minute=176 each_other=-140 each_step=175
     each_time=200 each_turn=200 earlier=200 early=86 earrings=86 ears=16 ears_=16 ease=86
     easel=-163 easel_=-93 easel_and=-127 easiest=-41 east=132 easy=-8 eat=-71 eaten=86
-    eating=-41 ebg=172 echo=86 echoey=86 edge=-200 edge_=-111 edge_of=-200 edges=-71 effect=190
-    eggs=-71 egress=-41 egyptian=-41 eight=101 eighth=-71 either=-152 element=-41 elephant=-71
+    eating=-41 echo=86 echoey=86 edge=-200 edge_=-111 edge_of=-200 edges=-71 effect=190 eggs=-71
+    egress=-41 egyptian=-41 eight=101 eighth=-71 either=-152 element=-41 elephant=-71
     elevation=-41 elevator=-200 elevator_=-172 elevator_and=-189 elevator_doors=-111
     elevator_lobby=-111 elevators=-189 elevators_=-152 eleven=-71 else=177 emergency=60 emit=200
     empty=-41 end=-37 end_=-180 end_and=-44 end_at=-163 end_go=-111 end_of=-108 end_so=101
@@ -926,51 +926,51 @@ _WORDS = bag(
     room_on=-200 room_opposite=-163 room_past=-93 room_straight=-127 room_that=120 room_the=-163
     room_then=-200 room_through=-134 room_to=-110 room_turn=-193 room_using=-185 room_where=-163
     room_which=-93 room_with=-179 room_you=-197 rooms=101 rooms_=141 root=172 rope=-141
-    rope_barrier=-111 rotate=62 rotate_twice=176 rotating=172 rotation=60 roughly=-71 round=-20
-    round_=200 round_and=31 round_dining=-93 round_it=-111 round_table=-140 round_tables=-111
-    round_the=-200 round_to=-111 round_window=16 rounded=-41 rounding=-41 route=200 route_=200
-    route_and=200 route_is=200 routes=172 row=-200 row_=-140 row_and=-111 row_of=-200
-    rowing=-111 rows=-189 rows_of=-163 rt=-41 rubber=-71 rubbish=45 rug=-200 rug_=-200
-    rug_and=-200 rug_ends=-93 rug_in=-76 rug_to=-82 rule=190 rules=200 rumbling=86 run=200
-    run_lasts=200 runner=-140 runner_rug=-111 running=-71 runs=-111 rush=-41 s=-41 sacristy=86
-    saddle=-127 saddle_=-93 safe=-93 safest=172 safety=200 safety_officer=163 said=200 said_=101
-    sailor=45 salad=-111 salon=-111 saloon=-71 same=-33 sandbox=-93 sandwich=45 sanitary=-41
-    saturn=-71 sauna=-200 sauna_=-134 sauna_and=-120 sauna_go=-82 sausage=-41 saw=153 say=127
-    say_hi=-7 say_it=200 say_that=200 saying=71 says=200 says_=200 says_left=200 says_stop=-189
-    says_that=200 scale=-200 scale_=-181 scales=-93 scary=45 scavenger=86 school=21 science=16
-    sconces=-71 scoot=-93 scrap=200 scratch=172 screen=-200 screen_=-200 screen_door=-152
-    screens=-163 scroll=-140 scullery=-111 sculpture=-168 sculpture_=-82 sculpture_and=-71
-    sculptures=-23 sea=86 sealed=172 search=153 seashells=-71 seat=-200 seat_=-111 seat_on=-93
-    seating=-71 seats=-189 seats_=-111 sec=-71 second=-112 second_=-79 second_door=-42
-    second_floor=-111 second_left=-111 second_one=-200 second_right=-147 second_set=-111
-    second_turn=101 secondly=-41 seconds=172 secret=132 secs=86 section=194 sectional=-93
-    sector=-41 secure=-93 security=136 see=-128 see_a=-106 see_an=-158 see_if=-7 see_stairs=-93
-    see_that=-163 see_the=-200 see_two=-111 see_you=91 see_yourself=-93 seek=86 seen=16 sees=86
-    segment=-71 select=-93 self=86 sell=86 sells=-41 send=200 sendorfer=-140 sense=131
-    sensor=-41 sent=200 sentence=200 sentences=200 sentry=86 separating=-41 separation=-41
-    sequence=-41 serious=86 seriously=172 served=172 server=194 serves=-41 service=158
-    service_=190 serving=-41 session=172 set=-29 set_of=-200 sets=-127 sets_of=-127 seven=-25
-    seventh=-71 sewing=-152 sewing_machine=-152 shade=-93 shade_=-93 shall=198 shaped=-111
-    shaped_like=-93 sharp=-100 sharp_left=-200 sharp_right=-148 sharply=-71 she=200 she's=91
-    shed=-7 sheets=-41 shelf=-200 shelf_=-181 shelf_and=-185 shelf_of=-111 shelf_with=-111
-    shells=-41 shelves=-200 shelves_=-127 shelving=-41 shhh=-71 shift=-93 shiny=-181
-    shiny_black=-93 shiny_floor=-111 ship=5 ship's=-41 ship_=16 shipping=172 shoe=-200
-    shoe_display=-111 shoe_rack=-127 shoe_store=-93 shoes=-76 shoes_=-127 shooting=-41 shop=-183
-    shop_=-140 shop_and=-7 shop_past=-93 shop_turn=-93 shopping=-111 shopping_carts=-111
-    short=-117 short_of=-93 shorter=86 should=82 should_be=-51 should_go=200 should_not=200
-    should_now=-140 should_see=-200 should_stop=-140 shoulder=172 shout=-41 shouted=200
-    shouts=172 shove=-41 show=79 shower=-200 shower_=-111 shower_and=-120 shower_room=-163
-    shower_turn=-71 showers=-152 shows=-41 shredder=-71 shush=86 shut=200 shut_down=200
-    shutdown=172 shutters=-71 shy=-41 side=-136 side_=-152 side_and=-200 side_as=-93
-    side_chapel=-111 side_door=-163 side_of=-180 side_to=-111 sideboard=-93 sides=65 sierra=-41
-    sight=86 sign=-87 sign_=-79 sign_and=-172 sign_with=-111 signal=172 signed=172 signs=-54
-    sill=-93 sill_=-93 silly=45 silver=-93 simple=-71 simplified=86 since=-54 since_the=-127
-    sing=86 singing=-41 single=120 single_step=161 sink=-192 sink_=-200 sink_and=-152 sink_in=50
-    sinks=-197 sinks_=-111 sinks_and=-152 sir=172 sister=91 sit=38 sit_down=101 sit_on=-7
-    site=176 sitrep=86 sits=-140 sitting=-123 sitting_area=-111 six=-47 six_=-7 sixth=-111
-    sixty=-41 size=-71 skeleton=-163 skeleton_=-93 ski=-71 skinny=-111 skip=114 skip_the=69
-    skipped=172 skirt=-111 skirting=172 skis=-71 skylight=-76 skylight_=-54 sleep=200
-    sleeping=45 sleeps=-41 slept=163 slide=116 slider=-140 slides=-41 sliding=-200
+    rope_barrier=-111 rot=172 rotate=62 rotate_twice=176 rotating=172 rotation=60 roughly=-71
+    round=-20 round_=200 round_and=31 round_dining=-93 round_it=-111 round_table=-140
+    round_tables=-111 round_the=-200 round_to=-111 round_window=16 rounded=-41 rounding=-41
+    route=200 route_=200 route_and=200 route_is=200 routes=172 row=-200 row_=-140 row_and=-111
+    row_of=-200 rowing=-111 rows=-189 rows_of=-163 rt=-41 rubber=-71 rubbish=45 rug=-200
+    rug_=-200 rug_and=-200 rug_ends=-93 rug_in=-76 rug_to=-82 rule=190 rules=200 rumbling=86
+    run=200 run_lasts=200 runner=-140 runner_rug=-111 running=-71 runs=-111 rush=-41 s=-41
+    sacristy=86 saddle=-127 saddle_=-93 safe=-93 safest=172 safety=200 safety_officer=163
+    said=200 said_=101 sailor=45 salad=-111 salon=-111 saloon=-71 same=-33 sandbox=-93
+    sandwich=45 sanitary=-41 saturn=-71 sauna=-200 sauna_=-134 sauna_and=-120 sauna_go=-82
+    sausage=-41 saw=153 say=127 say_hi=-7 say_it=200 say_that=200 saying=71 says=200 says_=200
+    says_left=200 says_stop=-189 says_that=200 scale=-200 scale_=-181 scales=-93 scary=45
+    scavenger=86 school=21 science=16 sconces=-71 scoot=-93 scrap=200 scratch=172 screen=-200
+    screen_=-200 screen_door=-152 screens=-163 scroll=-140 scullery=-111 sculpture=-168
+    sculpture_=-82 sculpture_and=-71 sculptures=-23 sea=86 sealed=172 search=153 seashells=-71
+    seat=-200 seat_=-111 seat_on=-93 seating=-71 seats=-189 seats_=-111 sec=-71 second=-112
+    second_=-79 second_door=-42 second_floor=-111 second_left=-111 second_one=-200
+    second_right=-147 second_set=-111 second_turn=101 secondly=-41 seconds=172 secret=132
+    secs=86 section=194 sectional=-93 sector=-41 secure=-93 security=136 see=-128 see_a=-106
+    see_an=-158 see_if=-7 see_stairs=-93 see_that=-163 see_the=-200 see_two=-111 see_you=91
+    see_yourself=-93 seek=86 seen=16 sees=86 segment=-71 select=-93 self=86 sell=86 sells=-41
+    send=200 sendorfer=-140 sense=131 sensor=-41 sent=200 sentence=200 sentences=200 sentry=86
+    separating=-41 separation=-41 sequence=-41 serious=86 seriously=172 served=172 server=194
+    serves=-41 service=158 service_=190 serving=-41 session=172 set=-29 set_of=-200 sets=-127
+    sets_of=-127 seven=-25 seventh=-71 sewing=-152 sewing_machine=-152 shade=-93 shade_=-93
+    shall=198 shaped=-111 shaped_like=-93 sharp=-100 sharp_left=-200 sharp_right=-148
+    sharply=-71 she=200 she's=91 shed=-7 sheets=-41 shelf=-200 shelf_=-181 shelf_and=-185
+    shelf_of=-111 shelf_with=-111 shells=-41 shelves=-200 shelves_=-127 shelving=-41 shhh=-71
+    shift=-93 shiny=-181 shiny_black=-93 shiny_floor=-111 ship=5 ship's=-41 ship_=16
+    shipping=172 shoe=-200 shoe_display=-111 shoe_rack=-127 shoe_store=-93 shoes=-76 shoes_=-127
+    shooting=-41 shop=-183 shop_=-140 shop_and=-7 shop_past=-93 shop_turn=-93 shopping=-111
+    shopping_carts=-111 short=-117 short_of=-93 shorter=86 should=82 should_be=-51 should_go=200
+    should_not=200 should_now=-140 should_see=-200 should_stop=-140 shoulder=172 shout=-41
+    shouted=200 shouts=172 shove=-41 show=79 shower=-200 shower_=-111 shower_and=-120
+    shower_room=-163 shower_turn=-71 showers=-152 shows=-41 shredder=-71 shush=86 shut=200
+    shut_down=200 shutdown=172 shutters=-71 shy=-41 side=-136 side_=-152 side_and=-200
+    side_as=-93 side_chapel=-111 side_door=-163 side_of=-180 side_to=-111 sideboard=-93 sides=65
+    sierra=-41 sight=86 sign=-87 sign_=-79 sign_and=-172 sign_with=-111 signal=172 signed=172
+    signs=-54 sill=-93 sill_=-93 silly=45 silver=-93 simple=-71 simplified=86 since=-54
+    since_the=-127 sing=86 singing=-41 single=120 single_step=161 sink=-192 sink_=-200
+    sink_and=-152 sink_in=50 sinks=-197 sinks_=-111 sinks_and=-152 sir=172 sister=91 sit=38
+    sit_down=101 sit_on=-7 site=176 sitrep=86 sits=-140 sitting=-123 sitting_area=-111 six=-47
+    six_=-7 sixth=-111 sixty=-41 size=-71 skeleton=-163 skeleton_=-93 ski=-71 skinny=-111
+    skip=114 skip_the=69 skipped=172 skirt=-111 skirting=172 skis=-71 skylight=-76 skylight_=-54
+    sleep=200 sleeping=45 sleeps=-41 slept=163 slide=116 slider=-140 slides=-41 sliding=-200
     sliding_door=-197 sliding_doors=-200 sliding_glass=-93 slight=-200 slight_left=-200
     slight_right=-200 slightly=-200 slightly_left=-200 slightly_right=-200 slip=-93 slope=-41
     sloping=-41 slot=-71 slow=45 slowly=-163 small=-167 small_door=-163 small_hallway=-93
