@@ -25,6 +25,10 @@ CATEGORIES = bag(
     painting nightstand fridge stove oven mirror monitor refrigerator couch microwave bench
     """
 )
+_HUNTS = re.compile(
+    r"\b(?:find|finding|look(?:ing)? for|locat|search|seek|spot|fetch|hunt|where|in search)",
+    re.IGNORECASE,
+)
 _SEEKS = re.compile(
     r"\b(?:find|finding|look(?:ing)? for|locate|locating|search(?:ing)? (?:for|out)|seek|spot|"
     r"fetch|hunt(?:ing)? (?:for|down|out)|where(?:'s| is| are)|need|want|"
@@ -55,10 +59,13 @@ def weight(text: str) -> int:
     return int(bool(facts(plain).landmarks) or any(word in VERBS for word in words(plain)))
 
 
-def sought(text: str) -> frozenset[str]:
-    """Return the things that ``text`` asks to find or go to, in canonical form."""
+def sought(text: str, hunted: bool = False) -> frozenset[str]:
+    """Return the things that ``text`` asks to find or go to, in canonical form; ``hunted``: to find
+    alone."""
     found = set()
     for match in _SEEKS.finditer(MASK.sub("the", plainly(text).text)):
+        if hunted and not _HUNTS.match(match.group()):
+            continue
         for token in tag(match["rest"])[:6]:
             name = normal(token.lower)
             if token.lower in CATEGORIES or (
@@ -87,6 +94,10 @@ def result_refused(heard: str, given: str) -> str:
         return "nothing of the way would be left"
     named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
     still = set(facts(plainly(given).text).landmarks)
+    goal = len(still) < 2 and not route_turns(given)  # no route: whatever is named may be meant
+    lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still
+    if lost:
+        return f"it may be what is to be found ({', '.join(sorted(lost))})"
     if wanted and not left and not (named & still):
         return f"what is to be found would be lost ({', '.join(sorted(wanted))})"
     if named and not still:
@@ -103,5 +114,5 @@ def rewrite_refused(heard: str, said: str) -> str:
 
 
 def route_turns(text: str) -> bool:
-    """Return whether ``text`` tells to turn or climb, and does not only name a thing to find."""
+    """Return whether ``text`` tells to turn or climb, and not only what to find."""
     return any(d not in ("stop", "straight") for d in facts(text).directions)
