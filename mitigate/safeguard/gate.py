@@ -94,7 +94,7 @@ def result_refused(heard: str, given: str) -> str:
         return "nothing of the way would be left"
     named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
     still = set(facts(plainly(given).text).landmarks)
-    goal = len(still) < 2 and not route_turns(given)  # no route: whatever is named may be meant
+    goal = not route_turns(given)  # whatever is named may be meant
     lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still
     if lost:
         return f"it may be what is to be found ({', '.join(sorted(lost))})"

@@ -126,9 +126,9 @@ GROUPS: dict[str, frozenset[str]] = {
                 "months "
                 "year years hour hours minute minutes moment later soon monday friday sunday "
                 "saturday ago once day days"),
-    "go": bag("make go goes going walk walking head heading proceed continue move enter "
-              "entering exit exiting leave leaving turn turning climb descend ascend cross pass passing take "
-              "follow step veer bear approach keep come get reach past through into onto toward "
+    "go": bag("take make go goes going walk walking head heading proceed continue move enter "
+              "entering exit exiting leave leaving turn turning climb descend ascend cross pass "
+              "passing follow step veer bear approach keep come get reach past through into onto toward "
               "towards along across out up down"),
 }  # fmt: skip
 FUNCTION = frozenset(
