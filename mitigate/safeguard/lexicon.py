@@ -128,8 +128,8 @@ GROUPS: dict[str, frozenset[str]] = {
                 "saturday ago once day days"),
     "go": bag("take make go goes going walk walking head heading proceed continue move enter "
               "entering exit exiting leave leaving turn turning climb descend ascend cross pass "
-              "passing follow step veer bear approach keep come get reach past through into onto toward "
-              "towards along across out up down"),
+              "passing follow step veer bear approach keep come get reach past through into onto "
+              "toward towards along across out up down"),
 }  # fmt: skip
 FUNCTION = frozenset(
     word
