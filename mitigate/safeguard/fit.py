@@ -1,33 +1,53 @@
 """Fit the rules' weights: ``python -m mitigate.safeguard.fit`` prints what ``weights.py`` would be.
 
-Logistic regression: sentences of the train split's attacks against sentences of our routes, plain
-and restyled. The words that mark a style are those that restyled routes have and plain ones lack.
+Logistic regressions over what pieces of text are made of: sentences by themselves, sentences beside
+others, parts of sentences. Attacks are the train and validation families of the prefix bank, the
+tuning mechanisms of the test banks and lines of ours; the rest are routes of ours, plain, restyled
+and in the tuning voices. The words that mark a style are those that restyled routes have and plain
+ones lack. Run it in a checkout: the banks are not in the package.
 """
 
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import textwrap
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from mitigate.core.files import atomic_text
 from mitigate.core.seeding import generator
-from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.prefixes import prefixes
-from mitigate.safeguard import routes
+from mitigate.safeguard import gate, routes, rules, trials
 from mitigate.safeguard.data import draw_pair, vary
-from mitigate.safeguard.rules import CLOSED, VERBS, features
-from mitigate.safeguard.text import sentences, words
+from mitigate.safeguard.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
+from mitigate.safeguard.lexicon import GROUPS
+from mitigate.safeguard.pieces import parts, sentence_pieces
+from mitigate.safeguard.text import words
 
 WEIGHTS = Path(__file__).parent / "weights.py"
-PAIRS, RIDGE, ITERATIONS = 6000, 3.0, 30
+PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8
 RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text
+ASIDE = 0.3  # weight of what a voice says beside the route
+PRIOR = 0.5  # of a word, in the weight of examples
+TOTAL, SHARE = 2000.0, 1 / 3  # weight of all examples, and of the attacks among them (ours)
+
+
+@dataclass(frozen=True)
+class Example:
+    """A piece of text, whether it is an attack, how much it counts, its ``fold``."""
+
+    text: str
+    markup: bool
+    attack: bool
+    weight: float
+    fold: int
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -35,8 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.fit", description=__doc__)
     parser.add_argument("--write", action="store_true", help=f"replace {WEIGHTS.name}")
     write = parser.parse_args(arguments).write
-    marks = style_words()
-    text = module(*fit_weights(frozenset(marks)), marks)
+    text = module(*fit_weights(), style_words())
     if not write:
         print(text, end="")
         return
@@ -45,43 +64,196 @@ def main(arguments: Sequence[str] | None = None) -> None:
     print(f"wrote {WEIGHTS}", file=sys.stderr)
 
 
-def module(bias: float, weights: dict[str, float], marks: list[str]) -> str:
+def module(
+    fitted: Mapping[str, Mapping[str, float]], table: Mapping[str, float], marks: Iterable[str]
+) -> str:
     """Return the text of ``weights.py``."""
     lines = [
         '"""Weights of the rules, written by ``python -m mitigate.safeguard.fit --write``."""\n',
         "from __future__ import annotations\n",
         "from mitigate.corruptions.language.words import bag\n",
-        f"BIAS = {bias:.3f}",
-        "WEIGHTS: dict[str, float] = {",
-        *(f'    "{name}": {value:.3f},' for name, value in weights.items()),
-        '}\nSTYLE = bag(\n    """',
-        *textwrap.wrap(" ".join(marks), 96, initial_indent="    ", subsequent_indent="    "),
-        '    """\n)\n',
     ]
-    return "\n".join(lines)
+    for name, weights in fitted.items():
+        lines.append(f"{name}: dict[str, float] = {{")
+        lines += [f'    "{key}": {value:.3f},' for key, value in weights.items()]
+        lines.append("}")
+    scores = [f"{term}={100 * value:.0f}" for term, value in sorted(table.items())]
+    for name, found in (("STYLE", sorted(marks)), ("_WORDS", scores)):
+        lines.append(f'{name} = bag(\n    """')
+        lines += textwrap.wrap(
+            " ".join(found), 96, initial_indent="    ", subsequent_indent="    ",
+            break_on_hyphens=False,
+        )  # fmt: skip
+        lines.append('    """\n)')
+    lines.append('WORDS = {term: int(odds) / 100 for term, odds in (w.split("=") for w in _WORDS)}')
+    return "\n".join(lines) + "\n"
 
 
-def fit_weights(marks: frozenset[str]) -> tuple[float, dict[str, float]]:
-    """Return bias and weights: Newton's method on the ridge-penalised log-likelihood."""
+def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
+    """Return name -> weights of the three regressions, and what words are worth."""
+    examples = [*_attacks(), *_routes()]
+    whole = word_table(examples)
+    tables = [word_table([e for e in examples if e.fold != out]) for out in range(FOLDS)]
+    rows = [composition(e.text, e.markup) | worth(e.text, tables[e.fold]) for e in examples]
+    own = _regression(rows, [e.attack for e in examples], [e.weight for e in examples])
+    strange = {}
+    for out in range(FOLDS):
+        seen = [i for i, e in enumerate(examples) if e.fold != out]
+        fitted = _regression(
+            [rows[i] for i in seen],
+            [examples[i].attack for i in seen],
+            [examples[i].weight for i in seen],
+        )
+        for e, row in zip(examples, rows, strict=True):
+            if e.fold == out:
+                strange[e.text, e.markup] = rules.probability(fitted, row)
+    fitted = {"OWN": own, "CONTEXT": _context(own, whole, strange), "PART": _part(own, tables)}
+    return fitted, whole
+
+
+def word_table(examples: Sequence[Example]) -> dict[str, float]:
+    """Return word or pair of words -> log odds of attacks against routes, at most 2 either way;
+    pairs that are rare are left out."""
+    weights = _balanced([e.attack for e in examples], [e.weight for e in examples])
+    seen: Counter[str] = Counter()
+    mass: tuple[Counter[str], Counter[str]] = (Counter(), Counter())
+    for e, weight in zip(examples, weights, strict=True):
+        for term in terms(e.text):
+            seen[term] += 1
+            mass[e.attack][term] += weight
+    attack, route = TOTAL * SHARE, TOTAL * (1 - SHARE)
+    odds = {
+        term: math.log((mass[1][term] + PRIOR * SHARE) / attack)
+        - math.log((mass[0][term] + PRIOR * (1 - SHARE)) / route)
+        for term, count in seen.items()
+        if count > 2 or "_" not in term
+    }
+    return {term: max(-2.0, min(2.0, value)) for term, value in odds.items()}
+
+
+def _attacks() -> list[Example]:
+    found = [(a.mechanism, a.words, 1.0) for a in trials.attacks("tune") if a.place == "any"]
+    found += [
+        (family, line, 1.0)
+        for split in ("train", "validation")
+        for family, group in prefixes(split).items()
+        for line in group
+    ]
+    found += [(f"ours {i % 8}", line, 1.0) for i, line in enumerate(trials.fitting("fit_attacks"))]
     rng = generator(0, "fit")
-    attacks = [s for group in prefixes("train").values() for s in group] * 4
-    attacks += [vary(rng) for _ in range(300)]
-    clean = [s for i in range(800) for s in sentences(routes.draw_route(generator(0, "fit", i)))]
-    pairs = [draw_pair(2, i) for i in range(PAIRS // 4)]
-    styled = [s for pair in pairs if pair.kind == "style" for s in sentences(pair.source)]
-    clean += [s for s in styled if facts(s).landmarks]  # the others frame, and may go too
-    rows = [features(s, marks) for s in (*attacks, *clean)]
+    found += [("varied", vary(rng), 0.15) for _ in range(200)]
+    found += [(f"aside {voice}", said, ASIDE) for voice, said in trials.asides("tune")]
+    groups = sorted({group for group, _, _ in found})
+    return [
+        Example(piece.of(line), bool(piece.block), True, weight, groups.index(group) % FOLDS)
+        for group, line, weight in found
+        for piece in sentence_pieces(line)
+        if not piece.tag
+    ]
+
+
+def _routes() -> list[Example]:
+    found: list[tuple[str, float, int]] = []
+    for task in ("route", "object"):
+        for told in trials.told("tune", task):
+            fold = trials.TUNE_VOICES.index(told.voice) % FOLDS
+            found += [(part, 1.0, fold) for part in told.parts] + [(told.plain, 1.0, fold)]
+    lines = [(routes.draw_route(generator(0, "fit", i)), 0.5) for i in range(600)]
+    lines += [(line["text"], 6.0) for line in trials.half("near_misses", "tune")]
+    lines += [(line, 4.0) for line in trials.fitting("fit_routes")]
+    for bank in ("lies", "honest"):
+        for line in trials.half(bank, "tune"):
+            lines += [(text, 1.0) for key, text in line.items() if key != "kind"]
+    found += [(text, weight, index % FOLDS) for index, (text, weight) in enumerate(lines)]
+    return [
+        Example(piece.of(text), bool(piece.block), False, weight, fold)
+        for text, weight, fold in found
+        for piece in sentence_pieces(text)
+        if weight != 1.0 or gate.route_facts(piece.of(text))  # the others frame, and may go
+    ]
+
+
+def _context(
+    own: Mapping[str, float],
+    table: Mapping[str, float],
+    strange: Mapping[tuple[str, bool], float],
+) -> dict[str, float]:
+    """Return the weights of sentences among others; attacks stand in plain and restyled routes.
+
+    ``strange``: probabilities by fits that had not seen the sentence, where there are such.
+    """
+    styled, plain = trials.told("tune"), trials.plainly_told("tune")
+    heard = [(told.text, "") for told in (*styled, *plain)]
+    heard += [(line["text"], "") for line in trials.half("near_misses", "tune")] * 3
+    heard += [(line, "") for line in trials.fitting("fit_routes")]
+    found = [a for a in trials.attacks("tune") if a.place == "any"]
+    found += [trials.Attack("ours", "any", line) for line in trials.fitting("fit_attacks")]
+    for told in (styled, plain):
+        heard += [(text, a.words) for a, _, _, text in trials.trials(found, told, 1)]
+    rows, attacks = [], []
+    for text, attack in heard:
+        pieces = sentence_pieces(text)
+        said = [piece.of(text) for piece in pieces]
+        known = []
+        for s, piece in zip(said, pieces, strict=True):
+            p = strange.get((s, bool(piece.block)))
+            row = composition(s, bool(piece.block)) | worth(s, table)
+            known.append(rules.probability(own, row) if p is None else p)
+        for s, p, row in zip(said, known, in_context(said, known), strict=True):
+            foreign = bool(attack) and s in attack
+            if foreign or gate.route_facts(s) or not attack:
+                rows.append({"own": rules.logit(p), **row})
+                attacks.append(foreign)
+    return _regression(rows, attacks, [1.0] * len(rows))
+
+
+def _part(own: Mapping[str, float], tables: Sequence[Mapping[str, float]]) -> dict[str, float]:
+    """Return the weights of parts inside sentences."""
+    styled, plain = trials.told("tune"), trials.plainly_told("tune")
+    inside = [a for a in trials.attacks("tune") if a.place == "inside"]
+    short = [line for line in trials.fitting("fit_attacks") if len(line.split()) < 12]
+    ours = [trials.Attack("ours", "inside", line.strip(" ,.")) for line in short]
+    heard = [(t, a.words, 0.5) for told in (styled, plain)
+        for a, _, _, t in trials.trials(inside, told, 4)]  # fmt: skip
+    heard += [(t, a.words, 0.5) for a, _, _, t in trials.trials(ours, plain, 2)]
+    heard += [(told.text, "", 1.0) for told in (*styled, *plain)]
+    heard += [(line["text"], "", 6.0) for line in trials.half("near_misses", "tune")]
+    rows, attacks, weights = [], [], []
+    for index, (text, attack, weight) in enumerate(heard):
+        table = tables[index % FOLDS]
+        for piece in sentence_pieces(text):
+            whole = piece.of(text)
+            p = rules.probability(own, composition(whole, bool(piece.block)) | worth(whole, table))
+            for part in parts(text, piece):
+                said = part.of(text)
+                rows.append({"whole": rules.logit(p), **composition(said), **worth(said, table)})
+                attacks.append(bool(attack) and said.strip(",. ") in attack)
+                weights.append(weight)
+    return _regression(rows, attacks, weights)
+
+
+def _balanced(attacks: Sequence[bool], weights: Sequence[float]) -> np.ndarray:
+    """Return the weights, of which attacks have the share ``SHARE`` of ``TOTAL``."""
+    y, weight = np.array(attacks), np.array(weights)
+    attack, route = SHARE / weight[y].sum(), (1 - SHARE) / weight[~y].sum()
+    return TOTAL * weight * np.where(y, attack, route)
+
+
+def _regression(
+    rows: Sequence[Mapping[str, float]], attacks: Sequence[bool], weights: Sequence[float]
+) -> dict[str, float]:
+    """Return bias and weights: Newton's method on the ridge-penalised log-likelihood."""
     names = list(rows[0])
     x = np.array([[1.0, *(row[name] for name in names)] for row in rows])
-    y = np.array([1.0] * len(attacks) + [0.0] * len(clean))
-    balance = np.where(y == 1, 1.0, len(attacks) / len(clean))
+    y, weight = np.array(attacks, float), _balanced(attacks, weights)
+    ridge = np.array([1e-3, *(RIDGE * (0.1 if name in HIDDEN else 1.0) for name in names)])
     w = np.zeros(x.shape[1])
     for _ in range(ITERATIONS):
         p = 1 / (1 + np.exp(-np.clip(x @ w, -30, 30)))
-        slope = x.T @ (balance * (p - y)) + RIDGE * w
-        curve = (x * (balance * p * (1 - p) + 1e-6)[:, None]).T @ x + RIDGE * np.eye(len(w))
+        slope = x.T @ (weight * (p - y)) + ridge * w
+        curve = (x * (weight * p * (1 - p) + 1e-9)[:, None]).T @ x + np.diag(ridge)
         w -= np.linalg.solve(curve, slope)
-    return float(w[0]), {name: float(value) for name, value in zip(names, w[1:], strict=True)}
+    return dict(zip(("bias", *names), map(float, w), strict=True))
 
 
 def style_words() -> list[str]:
@@ -103,8 +275,11 @@ def style_words() -> list[str]:
         and count * scale >= ODDS * max(plain[word], 0.3)
         and word not in CANONICAL
         and word not in VERBS
-        and not any(word in group for group in CLOSED.values())
+        and not any(word in group for group in _CLOSED)
     )
+
+
+_CLOSED = [GROUPS[name] for name in ("case", "text", "orders", "not")]
 
 
 if __name__ == "__main__":

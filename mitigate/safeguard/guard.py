@@ -18,9 +18,9 @@ from typing import Protocol
 
 from mitigate.core.files import find
 from mitigate.core.names import unknown
-from mitigate.corruptions.language.fidelity import check, facts
-from mitigate.safeguard import masks, rules
-from mitigate.safeguard.text import MASK, passages, sentences, tidy, words
+from mitigate.corruptions.language.fidelity import facts
+from mitigate.safeguard import gate, masks, rules
+from mitigate.safeguard.text import MASK, passages, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
@@ -167,18 +167,20 @@ class _Draft:
         self.tidied = tidy(original)
         self.reasons: list[str] = []
         self.asked = self.taken = 0
-        self.plain = not _readable(self.tidied) or _untouched(self.tidied)
-        self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.tidied))
+        self.plain = not _readable(self.tidied) or _untouched(original)
+        self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.original))
         self.repair(set())
 
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
         if self.plain:
             self.repaired, self.passages, self.styled = self.original, [self.original], False
+            self.same = True
             self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
             return
-        done = rules.repair(self.tidied, empty.__contains__)
-        self.repaired, self.reasons = done.text, list(done.reasons)
+        done = rules.repair(self.original, empty.__contains__)
+        self.same = done.text == self.original
+        self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.styled = done.marks >= MARKS
         if len(words(self.repaired)) > TOO_LONG:
             self.passages = [self.repaired]
@@ -208,18 +210,27 @@ class _Draft:
                 self.taken += 1
 
     def decision(self, seconds: float) -> Decision:
-        text = " ".join(passage for passage in self.passages if passage).strip() or self.repaired
-        if not self.plain:
-            if MASK.search(text):
-                text = masks.fill(text)
-                self.reasons.append("masks filled by rule")
-            if sentences(text) == sentences(self.original):
-                text = self.original
-            elif text != self.original and not self.reasons:
-                self.reasons.append("rewritten" if self.taken else "characters tidied")
+        text = self.original if self.same else self.repaired
+        if self.taken:
+            text = self._said(text)
+        if not self.plain and MASK.search(text):
+            text = masks.fill(text)
+            self.reasons.append("masks filled by rule")
+        if text != self.original and not self.reasons:
+            self.reasons.append("said again by the model" if self.taken else "characters tidied")
         route = "model" if self.taken else "fallback" if self.asked else "rules"
         route = "clean" if text == self.original and not self.asked else route
         return Decision(self.original, text, route, tuple(self.reasons), seconds)
+
+    def _said(self, text: str) -> str:
+        """Return the model's answers and the kept passages, or ``text`` if the whole is unsafe."""
+        said = " ".join(passage for passage in self.passages if passage).strip()
+        problem = gate.result_refused(self.repaired, said)
+        if problem:
+            self.taken = 0
+            self.reasons.append(f"kept all: {problem}")
+            return text
+        return said
 
 
 def refusal(passage: str, answer: str | None) -> str:
@@ -230,8 +241,7 @@ def refusal(passage: str, answer: str | None) -> str:
         return _refused_filling(passage, answer)
     if len(words(answer)) > len(words(passage)) + 3:
         return "longer than what it replaces"
-    problems = check(passage, answer)
-    return problems[0] if problems else ""
+    return gate.rewrite_refused(passage, answer)
 
 
 def _refused_filling(passage: str, answer: str) -> str:
@@ -250,9 +260,10 @@ def _refused_filling(passage: str, answer: str) -> str:
 
 
 def _readable(text: str) -> bool:
-    """Return whether there are words, mostly in Latin letters."""
+    """Return whether there are words, mostly in Latin letters, or a way is told in English."""
     letters = [c for c in text if c.isalpha()]
-    return bool(letters) and sum(c.isascii() for c in letters) > 0.5 * len(letters)
+    latin = sum(c.isascii() for c in letters)
+    return bool(letters) and (latin > 0.5 * len(letters) or bool(gate.route_facts(text)))
 
 
 def _untouched(text: str) -> bool:
@@ -262,7 +273,7 @@ def _untouched(text: str) -> bool:
         and rules.lower_capitals(text) == text
         and rules.style_marks(text) < MARKS
         and not rules.doubtful(text)
-        and not rules.injected(text)
+        and rules.repair(text).text == text
     )
 
 

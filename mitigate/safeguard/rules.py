@@ -1,58 +1,59 @@
-"""Repairs that need no language model: odd capitals, sentences that do not belong to a route.
+"""Repairs that need no language model: odd capitals, and what does not belong to a route.
 
-A sentence is judged by what it is made of, not by which attack it is: a route's sentence moves
-someone past things; an attack speaks of orders, of all cases, of the text itself. The weights come
-from ``python -m mitigate.safeguard.fit``, which sees the train split of the attacks and our own
-routes, nothing else.
+A text is cut into pieces; each is judged by what it says (:mod:`evidence`) and then by what stands
+around it. What seems to be no part of the route goes, if the gate lets it.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
-from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
-from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.text import MASK, sentences, words
-from mitigate.safeguard.weights import BIAS, STYLE, WEIGHTS
+from mitigate.safeguard import gate
+from mitigate.safeguard.decode import plainly
+from mitigate.safeguard.evidence import VERBS, features, in_another_language, in_context
+from mitigate.safeguard.lexicon import known_words
+from mitigate.safeguard.pieces import Piece, parts, sentence_pieces, without
+from mitigate.safeguard.text import words
+from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
 
-SURE, LIKELY = 0.50, 0.25  # probabilities, chosen on the validation families
-ASK = 0.10  # from here on a language model is asked: of 588 sentences of real routes it took none
-FRONT = 8  # sentences looked at; five attacks at most stand before an instruction (ours)
+# probabilities from which a piece goes: one that tells nothing, one that names things, one that
+# tells the way (chosen on the tuning parts of the banks)
+LEAST = (0.5, 0.7, 0.85)
+PLAIN_LEAST = (0.45, 0.6, 0.7)  # where the rest is surely a route, in plain words
+PLAIN = 0.06  # mean strangeness of such a rest
+SURE = 0.5
+PART_SURE = 0.85  # of a part of a sentence
+TITLE = 4  # words in quotes that may be what stands on a sign (ours)
+ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-_SETS = {
-    "universal": "every each always never all any whatever wherever whenever everything nothing "
-    "anything none ever forever",
-    "text": "below following follows instruction instructions command commands sentence text "
-    "message order orders told tells tell says said say asked asks written read read words word "
-    "plan task run directions directive guidance route named described mentioned listed given",
-    "person": "i my we our us me mine sir robot unit machine operator you're yourself your",
-    "modal": "must may shall would could should can cannot if as though so than until while "
-    "because instead rather without",
-    "negation": "not no never don't dont doesn't cannot nor nobody nothing none",
-}
-CLOSED = {name: bag(text) for name, text in _SETS.items()}
-# style words that attacks use, too (ours, chosen on the validation families)
-FAINT = bag("this for do think what have want that's let let's like or so")
-MANNER = STYLE - FAINT
-KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values())
-VERBS = MOTION | STOPS | TURN_VERBS
-# no words about all cases; "the" may be hidden
-_IDIOMS = re.compile(r"\b(?:all\s+(?:the\s+)?way|each other|each side|all around)\b")
+# known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
+SHOUTS, SHOUTED = 2, 0.15
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
 @dataclass(frozen=True)
-class Repaired:
-    """``text`` after the rules, the sentences they took out, and what they did, in words.
+class Judged:
+    """A sentence of a text: where it stands, its words, how probably it is no part of the route by
+    itself (``own``) and beside the others (``foreign``)."""
 
-    ``marks``: how many words belong to a manner of speaking; of what was taken out in front, only
-    those that attacks rarely use.
+    piece: Piece
+    text: str
+    own: float
+    foreign: float
+
+
+@dataclass(frozen=True)
+class Repaired:
+    """``text`` after the rules, what they took out, and what they did and could not, in words.
+
+    ``marks``: how many words of the rest, and of greetings that went, belong to a manner of
+    speaking.
     """
 
     text: str
@@ -61,89 +62,111 @@ class Repaired:
     marks: int
 
 
-def features(sentence: str, marks: frozenset[str] = STYLE) -> dict[str, float]:
-    """Return what a sentence is made of, as counts or shares about 0 to 3."""
-    found = words(_IDIOMS.sub(" ", MASK.sub(" ", sentence).lower()))  # hidden words tell nothing
-    size = max(1, len(found))
-    told = facts(sentence)
-    known = sum(word in _route_words() or word.isdigit() for word in found)
-    lead = next((i for i, word in enumerate(found) if word in VERBS), size)
-    values = {
-        name: min(3.0, float(sum(word in group for word in found)))
-        for name, group in CLOSED.items()
-    }
-    return values | {
-        "style": min(3.0, float(sum(word in marks for word in found))),
-        "unknown": 1 - known / size,
-        "late_verb": min(lead, 6) / 3,
-        "no_verb": float(lead == size),
-        "landmarks": min(3.0, float(len(told.landmarks))),
-        "no_landmark": float(not told.landmarks),
-        "directions": min(2.0, float(len(told.directions))),
-        "commas": min(3.0, float(sentence.count(",") + sentence.count(";"))) / 3,
-    }
-
-
-@lru_cache(maxsize=8192)
-def strangeness(sentence: str) -> float:
-    """Return the probability that ``sentence`` does not belong to a route."""
-    if not any(c.isalpha() for c in sentence):
-        return 0.0
-    score = BIAS + sum(WEIGHTS[name] * value for name, value in features(sentence).items())
+def probability(weights: Mapping[str, float], values: Mapping[str, float]) -> float:
+    """Return the logistic function of a bias and weighted values."""
+    score = weights["bias"] + sum(weights[name] * value for name, value in values.items())
     return 1 / (1 + math.exp(-max(-30.0, min(30.0, score))))
 
 
-def injected(text: str, judge: Callable[[str], bool] | None = None) -> int:
-    """Return how many of the first sentences of ``text`` are no part of the route.
+def logit(p: float) -> float:
+    """Return the log odds of ``p``, at most 6."""
+    p = min(max(p, 0.0025), 0.9975)
+    return math.log(p / (1 - p))
 
-    An attack stands in front, whole: beside a sure one goes what is likely, before it in any case,
-    behind it if it has no manner of speaking and names nothing that routes name. In a text with a
-    manner of speaking only what does not tell the way goes.
-    ``judge`` (a language model) decides on the ``doubtful`` ones. Never are all sentences taken.
-    """
-    told = sentences(text)
-    in_manner = restyled(told)
-    asked = set() if judge is None else set(doubtful(text))
-    count, pending, attacked = 0, 0, False
-    for index, sentence in enumerate(told[:-1]):
-        if in_manner and tells_the_way(sentence):
-            break
-        strange, plain = strangeness(sentence), not mannered(sentence)
-        attacked |= strange >= SURE and plain
-        follows = attacked and strange >= LIKELY and plain and not on_the_way(sentence)
-        judged = judge is not None and sentence in asked and judge(sentence)
-        if judged or follows or strange >= SURE:
-            count, pending = index + 1, 0
-        elif strange < LIKELY:
-            pending += 1
-            if pending > 1 or count == 0 and index > 0:
-                break
-    return count
+
+@lru_cache(maxsize=512)
+def judged(text: str) -> tuple[Judged, ...]:
+    """Return the sentences of ``text``, judged."""
+    found = sentence_pieces(text)
+    said = [piece.of(text) for piece in found]
+    wraps = wrapped(text, found)
+    own = [
+        1.0 if piece.tag else strangeness(s, bool(piece.block) and piece.block not in wraps)
+        for s, piece in zip(said, found, strict=True)
+    ]
+    around = in_context(said, own)
+    foreign = [
+        p if piece.tag else probability(CONTEXT, {"own": logit(p), **context})
+        for p, piece, context in zip(own, found, around, strict=True)
+    ]
+    return tuple(Judged(*row) for row in zip(found, said, own, foreign, strict=True))
+
+
+def wrapped(text: str, found: Sequence[Piece]) -> frozenset[int]:
+    """Return the numbers of the markup blocks that hold more of the way than the rest does."""
+    told: Counter[int] = Counter()
+    disguised = set()
+    for piece in found:
+        said = piece.of(text)
+        if plainly(said).marks or in_another_language(said):
+            disguised.add(piece.block)
+        if not piece.tag:
+            told[piece.block] += len(gate.route_facts(said))
+    return frozenset(
+        b
+        for b, count in told.items()
+        if b and (count == told.total() if b in disguised else 2 * count > told.total())
+    )
+
+
+def strangeness(sentence: str, markup: bool = False) -> float:
+    """Return the probability that ``sentence`` is no part of a route, by what it says."""
+    if not any(c.isalnum() for c in sentence):
+        return 0.0
+    if in_another_language(sentence):
+        return 0.99
+    return probability(OWN, features(sentence, markup))
 
 
 def doubtful(text: str) -> list[str]:
-    """Return the first sentences of ``text`` that a language model should judge: what is neither
-    plain nor surely foreign, and beside a surely foreign one whatever is not."""
-    front = sentences(text)[:-1][:FRONT]
-    least = 0.0 if any(strangeness(s) >= SURE for s in front) else ASK
-    return [s for s in front if least <= strangeness(s) < SURE]
+    """Return the sentences that a language model should judge: neither plain nor surely foreign,
+    and beside a surely foreign one whatever is not."""
+    found = judged(text)
+    if len(found) < 2:
+        return []
+    least = 0.0 if any(j.foreign >= SURE for j in found) else ASK
+    return [
+        j.text
+        for j in found
+        if least <= j.foreign < SURE and not gate.removal_refused(j.text, j.own)
+    ]
 
 
-def tells_the_way(sentence: str) -> bool:
-    """Return whether ``sentence`` names a landmark or a direction."""
-    told = facts(sentence)
-    return bool(told.landmarks or told.directions)
+def injected(text: str, judge: Callable[[str], bool] | None = None) -> list[Judged]:
+    """Return the sentences of ``text`` that are no part of the route; never all of them.
+
+    ``judge`` (a language model) decides on the ``doubtful`` ones.
+    """
+    found = judged(text)
+    asked = set() if judge is None else set(doubtful(text))
+    rest = [one.own for one in found if one.foreign < SURE]
+    least = PLAIN_LEAST if sum(rest) < PLAIN * len(rest) else LEAST
+    chosen = []
+    for one in found:
+        sure = one.foreign >= least[gate.weight(one.text)]
+        if sure or (judge is not None and one.text in asked and judge(one.text)):
+            chosen.append(one)
+    return chosen
 
 
-def on_the_way(sentence: str) -> bool:
-    """Return whether ``sentence`` names a thing that routes name, or a direction but to stop."""
-    told = facts(sentence)
-    known = any(name in KNOWN for name in told.landmarks)
-    return known or any(direction != "stop" for direction in told.directions)
+def framing(sentence: str) -> bool:
+    """Return whether a sentence greets or thanks and tells nothing about the way."""
+    found = words(sentence)
+    silent = not gate.route_facts(sentence) and not any(w in VERBS for w in found)
+    return silent and any(word in STYLE for word in found)
+
+
+def style_marks(text: str) -> int:
+    """Return how many words of ``text`` belong to a manner of speaking, not to plain routes."""
+    return sum(word in STYLE for word in words(text))
 
 
 def lower_capitals(text: str) -> str:
     """Return ``text`` with shouted words in lower case, but for a sentence's first letter."""
+    shouted = [m.group().lower() for m in _SHOUT.finditer(text) if m.group() not in KEPT_CAPITALS]
+    known = sum(word in known_words() for word in shouted)
+    if known < max(SHOUTS, SHOUTED * len(text.split())):
+        return text
 
     def quiet(match: re.Match[str]) -> str:
         word = match.group()
@@ -156,59 +179,88 @@ def lower_capitals(text: str) -> str:
     return _SHOUT.sub(quiet, text)
 
 
-def style_marks(text: str) -> int:
-    """Return how many words of ``text`` belong to a manner of speaking, not to plain routes."""
-    return sum(word in STYLE for word in words(text))
-
-
-def mannered(sentence: str) -> bool:
-    """Return whether ``sentence`` holds a word of a manner of speaking that attacks rarely use."""
-    return any(word in MANNER for word in words(sentence))
-
-
-def restyled(told: list[str]) -> bool:
-    """Return whether half of the sentences speak in a manner, and half of those that are not
-    surely foreign: an attack has a manner of its own."""
-    marked = [sentence for sentence in told if mannered(sentence)]
-    rest = [sentence for sentence in told if strangeness(sentence) < SURE]
-    own = sum(sentence in marked for sentence in rest)
-    return len(marked) >= max(2.0, 0.5 * len(told)) and own >= 0.5 * len(rest)
-
-
-def framing(sentence: str) -> bool:
-    """Return whether a sentence greets or thanks and tells nothing about the way."""
-    told, found = facts(sentence), words(sentence)
-    silent = not told.landmarks and not told.directions and not any(w in VERBS for w in found)
-    return silent and any(word in STYLE for word in found)
+def foreign_parts(text: str, one: Judged) -> list[Piece]:
+    """Return the parts inside a sentence that are no part of the route."""
+    found = []
+    for part in parts(text, one.piece):
+        said = part.of(text)
+        title = said[:1] in "\"'“«" and len(words(said)) <= TITLE
+        long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
+        if long and not title:
+            values = {"whole": logit(one.own), **features(said)}
+            if in_another_language(said) or probability(PART, values) >= PART_SURE:
+                found.append(part)
+    return found
 
 
 def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
-    """Return ``text`` with capitals lowered and foreign sentences taken out."""
-    reasons = []
+    """Return ``text`` with capitals lowered and what is foreign taken out."""
+    reasons: list[str] = []
     quiet = lower_capitals(text)
     if quiet != text:
         reasons.append("capitals lowered")
-    told = sentences(quiet)
-    count = injected(quiet, judge)
-    removed, kept = told[:count], told[count:]
-    marks = style_marks(" ".join(kept)) + sum(w in MANNER for s in removed for w in words(s))
+    out, refused = _chosen(quiet, judge)
+    reasons += refused
+    out, undone = _allowed(quiet, out)
+    reasons += undone
+    removed = tuple(piece.of(quiet) for piece in out)
     if removed:
-        reasons.append(f"{count} injected sentence{'s' * (count > 1)} removed")
-    frames = [s for s in (kept[0], kept[-1]) if len(kept) > 1 and framing(s)] if kept else []
-    if frames:
-        kept = [s for s in kept if s not in frames] or kept
-        reasons.append("framing removed")
-    changed = removed or frames
-    text = " ".join(kept) if changed else quiet
-    text = text[:1].upper() + text[1:] if changed else text
-    return Repaired(text, (*removed, *frames), tuple(reasons), marks)
+        reasons.append(f"removed: {'; '.join(repr(s[:60]) for s in removed)}")
+    left = without(quiet, out)
+    framed = sum(style_marks(s) for s in removed if framing(s))
+    return Repaired(left, removed, tuple(reasons), style_marks(left) + framed)
 
 
-@lru_cache(maxsize=1)
-def _route_words() -> frozenset[str]:
-    from mitigate.safeguard import routes
+def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece], list[str]]:
+    """Return what should go and the gate lets go, and what it refused."""
+    out: list[Piece] = []
+    reasons = []
+    foreign = {one.piece for one in injected(text, judge)}
+    found = judged(text)
+    wraps = wrapped(text, [one.piece for one in found])
+    ends = {found[0].piece, found[-1].piece} if len(found) > 1 else set()
+    for one in found:
+        block = one.piece.block
+        if one.piece.tag or (block and block not in wraps):
+            out.append(one.piece)
+            continue
+        inside = foreign_parts(text, one)
+        if inside and _route_remains(text, one, inside):
+            out += inside
+        elif one.piece in foreign:
+            problem = gate.removal_refused(one.text, one.own)
+            if problem:
+                reasons.append(f"kept {one.text[:40]!r}: {problem}")
+            else:
+                out.append(one.piece)
+        elif one.piece in ends and framing(one.text):
+            out.append(one.piece)
+    return out, reasons
 
-    text = " ".join((routes.OPEN, routes.MIDDLE, routes.CLOSE, *routes.ASIDES, *routes.ROOMS,
-        *routes.THINGS, *routes.LOOKS, *routes.STAIRS, *routes.DOORS, *routes.PLACES))  # fmt: skip
-    plain = re.sub(r"\{\w+\}", " ", text)
-    return frozenset(words(plain)) | VERBS | ATTRIBUTES | frozenset(CANONICAL)
+
+def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:
+    """Return whether a sentence without these parts still tells the way, and begins with it."""
+    body = parts(text, one.piece)
+    kept = [part for part in body if part not in inside]
+    if not kept:
+        return False
+    begins = kept[0] == body[0] or kept[0].of(text)[:1].isupper() or inside[0] != body[0]
+    left = " ".join(part.of(text) for part in kept)
+    return begins and bool(gate.route_facts(left)) and strangeness(left) < SURE
+
+
+def _allowed(text: str, out: list[Piece]) -> tuple[list[Piece], list[str]]:
+    """Return what may go so that the rest passes the gate: what is least foreign stays first."""
+    reasons = []
+    strange = {one.piece: one.foreign for one in judged(text)}
+    out = list(out)
+    while out:
+        problem = gate.result_refused(text, without(text, out))
+        if not problem:
+            break
+        back = min(
+            out, key=lambda p: (not gate.route_facts(p.of(text)), strange.get(p, 1.0), p.start)
+        )
+        out.remove(back)
+        reasons.append(f"kept {back.of(text)[:40]!r}: {problem}")
+    return out, reasons

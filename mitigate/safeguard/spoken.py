@@ -53,8 +53,14 @@ def spoken(split: str) -> tuple[Spoken, ...]:
     for file in sorted(FOLDER.glob("*.jsonl")):
         held_out = file.stem in (*VALIDATION, *TEST)
         if file.stem in kept if kept else not held_out:
-            found += _read(file)
+            found += voice(file.stem)
     return tuple(found)
+
+
+@lru_cache(maxsize=32)
+def voice(name: str) -> tuple[Spoken, ...]:
+    """All texts of a voice."""
+    return tuple(_read(FOLDER / f"{name}.jsonl"))
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:

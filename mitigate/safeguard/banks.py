@@ -1,0 +1,189 @@
+"""How the rules and the gate do on the test banks: ``python -m mitigate.safeguard.banks``.
+
+Attacks at every place of plain and styled instructions, and what of the route was lost with them;
+legitimate sentences that look like attacks; lies and honest rewrites before the gate.
+``--split test`` is what nothing was fitted on or chosen by.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from mitigate.corruptions.language.fidelity import facts
+from mitigate.safeguard import gate, trials
+from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.trials import Told
+
+GONE, LOST = 1 / 3, 1 / 2  # an attack is gone below, a sentence lost from this share of word pairs
+_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
+Repair = Callable[[str], str]
+Counts = dict[tuple[str, ...], list[bool]]
+
+
+def pairs(text: str) -> list[tuple[str, str]]:
+    """Return the pairs of neighbouring words, or the one word with nothing."""
+    found = [word.lower() for word in _WORD.findall(text)]
+    return list(zip(found, found[1:], strict=False)) or [(word, "") for word in found]
+
+
+def left(words: str, text: str) -> float:
+    """Return the share of the word pairs of ``words`` that are in ``text``."""
+    here, wanted = set(pairs(text)), pairs(words)
+    return sum(pair in here for pair in wanted) / max(1, len(wanted))
+
+
+def lost_parts(told: Told, given: str) -> list[bool]:
+    """Return for each part that tells the way whether it is lost: a landmark that it names and that
+    is meant is gone, or most of it and with it a direction."""
+    here = facts(given)
+    meant = facts(told.plain)
+    lost = []
+    for part in told.parts:
+        said = facts(part)
+        named = set(said.landmarks) & set(meant.landmarks)
+        turned = set(said.directions) & set(meant.directions)
+        gone = left(part, given) <= LOST and bool(turned)
+        lost.append(gone or bool(named - set(here.landmarks)))
+    return lost
+
+
+def remains(attack: str, route: str, given: str) -> bool:
+    """Return whether an attack is still in ``given``, by word pairs that the route has not."""
+    words = attack.replace("{route}", " ")
+    own = [pair for pair in pairs(words) if pair not in set(pairs(route))]
+    if not own:
+        return bool(words.strip()) and words.strip() in given
+    here = set(pairs(given))
+    return sum(pair in here for pair in own) > GONE * len(own)
+
+
+def attacked(repair: Repair, split: str, each: int) -> tuple[Counts, Counts, list[Any]]:
+    """Return removed and lost by (mechanism, place, manner), and the worst cases to look at."""
+    removed: Counts = defaultdict(list)
+    lost: Counts = defaultdict(list)
+    cases = []
+    for manner, routes in (
+        ("plain", trials.plainly_told(split)),
+        ("styled", trials.told(split)),
+    ):
+        for attack, place, told, heard in trials.trials(trials.attacks(split), routes, each):
+            given = repair(heard)
+            key = (attack.mechanism, place, manner)
+            removed[key].append(not remains(attack.words, told.text, given))
+            gone = lost_parts(told, given)
+            lost[key] += gone
+            cases.append((key, removed[key][-1], sum(gone), heard, given))
+    return removed, lost, cases
+
+
+def rate(found: list[bool]) -> str:
+    """Return a share in percent, or a dash."""
+    return f"{100 * sum(found) / len(found):.1f}" if found else "–"
+
+
+def attack_table(counts: Counts, mechanisms: Sequence[str]) -> str:
+    """Return a Markdown table, a row for each mechanism, a column for each place and manner."""
+    columns = [(p, m) for p in (*trials.PLACES, "inside", "wrap") for m in ("plain", "styled")]
+    rows = [["mechanism", *(f"{p}, {m}" for p, m in columns), "all"]]
+    for name in (*mechanisms, "all"):
+        found = {
+            column: [
+                x
+                for (mechanism, *where), seen in counts.items()
+                if tuple(where) == column and name in (mechanism, "all")
+                for x in seen
+            ]
+            for column in columns
+        }
+        every = [x for seen in found.values() for x in seen]
+        rows.append([name, *(rate(found[c]) for c in columns), rate(every)])
+    return table(rows)
+
+
+def table(rows: list[list[str]]) -> str:
+    """Return rows as Markdown; the first is the head."""
+    head = ["---", *["---:"] * (len(rows[0]) - 1)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], head, *rows[1:]))
+
+
+def same_words(one: str, other: str) -> bool:
+    """Return whether two texts have the same words, whatever their case and marks."""
+    return _WORD.findall(one.lower()) == _WORD.findall(other.lower())
+
+
+def unattacked(repair: Repair, split: str) -> dict[str, list[bool]]:
+    """Return for near misses, and plain and styled texts without attack, what was changed."""
+    changed: dict[str, list[bool]] = {"near misses": [], "styled texts, parts lost": []}
+    for line in trials.half("near_misses", split):
+        changed["near misses"].append(not same_words(line["text"], repair(line["text"])))
+    for told in trials.told(split):
+        changed["styled texts, parts lost"] += lost_parts(told, repair(told.text))
+    changed["plain texts"] = [t.text != repair(t.text) for t in trials.plainly_told(split)]
+    changed["object goals, thing lost"] = [
+        bool(gate.sought(t.plain)) and not (gate.sought(t.plain) & _things(repair(t.text)))
+        for t in trials.told(split, "object")
+        if gate.sought(t.plain) & _things(t.text)
+    ]
+    return changed
+
+
+def _things(text: str) -> set[str]:
+    return set(facts(text).landmarks) | gate.sought(text)
+
+
+def rewrites(split: str) -> tuple[dict[str, list[bool]], list[Any]]:
+    """Return kind of lie -> which were refused, "honest" -> which were accepted; and the cases."""
+    found: dict[str, list[bool]] = defaultdict(list)
+    cases = []
+    for line in trials.half("lies", split):
+        problem = gate.rewrite_refused(line["true"], line["lie"])
+        found[line["kind"]].append(bool(problem))
+        cases.append((line["kind"], line["true"], line["lie"], problem))
+    for line in trials.half("honest", split):
+        problem = gate.rewrite_refused(line["true"], line["rewrite"])
+        found["honest, accepted"].append(not problem)
+        cases.append(("honest", line["true"], line["rewrite"], problem))
+    return found, cases
+
+
+def report(split: str, each: int) -> str:
+    """Return all tables of a split as Markdown."""
+    safeguard = Safeguard()
+
+    def repair(text: str) -> str:
+        return safeguard.canonicalise(text).text
+
+    removed, lost, _ = attacked(repair, split, each)
+    mechanisms = list(dict.fromkeys(key[0] for key in removed))
+    parts = [
+        f"## Attacks removed, %, {split}",
+        attack_table(removed, mechanisms),
+        f"## Sentences of the route lost beside them, %, {split}",
+        attack_table(lost, mechanisms),
+        f"## Without attack, changed, %, {split}",
+        table([["texts", "%"], *([k, rate(v)] for k, v in unattacked(repair, split).items())]),
+        f"## Lies refused, honest rewrites accepted, %, {split}",
+        table([["kind", "%"], *([k, rate(v)] for k, v in rewrites(split)[0].items())]),
+    ]
+    return "\n\n".join(parts)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.banks", description=__doc__)
+    parser.add_argument("--split", choices=trials.SPLITS, default="tune")
+    parser.add_argument("--each", type=int, default=2, help="instructions for an attack and place")
+    options = parser.parse_args(arguments)
+    print(report(options.split, options.each))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")

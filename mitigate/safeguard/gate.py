@@ -1,0 +1,118 @@
+"""The one gate of the safeguard: what may be taken out of a heard text, and what may replace it.
+
+Whoever wants to change a text, a rule or a model, asks here; each function says why not, or "".
+"""
+
+from __future__ import annotations
+
+import re
+
+from mitigate.corruptions.language.fidelity import facts
+from mitigate.corruptions.language.landmarks import PLAIN, normal
+from mitigate.corruptions.language.tagger import tag
+from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.decode import plainly
+from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
+from mitigate.safeguard.meaning import differs
+from mitigate.safeguard.text import MASK, words
+
+ATTACK = 0.45  # from here on a sentence is an attack by what it says itself
+# categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
+CATEGORIES = bag(
+    """
+    chair table picture cabinet cushion sofa bed dresser plant sink toilet stool towel tv shower
+    bathtub counter fireplace equipment seating clothes desk lamp bookshelf armchair rug wardrobe
+    painting nightstand fridge stove oven mirror monitor refrigerator couch microwave bench
+    """
+)
+_HUNTS = re.compile(
+    r"\b(?:find|finding|look(?:ing)? for|locat|search|seek|spot|fetch|hunt|where|in search)",
+    re.IGNORECASE,
+)
+_SEEKS = re.compile(
+    r"\b(?:find|finding|look(?:ing)? for|locate|locating|search(?:ing)? (?:for|out)|seek|spot|"
+    r"fetch|hunt(?:ing)? (?:for|down|out)|where(?:'s| is| are)|need|want|"
+    r"(?:go|walk|head|get|navigate|"
+    r"proceed|come|take me|make your way|move)(?: on| over| up)? to|in search of|see|reach|"
+    r"approach)"
+    r"\s+(?:me |us |out |a |an |the |any |some |one |your |my |nearest |closest |of )*"
+    r"(?P<rest>[^.;:!?]*)",
+    re.IGNORECASE,
+)
+
+
+def route_facts(text: str) -> tuple[str, ...]:
+    """Return what ``text`` tells of a way: turns, climbs, stops, landmarks that routes name, places
+    that one is to pass, object categories."""
+    plain = MASK.sub("the", plainly(text).text)
+    said = facts(plain)
+    known = [name for name in said.landmarks if name in LANDMARKS or name in CATEGORIES]
+    passed = [] if known else MOVES.findall(plain.lower())
+    return (*said.directions, *known, *said.relations, *passed)
+
+
+def weight(text: str) -> int:
+    """Return how much ``text`` tells: 0 nothing, 1 things or a motion, 2 something of a way."""
+    if route_facts(text):
+        return 2
+    plain = MASK.sub("the", plainly(text).text)
+    return int(bool(facts(plain).landmarks) or any(word in VERBS for word in words(plain)))
+
+
+def sought(text: str, hunted: bool = False) -> frozenset[str]:
+    """Return the things that ``text`` asks to find or go to, in canonical form; ``hunted``: to find
+    alone."""
+    found = set()
+    for match in _SEEKS.finditer(MASK.sub("the", plainly(text).text)):
+        if hunted and not _HUNTS.match(match.group()):
+            continue
+        for token in tag(match["rest"])[:6]:
+            name = normal(token.lower)
+            if token.lower in CATEGORIES or (
+                token.tag in ("NOUN", "PROPN") and token.lower not in PLAIN and len(name) > 1
+            ):
+                found.add(name)
+                break
+    return frozenset(found)
+
+
+def removal_refused(piece: str, own: float) -> str:
+    """Return why ``piece`` may not be taken out; ``own``: how probably it is an attack by what it
+    says itself, whatever stands beside it."""
+    held = route_facts(piece)
+    if held and own < ATTACK:
+        return f"it tells the way ({', '.join(held[:3])}) and is no attack by itself"
+    return ""
+
+
+def result_refused(heard: str, given: str) -> str:
+    """Return why ``given`` may not stand for the whole of ``heard``."""
+    if not any(c.isalnum() for c in given):
+        return "nothing would be left"
+    wanted, left = sought(heard), sought(given)
+    if route_facts(heard) and not (route_facts(given) or left):
+        return "nothing of the way would be left"
+    named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
+    still = set(facts(plainly(given).text).landmarks)
+    goal = not route_turns(given)  # whatever is named may be meant
+    lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still
+    if lost:
+        return f"it may be what is to be found ({', '.join(sorted(lost))})"
+    if wanted and not left and not (named & still):
+        return f"what is to be found would be lost ({', '.join(sorted(wanted))})"
+    if named and not still:
+        return f"the thing would be lost ({', '.join(sorted(named))})"
+    return ""
+
+
+def rewrite_refused(heard: str, said: str) -> str:
+    """Return why ``said`` may not stand for ``heard``."""
+    wanted, found = sought(heard), sought(said)
+    if wanted and found and wanted.isdisjoint(found) and not route_turns(heard):
+        return f"another thing is to be found: {', '.join(sorted(found))}"
+    return differs(heard, said)
+
+
+def route_turns(text: str) -> bool:
+    """Return whether ``text`` tells to turn or climb, and not only what to find."""
+    return any(d not in ("stop", "straight") for d in facts(text).directions)

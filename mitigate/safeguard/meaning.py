@@ -1,0 +1,224 @@
+"""What an instruction means, finer than ``fidelity.check``: which way to each landmark, how sharp a
+turn is, what is denied, in which order; and whether a rewrite says the same.
+
+Words that say the same are first made equal; then two readings are compared.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass
+from functools import lru_cache
+
+from mitigate.corruptions.language.fidelity import COLOURS, COMPASS, facts
+from mitigate.corruptions.language.landmarks import PLAIN, normal
+from mitigate.corruptions.language.tagger import tag
+from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.ways import AGREE, OPPOSED, OPPOSITES, RELATION, SENSES
+from mitigate.safeguard.wording import in_equal_words
+
+_WEAK = bag(
+    """
+    bottom top foot base end side flight set seat place somewhere wherever way bit spot front back
+    gap space inside outside path junction fork level slide choose highest lowest done found thing
+    head area room house home floor row one ones stop stops chance instance kind stretch extent
+    entering going leaving order reach arm step steps look yourself
+    """
+)
+_LEVEL = bag(
+    "stairs stair steps step staircase stairway stairwell flight flights level floor story storey "
+    "ramp basement ladder escalator landing attic loft lift elevator tower row garden"
+)
+_DENY = re.compile(r"\b(?:not|never|avoid|don't|dont|can't|cannot|won't|isn't|aren't|no|n't|nor)\b")
+_CLAUSE = re.compile(
+    r"[.;:!?]|,? (?:and )?then\b|,(?! (?:the|a|which|its?|on|in|past)\b)|\band (?=(?:go|turn|walk|"
+    r"stop|wait|take|make|past|into|out|head|climb|towards|left|right|find|keep|continue|around|"
+    r"across|stand|follow|move|step|up|down)\b)|\bafter (?:it|that)\b"
+)
+_SHADES = bag("dark pale light")
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a text tells. ``turns``: left, right, around, stop with their clause; ``levels``: up and
+    down; ``ways``: landmark -> how one goes by it; ``order``: landmark -> its first clause;
+    ``sharpness``: slight and sharp turns in order; ``denied``: how often; ``numbers``, ``colours``,
+    ``compass``; ``words``: all."""
+
+    turns: tuple[tuple[str, int], ...]
+    levels: frozenset[str]
+    ways: dict[str, frozenset[str]]
+    order: dict[str, int]
+    sharpness: tuple[str, ...]
+    denied: int
+    numbers: tuple[str, ...]
+    colours: tuple[str, ...]
+    compass: tuple[str, ...]
+    words: frozenset[str]
+
+
+def differs(heard: str, said: str) -> str:
+    """Return how the meaning of ``said`` differs from that of ``heard``; "" if it does not."""
+    old, new = meaning(heard), meaning(said)
+    for tell in (_turns, _things, _ways, _rest, _order):
+        problem = tell(old, new)
+        if problem:
+            return problem
+    return ""
+
+
+@lru_cache(maxsize=512)
+def meaning(text: str) -> Meaning:
+    """Return what ``text`` means."""
+    equal = in_equal_words(text)
+    turns: list[tuple[str, int]] = []
+    levels: set[str] = set()
+    ways: dict[str, set[str]] = {}
+    order: dict[str, int] = {}
+    for number, clause in enumerate(part for part in _CLAUSE.split(equal) if part.strip()):
+        told = facts(clause)
+        turns += [(d, number) for d in told.directions if d in ("left", "right", "around", "stop")]
+        levels |= _levels(clause)
+        for name, way in _passed(clause):
+            ways.setdefault(name, set()).update(way)
+            order.setdefault(name, number)
+    whole = facts(equal)
+    words = re.findall(r"[a-z]+", equal)
+    return Meaning(
+        tuple(turns),
+        frozenset(levels),
+        {name: frozenset(found) for name, found in ways.items()},
+        order,
+        tuple(w for w in words if w in ("slightly", "sharply")),
+        len(_DENY.findall(equal)),
+        tuple(n.split()[0] for n in whole.numbers),
+        tuple(a for a in whole.attributes if a in COLOURS)
+        + tuple(w for w in words if w in _SHADES),
+        tuple(w for w in words if COMPASS.match(w)),
+        frozenset(words),
+    )
+
+
+def _levels(clause: str) -> set[str]:
+    """Return "up" and "down" where a clause changes the level."""
+    words = re.findall(r"[a-z']+", clause)
+    found = set()
+    for place, word in enumerate(words):
+        near = set(words[place + 1 : place + 6])
+        if word in ("upstairs", "ascend", "upwards") or (
+            word == "climb" and "down" not in words[place + 1 : place + 3]
+        ):
+            found.add("up")
+        elif word in ("downstairs", "descend", "downwards"):
+            found.add("down")
+        elif word in ("up", "down") and (
+            near & _LEVEL or set(words[:place]) & _LEVEL or place + 1 == len(words)
+            or words[place + 1] in ("it", "them", "there", "one")
+        ):  # fmt: skip
+            found.add(word)
+    return found
+
+
+def _passed(clause: str) -> list[tuple[str, set[str]]]:
+    """Return (landmark, how one goes by it) in the order of a clause."""
+    found: list[tuple[str, set[str]]] = []
+    way: set[str] = set()
+    since = 0
+    for place, token in enumerate(tokens := tag(clause)):
+        since += 1
+        if token.lower in RELATION:
+            fresh = {RELATION[token.lower]}
+            way = way | fresh if since <= 1 and way and token.lower != "to" else fresh
+            since = 0
+        name = normal(token.lower)
+        noun = token.tag in ("NOUN", "PROPN") and token.lower not in PLAIN and len(name) > 1
+        if noun and not (place == 0 and len(tokens) > 2) and name not in COLOURS:
+            after = " ".join(t.lower for t in tokens[place + 1 : place + 5])
+            turned = re.match(r"(?:is |at |lies )?(?:behind you|your back|behind)\b", after)
+            found.append((name, {"away"} if turned else set(way) if since <= 6 else set()))
+    return found
+
+
+def _turns(old: Meaning, new: Meaning) -> str:
+    before, after = (Counter(d for d, _ in m.turns if d != "stop") for m in (old, new))
+    if before != after:
+        return f"directions: {_listed(before)} -> {_listed(after)}"
+    stops = [sum(d == "stop" for d, _ in m.turns) for m in (old, new)]
+    if bool(stops[0]) != bool(stops[1]) or abs(stops[0] - stops[1]) > 1:
+        return f"directions, stops: {stops[0]} -> {stops[1]}"
+    if old.levels != new.levels:
+        return f"directions, levels: {_listed(old.levels)} -> {_listed(new.levels)}"
+    if old.sharpness and new.sharpness and old.sharpness != new.sharpness:
+        return f"sharpness: {_listed(old.sharpness)} -> {_listed(new.sharpness)}"
+    return ""
+
+
+def _things(old: Meaning, new: Meaning) -> str:
+    for name in old.ways:
+        if name not in _WEAK and not _named(name, new):
+            return f"landmark lost: {name}"
+    for name in new.ways:
+        if name not in _WEAK and not _named(name, old):
+            return f"landmark invented: {name}"
+    return ""
+
+
+def _named(name: str, other: Meaning) -> bool:
+    """Return whether a landmark is named in another text, maybe as a part of a word."""
+    stem = name[: max(4, len(name) - 2)]
+    return name in other.ways or any(w.startswith(stem) or normal(w) == name for w in other.words)
+
+
+def _ways(old: Meaning, new: Meaning) -> str:
+    for name, before in old.ways.items():
+        if name in _WEAK:
+            continue
+        after = new.ways.get(name, frozenset())
+        for was in before - after:
+            for now in after - before:
+                if frozenset((was, now)) in OPPOSED:
+                    return f"way changed: {was} -> {now} {name}"
+        strange = (frozenset((a, b)) not in AGREE for a in before for b in after)
+        if before and after and before.isdisjoint(after) and all(strange):
+            return f"way changed: {_listed(before)} -> {_listed(after)} {name}"
+    for one, other in SENSES:
+        if one & old.words and not other & old.words and other & new.words and not one & new.words:
+            return f"sense changed: {_listed(one & old.words)} -> {_listed(other & new.words)}"
+    return ""
+
+
+def _rest(old: Meaning, new: Meaning) -> str:
+    if bool(old.denied) != bool(new.denied):
+        return f"denials: {old.denied} -> {new.denied}"
+    for kind in ("numbers", "colours", "compass"):
+        before, after = Counter(getattr(old, kind)), Counter(getattr(new, kind))
+        if kind == "numbers":
+            before, after = Counter(set(before)), Counter(set(after))
+        if before != after:
+            return f"{kind[:-1]} changed: {_listed(before)} -> {_listed(after)}"
+    for one, other in OPPOSITES:
+        for first, second in ((one, other), (other, one)):
+            if first in old.words and first not in new.words and second in new.words - old.words:
+                return f"{first} -> {second}"
+    return ""
+
+
+def _order(old: Meaning, new: Meaning) -> str:
+    """Return what has changed places: in another clause before, and in another clause behind."""
+    before, after = dict(old.order), dict(new.order)
+    for mine, m in ((before, old), (after, new)):
+        seen: Counter[str] = Counter()
+        for turn, clause in m.turns:
+            seen[turn] += 1
+            mine[f"{turn} {seen[turn]}"] = clause
+    names = [name for name in before if name in after]
+    for one in names:
+        for other in names:
+            if before[one] < before[other] and after[one] > after[other]:
+                return f"order: {one} before {other}"
+    return ""
+
+
+def _listed(names: object) -> str:
+    return ", ".join(sorted(map(str, names))) or "none"  # type: ignore[call-overload]

@@ -1,0 +1,186 @@
+"""A text cut into pieces that can be judged and taken out one by one.
+
+Sentences first, whatever ends them: full stops before quotes and brackets, lines, markup, a capital
+verb where a full stop is missing. Then the parts of a sentence: what stands in brackets or quotes,
+behind a colon or a dash, between commas. Too many cuts do no harm, as what is kept keeps its place.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from mitigate.safeguard.decode import CODES, FANCY
+
+_BEFORE = (
+    r"(?<!\bDr)(?<!\bMr)(?<!\bMs)(?<!\bMrs)(?<!\bSt)(?<!\bProf)(?<!\bNo)(?<!\be\.g)(?<!\bi\.e)"
+    r"(?<!\bvs)(?<!\bapprox)"
+)
+_STARTS = (
+    "Walk|Go|Turn|Exit|Leave|Enter|Head|Continue|Proceed|Take|Make|Pass|Climb|Descend|Ascend|Stop|"
+    "Wait|Move|Cross|Follow|Veer|Bear|Keep|Step|Face|Start|Begin|Once|When|After|From|With|Then|"
+    "Next|You|There|Now|Find|Look|Come|Get|Stand|Facing|Starting|Upon|As|At|The|In|On|Hey|Hi|Hello|"
+    "Okay|Please|Kindly|First|Finally|Let|Just|Right|Left|Out|Up|Down|Past|Straight"
+)
+_END = re.compile(
+    rf"{_BEFORE}[.!?…。！？]+[\"'”’»)\]*_]*(?:\s+|$)"
+    r"|(?<=[a-z)])[.](?=[A-Z][a-z])|\s*\n+\s*"
+    rf"|(?<=[a-z0-9)\]>}}=\"'”’])\s+(?=(?:{_STARTS})\s+[a-z])"
+    rf"|(?<=:)\s+[\"“'‘]?(?=(?:{_STARTS})\s)"
+)
+_TAG = (
+    r"</?[a-z][\w-]*(?:\s+[\w-]+\s*=[^<>]*)?\s*/?>|<\|[^|<>]*\|>|<</?\w+>>"
+    r"|\[/?[A-Z]{3,}(?: [A-Z]+)*\]|<!--|-->|```\w*|/\*|\*/"
+)
+_TAGS = re.compile(_TAG)
+_MARKUP = re.compile(
+    r"<!--.*?(?:-->|$)|```.*?(?:```|$)|<\|.*?\|>.*?(?:<\|.*?\|>|$)|<<\w+>>.*?(?:<</\w+>>|$)"
+    r"|/\*.*?(?:\*/|$)|(?:<([a-z]\w*)\b[^<>]*>.*?</\1>\s*)+"
+    r"|(?:</?[a-z]\w*(?:\s+\w+\s*=[^<>]*)?\s*/?>\s*)+(?:[^<>]{1,300}</[a-z]\w*>)?"
+    r"|\[(?!MASK|UNK|mask)(\w+)\].*?\[/\2\]"
+    r"|(?:\[[A-Z]{3,}(?: [A-Z]+)+\]\s*)+(?:[^\[]*\[[A-Z]{3,}(?: [A-Z]+)+\])?"
+    r"|\{[^{}]*(?:\{[^{}]*\}[^{}]*)*:[^{}]*(?:\{[^{}]*\}[^{}]*)*\}"
+    r"|(?:^|(?<=\s))#{1,6} [^\n.]*[\n.]?(?: ?(?<=\n)[^\n.]*\.?)?|(?:^|(?<=\s))// [^\n.]*\.?"
+    r"|(?:^|(?<=\n)|(?<=[.!?] ))---\n.*?\n---|(?:(?:^|(?<=\n)|(?<=[.!?] ))- \[[x ]\][^\n]*\n?)+"
+    r"|\*\*[^*\n]+\*\*[^.\n]*\.?"
+    r"|(?<![A-Za-z] )\b(?:System|User|Assistant|Human|AI|Bot|Operator)\s?:[^.!?]*[.!?]?"
+    rf"|(?:[{FANCY}]+[\s\u3000]*){{2,}}|\u202e[^\u202c]*\u202c?|[\U000e0020-\U000e007f]+"
+    r"|\S?(?:[\u200b-\u200d\u2060\ufeff]\s?[^\s\u200b]?){4,}"
+    r"|(?<![^\W\d_])(?:[\u0370-\u1dff\u2c80-\ua4cf\uac00-\ud7ff\uf900-\ufaff]{2,}[^A-Za-z\n]*)+"
+    rf"|{CODES.pattern}",
+    re.DOTALL,
+)
+_OPEN_ENDED = re.compile(r"#|//|[A-Z]|\*\*")
+_MASKS = re.compile(r"^<(?:mask|unk)>$|^\[(?:MASK|UNK|mask)\]$")
+_ENCLOSED = re.compile(
+    r"\([^()]*\)|\[[^\[\]]*\]|\"[^\"]*\"|“[^”]*”|«[^»]*»|(?<!\w)'[^'\n]*(?:\w'\w[^'\n]*)*'(?!\w)"
+    r"|[^\x00-\u024f\u2000-\u206f]{2,}(?:\s*[^\x00-\u024f\u2000-\u206f]+)*"
+)
+_CUT = re.compile(r"(?<=[:;,])\s+|\s+[-–—]+\s+|\s+(?=(?:but|although|unless|which|or rather)\s)")
+
+
+@dataclass(frozen=True)
+class Piece:
+    """``text[start:end]`` of a text; ``block``: the number of the markup it stands in, 0 for none;
+    ``tag``: whether it is a mark of that markup and no words of it."""
+
+    start: int
+    end: int
+    block: int = 0
+    tag: bool = False
+
+    def of(self, text: str) -> str:
+        """Return the piece of ``text``."""
+        return text[self.start : self.end]
+
+
+def sentence_pieces(text: str) -> list[Piece]:
+    """Return the sentences of ``text`` in order, without the spaces between them."""
+    found: list[Piece] = []
+    at = block = 0
+    for match in _MARKUP.finditer(text):
+        if _MASKS.match(match.group()) or not match.group().strip() or _mixed(text, match):
+            continue
+        block += 1
+        found += _sentences(text, at, match.start())
+        found += _marked(text, match, block)
+        at = match.end()
+    return found + _sentences(text, at, len(text))
+
+
+def parts(text: str, piece: Piece) -> list[Piece]:
+    """Return the parts of a sentence: enclosed ones, and what commas, colons, dashes divide; none
+    if there is but one."""
+    body, found, at = piece.of(text), [], 0
+    for match in _ENCLOSED.finditer(body):
+        found += list(_cut(body, at, match.start()))
+        found.append((match.start(), match.end()))
+        at = match.end()
+    found += list(_cut(body, at, len(body)))
+    made = [Piece(piece.start + a, piece.start + b, piece.block) for a, b in found]
+    return made if len(made) > 1 else []
+
+
+def _mixed(text: str, match: re.Match[str]) -> bool:
+    """Return whether letters of another script end within a word of Latin ones."""
+    last, after = match.group()[-1], text[match.end() : match.end() + 1]
+    return not last.isascii() and last.isalpha() and after.isalpha()
+
+
+def _marked(text: str, match: re.Match[str], block: int) -> list[Piece]:
+    """Return tags and sentences of a match of markup; what runs on behind a heading, a comment or a
+    speaker's name is none."""
+    if not any(c.isprintable() for c in match.group()):
+        return [Piece(match.start(), match.end(), block, tag=True)]
+    found, at = [], match.start()
+    for mark in _TAGS.finditer(text, match.start(), match.end()):
+        found += _sentences(text, at, mark.start(), block)
+        found.append(Piece(mark.start(), mark.end(), block, tag=True))
+        at = mark.end()
+    found += _sentences(text, at, match.end(), block)
+    if not _OPEN_ENDED.match(match.group()):
+        return found
+    for index, (piece, after) in enumerate(zip(found, found[1:], strict=False), 1):
+        if "\n" not in text[piece.end : after.start]:
+            return found[:index] + [Piece(p.start, p.end) for p in found[index:]]
+    return found
+
+
+def _sentences(text: str, start: int, end: int, block: int = 0) -> list[Piece]:
+    found, at = [], start
+    for match in _END.finditer(text, start, end):
+        found.append((at, match.end()))
+        at = match.end()
+    found.append((at, end))
+    return [Piece(*s, block) for a, b in found if (s := _stripped(text, a, b))]
+
+
+def _cut(body: str, start: int, end: int) -> Iterator[tuple[int, int]]:
+    at = start
+    for match in _CUT.finditer(body, start, end):
+        if span := _stripped(body, at, match.start()):
+            yield span
+        at = match.end()
+    if span := _stripped(body, at, end):
+        yield span
+
+
+def _stripped(text: str, start: int, end: int) -> tuple[int, int] | None:
+    while start < end and text[start].isspace():
+        start += 1
+    while end > start and text[end - 1].isspace():
+        end -= 1
+    return (start, end) if start < end else None
+
+
+def without(text: str, out: Iterable[Piece]) -> str:
+    """Return ``text`` without some pieces, with a capital where it now begins."""
+    out = sorted(out, key=lambda piece: piece.start)
+    if not out:
+        return text
+    kept, at = [], 0
+    for piece in out:
+        kept.append(text[at : piece.start].strip())
+        at = max(at, piece.end)
+    kept.append(text[at:].strip())
+    left = _closed(" ".join(part for part in kept if part))
+    return left[:1].upper() + left[1:] if not text.lstrip().startswith(left[:1]) else left
+
+
+def _closed(text: str) -> str:
+    """Return ``text`` without what removals leave: quotes and brackets of which one is gone, commas
+    before an end."""
+    for opening, closing in ("()", "[]", "{}", "“”", "«»"):
+        if text.count(opening) != text.count(closing):
+            text = text.replace(opening, " ").replace(closing, " ")
+    if text.count('"') % 2:
+        text = text.replace('"', " ")
+    text = (
+        re.sub(r"(?<!\w)'(?=[^']*$)|(?<=[.!?])'(?=\s|$)", " ", text)
+        if text.count("'") % 2
+        else text
+    )
+    text = re.sub(r"\s*[,;:–—-]+\s*(?=[.!?]|$)", "", text)
+    text = re.sub(r"\s+(?=[,.!?;])", "", text)
+    return " ".join(text.split()).lstrip(".,;:!?- ")

@@ -1,0 +1,65 @@
+"""What the gate lets go and what it takes for the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.safeguard import gate
+from mitigate.safeguard.banks import rewrites
+
+HEARD = "Walk towards the window and take a slight left before the sofa."
+
+
+@pytest.mark.parametrize(
+    "said, reason",
+    [
+        ("Walk away from the window and take a slight left before the sofa.", "towards -> away"),
+        ("Walk towards the window and take a sharp left before the sofa.", "sharpness"),
+        ("Walk towards the window and take a slight left after the sofa.", "before -> after"),
+        ("Walk towards the window and take a slight right before the sofa.", "directions"),
+        ("Do not walk towards the window and take a slight left before the sofa.", "denials"),
+        ("Walk towards the window. Enter the treadmill. Take a slight left before the sofa.",
+         "landmark invented"),
+        ("Walk towards the window and take a slight left.", "landmark lost"),
+    ],
+)  # fmt: skip
+def test_a_lie_is_refused_with_its_reason(said, reason):
+    assert reason in gate.rewrite_refused(HEARD, said)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        HEARD,
+        "Head for the window. Before the couch, turn slightly left.",
+        "Go toward the window, then turn left a little just before the sofa.",
+    ],
+)
+def test_an_honest_rewrite_passes(said):
+    assert gate.rewrite_refused(HEARD, said) == ""
+
+
+def test_lies_of_the_tuning_half_are_refused_and_honest_rewrites_pass():
+    found, _ = rewrites("tune")
+    assert sum(found.pop("honest, accepted")) >= 0.85 * 130
+    assert all(sum(kind) >= 0.85 * len(kind) for kind in found.values())
+
+
+def test_a_sentence_that_tells_the_way_may_go_only_as_an_attack():
+    assert "tells the way" in gate.removal_refused("Turn left at the sofa.", own=0.1)
+    assert gate.removal_refused("Turn left at the sofa.", own=0.99) == ""
+    assert gate.removal_refused("Thank you so much!", own=0.1) == ""
+
+
+def test_a_result_without_the_way_or_the_thing_is_refused():
+    assert "nothing would be left" in gate.result_refused("Turn left.", "...")
+    assert "of the way" in gate.result_refused("Turn left. See you soon!", "See you soon!")
+    heard = "Hello! Find a pommel horse. Then stop."
+    assert "to be found" in gate.result_refused(heard, "Hello! Then stop.")
+    assert gate.result_refused(heard, "Find a pommel horse.") == ""
+
+
+def test_the_thing_to_be_found_is_read_from_many_wordings():
+    for text in ("Find a potted plant.", "Could you look for a plant?", "I need a plant.",
+                 "Where is the nearest plant?", "Please walk to the plant and stop."):  # fmt: skip
+        assert "plant" in gate.sought(text)
