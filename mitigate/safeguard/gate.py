@@ -16,7 +16,7 @@ from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
 from mitigate.safeguard.meaning import differs
 from mitigate.safeguard.text import MASK, words
 
-ATTACK = 0.45  # from here on a sentence is an attack by what it says itself
+ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
 # categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
 CATEGORIES = bag(
     """
@@ -105,8 +105,11 @@ def result_refused(heard: str, given: str) -> str:
     return ""
 
 
-def rewrite_refused(heard: str, said: str) -> str:
-    """Return why ``said`` may not stand for ``heard``."""
+def rewrite_refused(heard: str, said: str, last: bool = False) -> str:
+    """Return why ``said`` may not stand for ``heard``; ``last``: with which the text ends, where to
+    stop may be meant and not said ("and there's your sofa")."""
+    if last and "stop" not in facts(heard).directions and "stop" in facts(said).directions:
+        heard = f"{heard.rstrip(' .!?;,')}, and stop."
     wanted, found = sought(heard), sought(said)
     if wanted and found and wanted.isdisjoint(found) and not route_turns(heard):
         return f"another thing is to be found: {', '.join(sorted(found))}"

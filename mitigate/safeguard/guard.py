@@ -202,7 +202,7 @@ class _Draft:
             if passage not in wanted:
                 continue
             self.asked += 1
-            problem = refusal(passage, said.get(passage))
+            problem = refusal(passage, said.get(passage), index == len(self.passages) - 1)
             if problem:
                 self.reasons.append(f"kept {passage[:40]!r}: {problem}")
             else:
@@ -233,15 +233,16 @@ class _Draft:
         return said
 
 
-def refusal(passage: str, answer: str | None) -> str:
-    """Return why ``answer`` may not stand for ``passage``; empty if it may."""
+def refusal(passage: str, answer: str | None, last: bool = False) -> str:
+    """Return why ``answer`` may not stand for ``passage``, the ``last`` of its text or another;
+    empty if it may."""
     if answer is None:
         return "no answer in time"
     if MASK.search(passage):
         return _refused_filling(passage, answer)
     if len(words(answer)) > len(words(passage)) + 3:
         return "longer than what it replaces"
-    return gate.rewrite_refused(passage, answer)
+    return gate.rewrite_refused(passage, answer, last)
 
 
 def _refused_filling(passage: str, answer: str) -> str:

@@ -11,6 +11,7 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import lru_cache
 
+from mitigate.corruptions.language.directions import MOTION
 from mitigate.corruptions.language.fidelity import COLOURS, COMPASS, facts
 from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
@@ -26,6 +27,27 @@ _WEAK = bag(
     entering going leaving order reach arm step steps look yourself
     """
 )
+# no things, though a tagger of plain routes takes them for nouns in speech (of the train voices)
+_SPEECH = bag(
+    """
+    er um erm uh mean say said says one yes yeah hmm he she they done ur taken found give given
+    since wrong lot pretty sorry better miss sweet quick anyway anyhow ooh feel told cause til
+    used word imagine comfy teeny wee whatever lol why everybody nobody somebody somewhere ever
+    love proper pls plz teh em smell bet repeat smile perfect intermediate thought finished
+    however note thereby conduct therefore whereupon thereupon need choose assume secure real
+    free concern cheer whoa else stuck time oneself themself gentle hold match win alone catch
+    best correct seem meant ascertain presence safety comfort latter sound worry cute sleepy
+    tour yet utilize secondary endpoint implement encountered finalize confirm haven't thx im
+    nxt jus ull acquire needed advance provide displayed commence terminate negotiate deviate
+    proceed initiate discontinue suspend execute prior initial subsequent adjacent
+    aforementioned principal uppermost sir madam lady lordship goodness colleague traveller
+    visitor guest people listener robot unit machine buddy pal mate chap chum dude honey darling
+    answer explain remember forget promise trust swear admit suppose reckon fancy gorgeous
+    lovely grand splendid rather quite honestly frankly basically actually literally obviously
+    naturally
+    """
+)
+_AGAIN = re.compile(r"\b(?:again|another|second|next|once more|also|too)\b")
 _LEVEL = bag(
     "stairs stair steps step staircase stairway stairwell flight flights level floor story storey "
     "ramp basement ladder escalator landing attic loft lift elevator tower row garden"
@@ -78,7 +100,9 @@ def meaning(text: str) -> Meaning:
     order: dict[str, int] = {}
     for number, clause in enumerate(part for part in _CLAUSE.split(equal) if part.strip()):
         told = facts(clause)
-        turns += [(d, number) for d in told.directions if d in ("left", "right", "around", "stop")]
+        for turn in told.directions:
+            if turn in ("left", "right", "around", "stop") and not _says_again(turn, clause, turns):
+                turns.append((turn, number))
         levels |= _levels(clause)
         for name, way in _passed(clause):
             ways.setdefault(name, set()).update(way)
@@ -98,6 +122,13 @@ def meaning(text: str) -> Meaning:
         tuple(w for w in words if COMPASS.match(w)),
         frozenset(words),
     )
+
+
+def _says_again(turn: str, clause: str, turns: list[tuple[str, int]]) -> bool:
+    """Return whether a clause only repeats the turn told last ("left, yes, it is left")."""
+    repeats = bool(turns) and turns[-1][0] == turn and turn in ("left", "right")
+    moves = any(word in MOTION for word in re.findall(r"[a-z]+", clause))
+    return repeats and not moves and not _AGAIN.search(clause) and not _passed(clause)
 
 
 def _levels(clause: str) -> set[str]:
@@ -156,7 +187,7 @@ def _turns(old: Meaning, new: Meaning) -> str:
 
 def _things(old: Meaning, new: Meaning) -> str:
     for name in old.ways:
-        if name not in _WEAK and not _named(name, new):
+        if name not in _WEAK and name not in _SPEECH and not _named(name, new):
             return f"landmark lost: {name}"
     for name in new.ways:
         if name not in _WEAK and not _named(name, old):
