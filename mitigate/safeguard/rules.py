@@ -17,6 +17,7 @@ from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import VERBS, features, in_another_language, in_context
+from mitigate.safeguard.front import in_front
 from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.pieces import Piece, parts, sentence_pieces, without
 from mitigate.safeguard.text import words
@@ -28,6 +29,7 @@ LEAST = (0.5, 0.7, 0.85)
 PLAIN_LEAST = (0.45, 0.6, 0.7)  # where the rest is surely a route, in plain words
 PLAIN = 0.06  # mean strangeness of such a rest
 SURE = 0.5
+AHEAD = 0.4  # strangeness of what goes in front of such a rest
 PART_SURE = 0.85  # of a part of a sentence
 TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
@@ -141,12 +143,24 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> list[Judg
     asked = set() if judge is None else set(doubtful(text))
     rest = [one.own for one in found if one.foreign < SURE]
     least = PLAIN_LEAST if sum(rest) < PLAIN * len(rest) else LEAST
+    ahead = ahead_of_plain(text)
     chosen = []
     for one in found:
-        sure = one.foreign >= least[gate.weight(one.text)]
+        sure = one.foreign >= least[gate.weight(one.text)] or one.piece in ahead
         if sure or (judge is not None and one.text in asked and judge(one.text)):
             chosen.append(one)
     return chosen
+
+
+@lru_cache(maxsize=512)
+def ahead_of_plain(text: str) -> frozenset[Piece]:
+    """Return the sentences in front of what is surely a plain route that are no part of it
+    (:mod:`front`), but for those that seem to be by what they say."""
+    found, front = judged(text), set(in_front(text))
+    rest = [one.own for one in found if one.text not in front]
+    if not front or not rest or sum(rest) >= PLAIN * len(rest):
+        return frozenset()
+    return frozenset(one.piece for one in found if one.text in front and one.own >= AHEAD)
 
 
 def framing(sentence: str) -> bool:
@@ -228,7 +242,8 @@ def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece]
         if inside and _route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
-            problem = gate.removal_refused(one.text, one.own)
+            ahead = one.piece in ahead_of_plain(text)
+            problem = "" if ahead else gate.removal_refused(one.text, one.own)
             if problem:
                 reasons.append(f"kept {one.text[:40]!r}: {problem}")
             else:
