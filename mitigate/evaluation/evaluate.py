@@ -7,6 +7,7 @@ command again only fills what is missing.
 from __future__ import annotations
 
 import re
+import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -21,6 +22,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import unknown
+from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
 
 if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
@@ -112,6 +114,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     column names it.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
+    check_choice(cfg.safeguard)
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     print(
@@ -321,4 +324,4 @@ def hydra_main(cfg: DictConfig) -> None:
 
 def main() -> None:
     """Run from the command line."""
-    conf.main(hydra_main, "evaluate")
+    conf.main(hydra_main, "evaluate", lambda: check_arguments(sys.argv))

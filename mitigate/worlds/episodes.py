@@ -16,7 +16,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from mitigate.core.files import atomic_text, json_members, sha256
+from mitigate.core.files import atomic_text, sha256
+from mitigate.core.json_files import json_members
 
 Vector = tuple[float, ...]
 IDS = ("episode_id", "trajectory_id")
