@@ -202,6 +202,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
             made[name] = _made(shape, own)
     except (RuntimeError, TypeError) as error:
         raise ValueError(f"The adapters in {folder} are damaged ({error}).") from error
+    checkpoint.check_finite(nn.ModuleList(made.values()), f"The adapters in {folder}")
     _attach_all(model, made)
     return list(shapes)
 

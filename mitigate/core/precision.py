@@ -61,6 +61,28 @@ def choose(precision: str, device: torch.device) -> str:
     return "bf16" if found.bf16 is not None and found.bf16 <= found.fp32 else "fp32"
 
 
+def device_of(name: str) -> torch.device:
+    """Return the device of a ``name`` such as "cpu" or "cuda:1"; "auto" is CUDA if it is there.
+
+    Raises ValueError for one that is not there.
+    """
+    if name == "auto":
+        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    there = ["auto", "cpu", *(f"cuda:{n}" for n in range(torch.cuda.device_count()))]
+    try:
+        device = torch.device(name)
+        torch.empty(0, device=device)
+        if device.type != "meta":
+            return device
+        cause = "holds no numbers"
+    except (RuntimeError, AssertionError, NotImplementedError) as error:
+        cause = str(error).partition("\n")[0].partition(" device type at start")[0][:200]
+    raise ValueError(
+        f"trainer.device={name} cannot be used here ({cause}). Choose one of: {', '.join(there)}; "
+        "`make doctor` says what this machine has."
+    )
+
+
 def computing(precision: str, device: torch.device) -> AbstractContextManager[None]:
     """Return the context in which networks on ``device`` compute in ``precision``."""
     return torch.autocast(device.type, torch.bfloat16, enabled=precision == "bf16")

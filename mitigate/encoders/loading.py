@@ -172,6 +172,7 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
             "net.rgb_encoder.model. (with the dot)."
         )
     model.load_state_dict(own)
+    checkpoint.check_finite(model, f"The weights {weights}")
 
 
 def read_state(path: Path) -> dict[str, Tensor]:

@@ -44,7 +44,7 @@ class Handler(BaseHTTPRequestHandler):
         try:
             for n in range(self.server.headers):
                 time.sleep(self.server.pause)
-                self.wfile.write(b"H" if n % 9 else b"TTP/1.0 100\r\n\r\n")
+                self.wfile.write(b"a" if n else b"HTTP/1.0 200 OK\r\nX: ")
             self.send_response(status)
             if 300 <= status < 400:
                 self.send_header("Location", reply.decode())
