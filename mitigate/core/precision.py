@@ -68,13 +68,18 @@ def device_of(name: str) -> torch.device:
     """
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")
-    there = ["auto", "cpu", *(f"cuda:{n}" for n in range(torch.cuda.device_count()))]
+    gpus = torch.cuda.device_count()
+    there = ["auto", "cpu", *(f"cuda:{n}" for n in range(gpus))]
     try:
         device = torch.device(name)
-        torch.empty(0, device=device)
-        if device.type != "meta":
+        if device.type == "cuda":  # CUDA itself is not begun before the workers are forked
+            cause = "it is not there"
+            good = torch.cuda.is_available() and (device.index or 0) < gpus
+        else:
+            good, cause = device.type != "meta", "it holds no numbers"
+            torch.empty(0, device=device)
+        if good:
             return device
-        cause = "holds no numbers"
     except (RuntimeError, AssertionError, NotImplementedError) as error:
         cause = str(error).partition("\n")[0].partition(" device type at start")[0][:200]
     raise ValueError(

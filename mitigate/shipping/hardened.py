@@ -103,6 +103,14 @@ def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
     return schema.check(settings.read_agent(config, target, known), config, target)
 
 
+def check_own(held: dict[str, Any]) -> None:
+    """Raise ValueError if a user's own config ``held`` sets an agent of ours to what it cannot be;
+    settings that are not in its schema are for its class to refuse."""
+    target = held["_target_"]
+    given = {k: v for k, v in held.items() if k in schema.KINDS[target].settings}
+    schema.check(given, "The options", target, "Set it on the command line, as agent.size=64.")
+
+
 def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
     """Read the weights of a hardened folder into ``agent``, adapters and base alike.
 

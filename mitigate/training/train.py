@@ -46,6 +46,7 @@ from mitigate.training.stages import nothing_to_do, plain, train_stage, trainer_
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
 EPISODE_COST = 0.12  # seconds of one core for an episode, on the machine of precision.REFERENCE
+MOST_ROLLOUTS, MOST_WORKERS = 100_000, 256  # (ours)
 EPISODES = 300  # of a list, where the estimate need not open it
 
 
@@ -183,11 +184,16 @@ def check(cfg: DictConfig) -> None:
                 f"{key}={value:g} is out of range: a severity is a number from 0 (clean) to 1 "
                 f"(strongest). Write, for instance, {key}=0.6."
             )
-    limits.check_seed(cfg.seed)
-    if cfg.workers is not None and not 0 <= cfg.workers <= 256:
+    seeding.check(cfg.seed)
+    if not 1 <= cfg.rollouts <= MOST_ROLLOUTS:
+        raise ValueError(
+            f"rollouts={cfg.rollouts} must be a number of episodes a step, from 1 to "
+            f"{MOST_ROLLOUTS}, as rollouts=24."
+        )
+    if cfg.workers is not None and not 0 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(
             f"workers={cfg.workers}: give a number of processes that make batches, 0 for none "
-            f"beside this one, or null for one a core ({MOST} at most)."
+            f"beside this one and {MOST_WORKERS} at most, or null for one a core ({MOST} at most)."
         )
     for stage in cfg.stages.values():
         if stage is not None:
