@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import pickle
 import random
+import resource
+import signal
 
 import numpy
 import pytest
 import torch
 from torch import nn
 
-from mitigate.core import checkpoint, checksums, seeding
+from mitigate.core import checkpoint, checksums, files, seeding
 
 STATE = {
     "step": 3,
@@ -155,11 +157,11 @@ def test_a_mask_of_infinity_is_no_damage(tmp_path):
     assert checkpoint.not_finite(module) == ["mask"]
 
 
-def test_a_full_disk_is_named_and_leaves_what_was_there(tmp_path, monkeypatch):
+def test_a_full_disk_is_named_and_leaves_what_was_there(tmp_path):
     made = torch.nn.Linear(2, 2)
     before = checkpoint.save_weights(made, tmp_path).read_bytes()
     limit = resource.getrlimit(resource.RLIMIT_FSIZE)
-    monkeypatch.setattr(signal, "SIGXFSZ", signal.signal(signal.SIGXFSZ, signal.SIG_IGN))
+    before_signal = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     state = {k: {} for k in checkpoint.REQUIRED} | {"step": 1, "model": {"w": torch.zeros(99999)}}
     resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))  # as a disk that fills up
     try:
@@ -171,6 +173,7 @@ def test_a_full_disk_is_named_and_leaves_what_was_there(tmp_path, monkeypatch):
             files.write_bytes(tmp_path / "x", bytes(99_999))
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+        signal.signal(signal.SIGXFSZ, before_signal)
     assert (tmp_path / checkpoint.WEIGHTS).read_bytes() == before
     assert sorted(p.name for p in tmp_path.iterdir()) == [
         checkpoint.WEIGHTS,
