@@ -183,6 +183,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         tensors = checkpoint.load_tensors(folder / WEIGHTS)
         shapes = {name: dict(shape) for name, shape in settings["adapters"].items()}
         wanted = settings["backbone_sha256"]
+        if not shapes:
+            raise ValueError("it names none")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"The adapters in {folder} are cut short or damaged ({error}).") from error
     found = backbone_sha(model)

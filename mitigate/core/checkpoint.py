@@ -21,6 +21,7 @@ from safetensors.torch import load_file, save_file
 from torch import nn
 
 from mitigate.core import checksums
+from mitigate.core.names import short
 
 FORMAT = 1
 REQUIRED = ("format", "step", "model", "optimizer", "scheduler", "rng", "config")
@@ -269,9 +270,13 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     problem = checksums.problem(file)
     if not problem:
         try:
-            return load_file(file)
-        except (SafetensorError, OSError) as error:
-            problem = f"cannot be read: {error}"
+            found = load_file(file)
+            bad = [name for name, value in found.items() if torch.isnan(value).any()]
+            if not bad:
+                return found
+            problem = f"holds NaN ({short(bad[0])})"
+        except (SafetensorError, OSError, KeyError) as error:
+            problem = f"cannot be read: {short(str(error), 200)}"
     raise ValueError(
         f"The weights {file} ({file.stat().st_size} bytes) are cut short or damaged: {file.name} "
         f"{problem}. {_again(file)}"

@@ -43,6 +43,9 @@ def zipped() -> bytes:
         return file.getvalue()
 
 
+FAST = settings(
+    max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 GOOD_PNG, GOOD_JPEG = picture("PNG"), picture("JPEG")
 FRAMES = {
     "nothing.png": b"",
@@ -111,9 +114,7 @@ def test_a_folder_of_them_is_reported_and_nothing_is_half_written(tmp_path, caps
     assert {p.name for p in out.rglob("*") if p.suffix != ".json"} <= {"good.png", "good.npy"}
 
 
-@settings(
-    max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@FAST
 @given(st.sampled_from(["a.png", "a.jpg", "a.npy"]), st.data())
 def test_flipped_and_cut_frames_are_read_or_left_out(tmp_path, name, data):
     with io.BytesIO() as file:
