@@ -128,9 +128,8 @@ class Connection:
 
     def _greet(self) -> bool:
         hello = self._next() or {}
-        if not hmac.compare_digest(
-            str(hello.get("token")).encode("utf-8", "replace"), self.token.encode()
-        ):
+        token = str(hello.get("token")).encode("utf-8", "replace")
+        if not hmac.compare_digest(token, self.token.encode()):
             return False
         if hello.get("protocol") != mitigate_hook.PROTOCOL:
             send(self.channel, {"error": "the hook is of another version than the server."})
