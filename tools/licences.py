@@ -49,7 +49,8 @@ def gathered() -> tuple[dict[str, tuple[Distribution, str]], list[str]]:
     """The installed packages by name, with what asks for each, and what is not installed here."""
     found: dict[str, tuple[Distribution, str]] = {}
     missing: list[str] = []
-    waiting = [(each, extra) for extra, listed in asked().items() for each in listed]
+    named = sorted(asked().items(), key=lambda item: item[0] == "dev")  # dev repeats others
+    waiting = [(each, extra) for extra, listed in named for each in listed]
     while waiting:
         wanted, by = waiting.pop(0)
         name = canonicalize_name(wanted.name)
@@ -123,9 +124,8 @@ def main() -> int:
     if parser.parse_args().verify:
         files = {name: changed(held) for name, (held, _) in sorted(found.items())}
         wrong = [f"{name}: {file}" for name, (_, listed) in files.items() for file in listed]
-        print(
-            f"{sum(n for n, _ in files.values())} files of {len(files)} packages, changed: {len(wrong)}"
-        )
+        count = sum(n for n, _ in files.values())
+        print(f"{count} files of {len(files)} packages, changed or gone: {len(wrong)}")
         print("\n".join(wrong))
         return bool(wrong)
     print(

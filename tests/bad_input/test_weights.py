@@ -6,6 +6,7 @@ import io
 import json
 import os
 import pickle
+import shutil
 import struct
 import zipfile
 from pathlib import Path
@@ -25,6 +26,7 @@ from mitigate.safeguard import adapter_folder
 from mitigate.shipping import hardened
 from tests.bad_input.named import refused
 
+ROOT = Path(__file__).parents[2]
 FAST = settings(
     max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
@@ -336,3 +338,16 @@ def test_sound_files_of_before_are_still_read(tmp_path):
     checkpoint.load_weights(NETWORK, tmp_path / "w.safetensors")
     torch.save({"state_dict": NETWORK.state_dict(), "note": {"epoch": 3}}, tmp_path / "w.pth")
     loading.load_weights(NETWORK, str(tmp_path / "w.pth"))
+
+
+def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypatch):
+    """Who writes the card can write its sums too: what it lists must not run either."""
+    shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
+    program, file = tmp_path / "mine" / hardened.PROGRAM, tmp_path / "mine" / hardened.CARD
+    program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))
+    held = json.loads(file.read_text())
+    held["files"][hardened.PROGRAM] = hardened.sha256(program)
+    file.write_text(json.dumps(held | {"sha256": hardened.card_sha(held)}))
+    monkeypatch.chdir(ROOT)
+    assert not hardened.load_hardened(tmp_path / "mine").training
+    assert not (tmp_path / "ran").exists()

@@ -10,7 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from mitigate.core.conf import load_config
 from mitigate.core.locks import NAME, FolderLock, delete_leftovers
+from mitigate.evaluation import evaluate
+from mitigate.training import train
 
 HOLD = (
     "import sys; from mitigate.core.locks import FolderLock; lock = FolderLock(sys.argv[1])\n"
@@ -82,3 +85,13 @@ def test_what_was_not_yet_whole_is_deleted_and_nothing_else(tmp_path):
     assert all((tmp_path / name).is_file() for name in kept)
     assert not any((tmp_path / name).exists() for name in left)
     assert not delete_leftovers(tmp_path) and (tmp_path / "agent").is_dir()
+
+
+@pytest.mark.parametrize("name", ["train", "evaluate"])
+def test_a_second_training_or_evaluation_in_a_folder_is_refused(tmp_path, name):
+    place = {"train": "folder", "evaluate": "out"}[name]
+    small = ["debug=smoke"] if name == "train" else ["episodes=1", "conditions=[clean]"]
+    cfg = load_config(name, [*small, f"{place}={tmp_path}"])
+    with FolderLock(tmp_path), pytest.raises(ValueError, match="is in use: process"):
+        {"train": train.run, "evaluate": evaluate.run}[name](cfg)
+    assert not list(tmp_path.iterdir())
