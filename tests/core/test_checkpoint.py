@@ -144,7 +144,7 @@ def test_weights_that_are_no_numbers_are_refused(tmp_path, value):
     with torch.no_grad():
         module[0].weight[1, 1] = value
     file = checkpoint.save_weights(module, tmp_path)
-    with pytest.raises(ValueError, match=r"hold NaN or infinity, 1 tensors of them \(0.weight\)"):
+    with pytest.raises(ValueError, match="holds? NaN.*0.weight"):
         checkpoint.load_weights(module, file)
     assert checkpoint.not_finite(torch.nn.Linear(2, 2)) == []
 
