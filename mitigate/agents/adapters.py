@@ -25,6 +25,7 @@ from mitigate.agents.sites import MAP, Run, Site, channels_of, first, listed, lo
 from mitigate.agents.tokens import TokenAdapter
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_json
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module gets
@@ -178,11 +179,13 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         if not file.is_file():
             raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
     try:
-        settings = json.loads((folder / SETTINGS).read_text(encoding="utf-8"))
+        settings = read_json(folder / SETTINGS, "Fetch the folder again.")
         tensors = checkpoint.load_tensors(folder / WEIGHTS)
-        shapes = dict(settings["adapters"])
+        shapes = {name: dict(shape) for name, shape in settings["adapters"].items()}
         wanted = settings["backbone_sha256"]
-    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+        if not shapes:
+            raise ValueError("it names none")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise ValueError(f"The adapters in {folder} are cut short or damaged ({error}).") from error
     found = backbone_sha(model)
     if found != wanted:
@@ -200,8 +203,10 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
             prefix = f"{_key(name)}."
             own = {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
             made[name] = _made(shape, own)
-    except (RuntimeError, TypeError) as error:
-        raise ValueError(f"The adapters in {folder} are damaged ({error}).") from error
+    except (RuntimeError, TypeError, ValueError, ArithmeticError) as error:
+        cause = " ".join(str(error).split())[:300]
+        raise ValueError(f"The adapters in {folder} are damaged ({cause}).") from error
+    checkpoint.check_finite(nn.ModuleList(made.values()), f"The adapters in {folder}")
     _attach_all(model, made)
     return list(shapes)
 

@@ -158,27 +158,32 @@ def class_of(target: str) -> Callable[..., Any]:
 _AGAIN = "Fetch the folder again, or train again."
 
 
-def check(found: dict[str, Any], file: Path, target: str) -> dict[str, Any]:
+def check(
+    found: dict[str, Any], file: Path | str, target: str, again: str = _AGAIN
+) -> dict[str, Any]:
     """Return ``found``, the settings of an agent of the kind ``target`` in ``file``. Raises
-    ValueError, naming the file and the setting, for an unknown one and a value of another kind."""
+    ValueError, naming the file and the setting, for an unknown one and a value of another kind;
+    ``again``: what to do about it."""
     kind = KINDS[target]
-    _check(found, kind.settings, file, "agent")
+    _check(found, kind.settings, file, "agent", again)
     own = found.get(kind.part) or {}
     width, heads = (own.get(n, d) for n, d in zip(("width", "heads"), kind.usual, strict=True))
     if width % heads:
         raise ValueError(
             f"{file}: agent.{kind.part}.width ({width}) must be a multiple of agent."
-            f"{kind.part}.heads ({heads}). {_AGAIN}"
+            f"{kind.part}.heads ({heads}). {again}"
         )
     adapters = found.get("adapters") or {}
     if adapters and "target_modules" not in adapters:
         raise ValueError(
-            f"{file}: agent.adapters lacks target_modules ([] for none beside ring). {_AGAIN}"
+            f"{file}: agent.adapters lacks target_modules ([] for none beside ring). {again}"
         )
     return found
 
 
-def _check(found: dict[str, Any], schema: dict[str, Any], file: Path, where: str) -> None:
+def _check(
+    found: dict[str, Any], schema: dict[str, Any], file: Path | str, where: str, again: str
+) -> None:
     for name, value in found.items():
         key = f"{where}.{name}"
         if name not in schema:
@@ -187,12 +192,12 @@ def _check(found: dict[str, Any], schema: dict[str, Any], file: Path, where: str
         if isinstance(kind, Kind):
             if not kind.fits(value):
                 raise ValueError(
-                    f"{file}: {key} is {value!r:.80}, but must be {kind.words}. {_AGAIN}"
+                    f"{file}: {key} is {value!r:.80}, but must be {kind.words}. {again}"
                 )
         elif isinstance(value, dict):
-            _check(value, kind, file, key)
+            _check(value, kind, file, key, again)
         elif value is not None:
             raise ValueError(
                 f"{file}: {key} is {value!r:.80}, but must be null or a mapping of "
-                f"{', '.join(kind)}. {_AGAIN}"
+                f"{', '.join(kind)}. {again}"
             )

@@ -23,6 +23,7 @@ from mitigate.bridge.cameras import Rig
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import receive, send
 from mitigate.bridge.words import Words
+from mitigate.core.names import short, unknown
 from mitigate.corruptions import Corruption, Key
 
 EVENTS = "events.jsonl"
@@ -61,6 +62,13 @@ def note(folder: Path, **event: Any) -> None:
         file.write(line)
 
 
+def _unfit(kind: str, error: Exception) -> str:
+    return (
+        f"the message {kind!r} is not as the protocol has it ({short(repr(error), 200)}): use the "
+        "mitigate_hook.py of this version."
+    )
+
+
 class Connection:
     """Serves one environment. What a message asks for is done by the method of its kind.
 
@@ -90,11 +98,14 @@ class Connection:
         self.channel.settimeout(None)
         kinds = {kind: getattr(self, f"on_{kind}") for kind in KINDS}
         while (message := self._next()) is not None:
+            kind = str(message.get("kind"))
             try:
-                answer = kinds[message.get("kind")](message)
+                if kind not in KINDS:
+                    raise ValueError(unknown("kind of message", kind[:40], KINDS))
+                answer = kinds[kind](message)
                 os.utime(self.folder / EVENTS)  # a sign of life
             except Exception as error:  # whatever it is, the agent must be told
-                problem = str(error) if isinstance(error, ValueError) else repr(error)
+                problem = str(error) if type(error) is ValueError else _unfit(kind, error)
                 note(self.folder, event="refused", problem=problem, trace=traceback.format_exc())
                 answer = {"error": problem}
             send(self.channel, answer)
@@ -106,7 +117,7 @@ class Connection:
     def _next(self) -> dict[str, Any] | None:
         try:
             return receive(self.channel)
-        except (OSError, ValueError):
+        except (OSError, ValueError, RecursionError):
             return None
 
     def _leave(self) -> None:
@@ -117,7 +128,8 @@ class Connection:
 
     def _greet(self) -> bool:
         hello = self._next() or {}
-        if not hmac.compare_digest(str(hello.get("token")), self.token):
+        token = str(hello.get("token")).encode("utf-8", "replace")
+        if not hmac.compare_digest(token, self.token.encode()):
             return False
         if hello.get("protocol") != mitigate_hook.PROTOCOL:
             send(self.channel, {"error": "the hook is of another version than the server."})

@@ -22,6 +22,7 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
 from mitigate.core.names import unknown
+from mitigate.safeguard.addresses import check_arguments, check_choice
 
 EVERY = 15.0  # seconds between two lines of progress (ours)
 
@@ -105,6 +106,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
 def _check(cfg: DictConfig, command: Sequence[str]) -> None:
     from mitigate.evaluation.metrics import RULES
 
+    check_choice(cfg.safeguard)
     if not command:
         raise ValueError(
             "No command is given. Write it behind --, as you would type it: mitigate run "
@@ -209,4 +211,4 @@ def main() -> None:
         signal.signal(ended, _interrupt)
     options = ["check=true" if option == "--check" else option for option in options]
     sys.argv[1:] = options
-    conf.main(hydra_main, "run")
+    conf.main(hydra_main, "run", lambda: check_arguments(options))

@@ -61,11 +61,15 @@ class Maker:
         return build(OmegaConf.create(self.node))
 
 
-def maker(node: DictConfig) -> Maker:
-    """Return a function that makes what ``node`` describes."""
+def _plain(node: DictConfig) -> dict[str, Any]:
     plain = OmegaConf.to_container(node, resolve=True)
     assert isinstance(plain, dict)
-    return Maker({str(name): value for name, value in plain.items()})
+    return {str(name): value for name, value in plain.items()}
+
+
+def maker(node: DictConfig) -> Maker:
+    """Return a function that makes what ``node`` describes."""
+    return Maker(_plain(node))
 
 
 def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -> DictConfig:
@@ -116,12 +120,13 @@ def build_agent(
     from mitigate.shipping import hardened
 
     weights = None if weights is None else str(find(weights))
+    if hardened.is_ours(node._target_):  # numbers that would take all memory, patterns for ever
+        hardened.check_own(_plain(node))
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if not hasattr(agent, "settings"):  # those of its config are what is known of it
-        plain = OmegaConf.to_container(node, resolve=True)
-        assert isinstance(plain, dict)
-        agent.settings = partial(dict, {k: v for k, v in plain.items() if k != "_target_"})
+        known = {k: v for k, v in _plain(node).items() if k != "_target_"}
+        agent.settings = partial(dict, known)
     if weights is not None and parts:
         for name in parts:
             if name not in agent.parts():

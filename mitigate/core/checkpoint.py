@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import re
+import shutil
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ from safetensors.torch import load_file, save_file
 from torch import nn
 
 from mitigate.core import checksums
+from mitigate.core.names import short
 
 FORMAT = 1
 REQUIRED = ("format", "step", "model", "optimizer", "scheduler", "rng", "config")
@@ -50,7 +52,7 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     ``keep - 1``. One of a later step, which was damaged when the run went on, stays."""
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"
-    checksums.write(path, lambda file: torch.save({"format": FORMAT, **state}, file))
+    checksums.write(path, lambda file: _torch_save({"format": FORMAT, **state}, file))
     older = [other for other in checkpoints(folder) if other.name < path.name]
     for old in older[: max(0, len(older) - keep + 1)]:
         checksums.delete(old)
@@ -159,7 +161,31 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
         for name, value in module.state_dict().items()
         if isinstance(value, torch.Tensor)
     }
-    return checksums.write(file, lambda temporary: save_file(tensors, temporary))
+    return checksums.write(file, lambda temporary: _save_file(tensors, temporary))
+
+
+def _torch_save(state: dict[str, Any], file: Path) -> None:
+    """As ``torch.save``, where a write that fails is an OSError as elsewhere."""
+    try:
+        torch.save(state, file)
+    except RuntimeError as error:
+        raise _unwritten(file, error) from error
+
+
+def _save_file(tensors: dict[str, torch.Tensor], file: Path) -> None:
+    try:
+        save_file(tensors, file)
+    except SafetensorError as error:
+        raise _unwritten(file, error) from error
+
+
+def _unwritten(file: Path, error: Exception) -> OSError:
+    cause = str(error).splitlines()[0][:200]
+    return OSError(
+        f"A checkpoint could not be written to {file.parent} ({cause}): is the disk full "
+        f"({shutil.disk_usage(file.parent).free >> 20} MiB are free)? Checkpoints of before are "
+        "whole; free some room, and the same command goes on from the newest."
+    )
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
@@ -172,6 +198,24 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
     """
     file = weights_file(path)
     _fill(module, load_tensors(file), file)
+
+
+def not_finite(module: nn.Module) -> list[str]:
+    """Return the names of the parameters that hold NaN or infinity, and of the buffers that hold
+    NaN (infinity masks attention in some)."""
+    found = [n for n, p in module.named_parameters() if not torch.isfinite(p).all()]
+    return found + [n for n, b in module.named_buffers() if torch.isnan(b).any()]
+
+
+def check_finite(module: nn.Module, what: str) -> None:
+    """Raise ValueError if the weights of ``module``, which are ``what``, are not all numbers."""
+    bad = not_finite(module)
+    if bad:
+        raise ValueError(
+            f"{what} hold NaN or infinity, {len(bad)} tensors of them ({', '.join(bad[:3])}): the "
+            "training that made them went wrong. Choose other weights, or train again with a lower "
+            "trainer.lr."
+        )
 
 
 def load_part(module: nn.Module, name: str, path: str | Path) -> None:
@@ -207,6 +251,7 @@ def _fill(module: nn.Module, found: dict[str, torch.Tensor], file: Path) -> None
             "with the config that made them (config.yaml beside them) or choose other weights."
         )
     module.load_state_dict(found, strict=False)
+    check_finite(module, f"The weights {file}")
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
@@ -225,9 +270,13 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     problem = checksums.problem(file)
     if not problem:
         try:
-            return load_file(file)
-        except (SafetensorError, OSError) as error:
-            problem = f"cannot be read: {error}"
+            found = load_file(file)
+            bad = [name for name, value in found.items() if torch.isnan(value).any()]
+            if not bad:
+                return found
+            problem = f"holds NaN ({short(bad[0])})"
+        except (SafetensorError, OSError, KeyError) as error:
+            problem = f"cannot be read: {short(str(error), 200)}"
     raise ValueError(
         f"The weights {file} ({file.stat().st_size} bytes) are cut short or damaged: {file.name} "
         f"{problem}. {_again(file)}"

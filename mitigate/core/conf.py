@@ -5,6 +5,7 @@ Set ``HYDRA_FULL_ERROR=1`` to see the whole traceback instead.
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import shlex
@@ -33,11 +34,13 @@ KINDS = {
 }
 
 
-def main(program: Callable[[], None], primary: str) -> None:
-    """Call ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``).
+def main(
+    program: Callable[[], None], primary: str, check: Callable[[], None] | None = None
+) -> None:
+    """Call ``check`` and then ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``).
 
-    Exits with status 1 and one paragraph for ValueError, OSError and config errors, with 130 for
-    Ctrl-C and 143 for SIGTERM, saying how to go on.
+    Exits with status 1 and one paragraph for ValueError, OSError, config errors and what asks for
+    too much memory, with 130 for Ctrl-C and 143 for SIGTERM, saying how to go on.
     """
     if os.environ.get("HYDRA_FULL_ERROR"):
         return program()
@@ -45,6 +48,8 @@ def main(program: Callable[[], None], primary: str) -> None:
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, raise_ended)
     try:
+        if check is not None:
+            check()
         program()
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary)}")
@@ -52,6 +57,11 @@ def main(program: Callable[[], None], primary: str) -> None:
         sys.exit(f"error: {error}")
     except OSError as error:
         sys.exit(f"error: {error if error.strerror is None else _told(error)}")
+    except (MemoryError, RuntimeError, OverflowError) as error:
+        told = _too_much(error)
+        if not told:
+            raise
+        sys.exit(f"error: {told}")
     except KeyboardInterrupt as error:
         again = shlex.join([*sys.argv[0].split(), *sys.argv[1:]])
         print(f"\n{error or 'SIGINT'}: stopped. To go on: {again}", file=sys.stderr)
@@ -61,8 +71,29 @@ def main(program: Callable[[], None], primary: str) -> None:
 
 
 def _told(error: OSError) -> str:
-    """What the system said, and of which file."""
-    return f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
+    """What the system said, of which file, and what may help."""
+    told = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        told += (
+            ". What was finished is kept whole: free some room, and the same command goes on from "
+            "there."
+        )
+    return told
+
+
+def _too_much(error: Exception) -> str:
+    """What is said of an error that a setting or a file brings about; empty for any other."""
+    cause = " ".join(str(error).split())[:200]
+    memory = isinstance(error, MemoryError) or "allocate memory" in cause
+    nested = isinstance(error, RecursionError)
+    if not (memory or nested or isinstance(error, OverflowError)):
+        return ""
+    what = "more memory than there is" if memory else "too many levels" if nested else ""
+    return (
+        f"A setting or a file asks for {what or 'too great a number'} ("
+        f"{cause or type(error).__name__}). Look at "
+        "the last option or file that you changed; HYDRA_FULL_ERROR=1 shows where it was used."
+    )
 
 
 def explain(error: Exception, primary: str) -> str:

@@ -1,4 +1,4 @@
-"""Files written whole or not at all; text and JSON, gzipped or not, opened by content, streamed."""
+"""Files written whole or not at all; text, gzipped or not, opened by content, streamed."""
 
 from __future__ import annotations
 
@@ -6,19 +6,17 @@ import difflib
 import gzip
 import hashlib
 import io
-import json
 import os
-import re
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NoReturn, TextIO
+from typing import Any, TextIO
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
-CHUNK = 1 << 16  # characters read at a time (ours)
 RECORDING = "recording.json"  # in the folder of a recording by `mitigate run record=FOLDER`
-LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (ours)
+RATIO = 128  # bytes that a gzipped byte may unpack to, beyond FREE (ours); our files have 15 to 31
+FREE = 1 << 24
 
 
 PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
@@ -36,13 +34,47 @@ def open_text(path: Path | str) -> TextIO:
     """Open ``path`` for reading as UTF-8; gzip is told by the first two bytes, not by the name.
 
     Raises FileNotFoundError, with the nearest names in the folder, if there is no such file.
+    Reading raises BadGzipFile for a gzip file that is damaged, cut short or a bomb (``RATIO``).
     """
     path = Path(path)
     if not path.is_file():
         raise FileNotFoundError(_absent(path))
     with open(path, "rb") as file:
         gzipped = file.read(2) == GZIP_MAGIC
-    return gzip.open(path, "rt", encoding="utf-8") if gzipped else open(path, encoding="utf-8")
+    if gzipped:
+        return io.TextIOWrapper(_Unpacked(path, "rb"), encoding="utf-8")
+    return open(path, encoding="utf-8")
+
+
+class _Unpacked(gzip.GzipFile):
+    """What a gzip file holds. All that can be wrong with it raises BadGzipFile."""
+
+    def __init__(self, path: Path, mode: str) -> None:
+        super().__init__(path, mode)
+        self._most, self._held = FREE + RATIO * path.stat().st_size, 0
+
+    def read(self, size: int | None = -1) -> bytes:
+        """As a file's; at most one byte more than allowed is unpacked."""
+        wanted = self._most + 1 - self._held if size is None or size < 0 else size
+        return self._checked(super().read, wanted)
+
+    def read1(self, size: int = -1) -> bytes:
+        """As a buffered file's."""
+        return self._checked(super().read1, size)
+
+    def _checked(self, read: Callable[[int], bytes], size: int) -> bytes:
+        try:
+            found = read(size)
+        except (EOFError, zlib.error) as error:
+            raise gzip.BadGzipFile(f"the gzip data are cut short or damaged ({error})") from error
+        self._held += len(found)
+        if self._held > self._most:
+            raise gzip.BadGzipFile(
+                f"it unpacks to more than {self._most >> 20} MiB, over {RATIO} times what it has, "
+                "as no file of ours does: do not use it, or unpack it yourself and name the plain "
+                "file"
+            )
+        return found
 
 
 @contextmanager
@@ -114,97 +146,6 @@ def write_bytes(path: Path | str, data: bytes) -> None:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
-
-
-def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
-    """Yield the (key, value) pairs of the JSON object in ``path``, one value in memory at a time.
-
-    The value of the key ``streamed``, if it is a list, comes as an iterator over its items.
-    Raises ValueError if the file is no JSON object, is malformed, cut short or not text.
-    """
-    with open_text(path) as file:
-        json_file = _JsonFile(file, path)
-        json_file.expect("{", "a JSON object")
-        for _ in json_file.until("}"):
-            key = json_file.value()
-            json_file.expect(":", "':' after a key")
-            if key == streamed and json_file.accept("["):
-                items = (json_file.value() for _ in json_file.until("]"))
-                yield key, items
-                for _ in items:  # what the caller left unread
-                    pass
-            else:
-                yield key, json_file.value()
-
-
-class _JsonFile:
-    """Reads JSON from an open text file value by value; ``_at`` is the place in the buffer."""
-
-    _decode = json.JSONDecoder().raw_decode
-    _space = re.compile(r"[ \t\r\n]*")
-
-    def __init__(self, file: TextIO, path: Path | str) -> None:
-        self._file, self._path = file, path
-        self._text, self._at, self._before = "", 0, 0
-
-    def until(self, bracket: str) -> Iterator[None]:
-        """Yield before each comma-separated item, up to the closing ``bracket``."""
-        if self.accept(bracket):
-            return
-        while True:
-            yield
-            if self.accept(bracket):
-                return
-            self.expect(",", f"',' or '{bracket}'")
-
-    def expect(self, character: str, name: str) -> None:
-        """Pass ``character`` or raise."""
-        if not self.accept(character):
-            self._fail(f"expected {name}")
-
-    def accept(self, character: str) -> bool:
-        """Pass white space, and ``character`` if it comes next; return whether it did."""
-        while True:
-            self._at = self._space.match(self._text, self._at).end()  # type: ignore[union-attr]
-            if self._at < len(self._text) or not self._more():
-                break
-        found = self._text.startswith(character, self._at)
-        self._at += len(character) * found
-        return found
-
-    def value(self) -> Any:
-        """Return the next JSON value, reading on until it is whole."""
-        self.accept("")
-        while True:
-            try:
-                value, end = self._decode(self._text, self._at)
-                if end < len(self._text) or not self._more():
-                    self._at = end
-                    return value
-            except json.JSONDecodeError as error:
-                if len(self._text) - self._at > LARGEST_VALUE or not self._more():
-                    self._fail(error.msg)
-            except RecursionError:
-                self._fail("too many levels")
-
-    def _more(self) -> bool:
-        """Append what comes next, as much as is held, and drop what is done."""
-        self._before += self._at
-        self._text = self._text[self._at :]
-        self._at = 0
-        try:
-            more = self._file.read(max(CHUNK, len(self._text)))
-        except (EOFError, zlib.error, gzip.BadGzipFile, UnicodeDecodeError) as error:
-            self._fail(str(error))
-        self._text += more
-        return bool(more)
-
-    def _fail(self, problem: str) -> NoReturn:
-        raise ValueError(
-            f"{self._path} is not whole JSON: {problem}, near character "
-            f"{self._before + self._at}. It is cut short, damaged or another kind of file: "
-            "download or write it again."
-        )
 
 
 def _absent(path: Path) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Mapping
 
 
@@ -13,3 +14,18 @@ def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
     near = difflib.get_close_matches(str(name), allowed, n=1)
     hint = f" Did you mean {near[0]}?" if near else ""
     return f"There is no {what} {name!r}.{hint} Choose one of: {', '.join(allowed)}."
+
+
+def short(value: object, most: int = 60) -> str:
+    """Return how a message shows a ``value`` that may be of anybody: on one line, printable, at
+    most about ``most`` characters."""
+    text = ascii(value[: most + 1] if isinstance(value, str) else value)
+    return text if len(text) <= most + 2 else f"{text[:most]}..."
+
+
+def markdown_of(name: str) -> str:
+    """Return a ``name`` that may be of anybody as Markdown that shows it as it is, on one line: no
+    further cell, no code, HTML, link or picture."""
+    return re.sub(
+        r"[\\|`*~\[\]!]|<(?=\S)|^#", lambda found: f"\\{found[0]}", " ".join(name.split())
+    )

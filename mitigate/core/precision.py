@@ -61,6 +61,33 @@ def choose(precision: str, device: torch.device) -> str:
     return "bf16" if found.bf16 is not None and found.bf16 <= found.fp32 else "fp32"
 
 
+def device_of(name: str) -> torch.device:
+    """Return the device of a ``name`` such as "cpu" or "cuda:1"; "auto" is CUDA if it is there.
+
+    Raises ValueError for one that is not there.
+    """
+    if name == "auto":
+        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    gpus = torch.cuda.device_count()
+    there = ["auto", "cpu", *(f"cuda:{n}" for n in range(gpus))]
+    try:
+        device = torch.device(name)
+        if device.type == "cuda":  # CUDA itself is not begun before the workers are forked
+            cause = "it is not there"
+            good = torch.cuda.is_available() and (device.index or 0) < gpus
+        else:
+            good, cause = device.type != "meta", "it holds no numbers"
+            torch.empty(0, device=device)
+        if good:
+            return device
+    except (RuntimeError, AssertionError, NotImplementedError) as error:
+        cause = str(error).partition("\n")[0].partition(" device type at start")[0][:200]
+    raise ValueError(
+        f"trainer.device={name} cannot be used here ({cause}). Choose one of: {', '.join(there)}; "
+        "`make doctor` says what this machine has."
+    )
+
+
 def computing(precision: str, device: torch.device) -> AbstractContextManager[None]:
     """Return the context in which networks on ``device`` compute in ``precision``."""
     return torch.autocast(device.type, torch.bfloat16, enabled=precision == "bf16")

@@ -34,6 +34,12 @@ def torch_generator(*key: Key) -> torch.Generator:
     return made
 
 
+def check(seed: int) -> None:
+    """Raise ValueError for a user's seed that rows cannot hold."""
+    if not -(2**63) < seed < 2**63:
+        raise ValueError("seed is too great: give a whole number between -2^63 and 2^63: seed=1.")
+
+
 def seed_everything(*key: Key) -> None:
     """Set the global generators of Python, numpy and torch (all devices) from ``key``."""
     number = digest(*key)

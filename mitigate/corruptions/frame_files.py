@@ -6,6 +6,7 @@ Files are untrusted: they are decoded in full before anything is written, and ne
 from __future__ import annotations
 
 import io
+import math
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -19,6 +20,7 @@ JPEG_QUALITY = 95  # (ours) with full colour resolution; used with format=same a
 PNG_LEVEL = 3  # of zlib (ours): half the time of the default 6 for a few per cent more bytes
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
+MOST_PIXELS = 1 << 26  # of a frame (ours): 8192 x 8192
 MOST = 65535  # counts of a 16-bit PNG
 
 
@@ -91,6 +93,8 @@ def _decode(path: Path) -> np.ndarray:
     """uint8 [H, W, 3] or uint16 [H, W]; a JPEG is turned upright as its EXIF data say."""
     try:
         with Image.open(path, formats=("PNG", "JPEG")) as image:
+            if math.prod(image.size) > MOST_PIXELS:
+                raise ValueError(f"it has {image.size[0]} x {image.size[1]} pixels")
             image.load()
             mode = image.mode
             pixels = np.array(ImageOps.exif_transpose(image))
@@ -103,9 +107,14 @@ def _decode(path: Path) -> np.ndarray:
 
 def _load(path: Path) -> np.ndarray:
     try:
-        stored = np.load(path, allow_pickle=False)
+        mapped = np.load(path, mmap_mode="r", allow_pickle=False)  # no more than the file has
+        if math.prod(getattr(mapped, "shape", ())) > MOST_PIXELS:
+            raise ValueError(f"it has {mapped.shape} numbers")
+        stored = np.array(mapped) if isinstance(mapped, np.ndarray) else mapped
     except Exception as error:  # as above
-        raise LeftOutError(f"cannot be loaded: {error}") from error
+        raise LeftOutError(
+            f"cannot be loaded with allow_pickle=False: {' '.join(str(error).split())[:200]}"
+        ) from error
     if not isinstance(stored, np.ndarray) or stored.dtype.kind != "f":
         kind = stored.dtype if isinstance(stored, np.ndarray) else "an archive"
         raise LeftOutError(f"holds {kind}: NPY depth must be floating-point metres")

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_json
 
 if TYPE_CHECKING:
     from mitigate.encoders.model import Encoder
@@ -91,10 +92,7 @@ def card(folder: str | Path) -> dict[str, Any]:
             f"{folder} holds no hardened encoder: {CARD} is missing. Name the folder `agent` of a "
             "run of `make train RECIPE=encoder`."
         )
-    try:
-        found = json.loads(file.read_text("utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{file} is cut short or damaged ({error}). {_AGAIN}") from error
+    found = read_json(file, _AGAIN)
     for name, kinds in ENTRIES.items():
         value = found.get(name) if isinstance(found, dict) else None
         if type(value) not in kinds or (name == "format" and value != FORMAT):

@@ -10,8 +10,10 @@ import importlib
 import importlib.util
 import pickle
 import re
+import zipfile
 from collections import OrderedDict
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -172,6 +174,7 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
             "net.rgb_encoder.model. (with the dot)."
         )
     model.load_state_dict(own)
+    checkpoint.check_finite(model, f"The weights {weights}")
 
 
 def read_state(path: Path) -> dict[str, Tensor]:
@@ -192,12 +195,22 @@ def read_state(path: Path) -> dict[str, Tensor]:
     return tensors
 
 
+def _is_packed(path: Path) -> bool:
+    """Whether a zip file would take more memory than it has bytes."""
+    if not zipfile.is_zipfile(path):
+        return False
+    with suppress(Exception), zipfile.ZipFile(path) as archive:
+        return any(part.compress_type != zipfile.ZIP_STORED for part in archive.infolist())
+    return False  # damaged: torch says so
+
+
 def _load(path: Path) -> Any:
     """``torch.load(weights_only=True)``. Objects of classes that it does not allow, such as a
     config beside the weights, come as an ``OrderedDict`` of what they held: no code of theirs runs.
     """
     ignored: list[Any] = []
-    for _ in range(STAND_INS):
+    problem = "its parts are compressed, as torch's are not" if _is_packed(path) else ""
+    for _ in range(0 if problem else STAND_INS):
         try:
             with torch.serialization.safe_globals(ignored):
                 return torch.load(path, map_location="cpu", weights_only=True)
@@ -208,8 +221,8 @@ def _load(path: Path) -> Any:
                 break
             ignored.append((OrderedDict, named[1]))
             problem = f"it names {named[1]}"
-        except (RuntimeError, EOFError, OSError, TypeError, ValueError, AttributeError) as error:
-            problem = str(error).splitlines()[0]
+        except Exception as error:  # of many kinds, by what is damaged
+            problem = (str(error).splitlines() or [type(error).__name__])[0]
             break
     raise ValueError(
         f"The weights {path} cannot be read without running code ({problem}). Save the tensors "

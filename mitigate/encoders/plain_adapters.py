@@ -148,6 +148,7 @@ def read(folder):
         good = isinstance(settings["backbone_sha256"], str) and isinstance(
             settings["adapters"], dict
         )
+        good = good and len(settings["adapters"]) > 0
     except (ValueError, KeyError, TypeError, RecursionError):
         good = False
     if not good or not all(map(_known, settings["adapters"].values())):

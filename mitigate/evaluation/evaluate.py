@@ -7,6 +7,7 @@ command again only fills what is missing.
 from __future__ import annotations
 
 import re
+import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -18,9 +19,11 @@ from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import MISSING, DictConfig, OmegaConf
 
-from mitigate.core import conf
+from mitigate.core import conf, seeding
 from mitigate.core.files import atomic_text, find, sha256
+from mitigate.core.locks import FolderLock
 from mitigate.core.names import unknown
+from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
 
 if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
@@ -29,6 +32,7 @@ if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
 ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 LIST = "episodes.sha256"  # of the file that the episodes came from
+MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
 GOLDEN = (5**0.5 - 1) / 2
 
 
@@ -112,6 +116,13 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     column names it.
     Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
     """
+    check_choice(cfg.safeguard)
+    seeding.check(cfg.seed)
+    if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
+        raise ValueError(
+            f"workers={cfg.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
+            "null for one a core."
+        )
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     print(
@@ -130,22 +141,23 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), front])
     name = name.removesuffix("+none")
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
-    _check_list(out / LIST, cfg.env.episodes[cfg.split])
-    evaluate(
-        agent,
-        world,
-        chosen,
-        conditions(names, cfg.severity, cfg.severity_depth),
-        name=name,
-        out=out / ROWS,
-        split=cfg.split,
-        seed=cfg.seed,
-        workers=cfg.workers,
-        launcher=OmegaConf.to_object(cfg.launcher),
-        safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
-        identity=identity(agent, world().sensors, front),
-    )
-    write_table([out / ROWS], out)
+    with FolderLock(out):
+        _check_list(out / LIST, cfg.env.episodes[cfg.split])
+        evaluate(
+            agent,
+            world,
+            chosen,
+            conditions(names, cfg.severity, cfg.severity_depth),
+            name=name,
+            out=out / ROWS,
+            split=cfg.split,
+            seed=cfg.seed,
+            workers=cfg.workers,
+            launcher=OmegaConf.to_object(cfg.launcher),
+            safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
+            identity=identity(agent, world().sensors, front),
+        )
+        write_table([out / ROWS], out)
     return out
 
 
@@ -321,4 +333,4 @@ def hydra_main(cfg: DictConfig) -> None:
 
 def main() -> None:
     """Run from the command line."""
-    conf.main(hydra_main, "evaluate")
+    conf.main(hydra_main, "evaluate", lambda: check_arguments(sys.argv))

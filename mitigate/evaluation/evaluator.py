@@ -20,7 +20,7 @@ from typing import Any, ClassVar
 import torch
 
 from mitigate.core import workers as processes
-from mitigate.core.checkpoint import weights_sha
+from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.identity import identity as identity_of
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
@@ -120,6 +120,8 @@ def evaluate(
     """
     out = Path(out)
     conditions = _applicable(agent, conditions, name)
+    if isinstance(agent, torch.nn.Module):
+        check_finite(agent, f"The weights of {name}")
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
     label = {

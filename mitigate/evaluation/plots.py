@@ -32,8 +32,9 @@ def heatmap(section: Section, path: Path | str) -> Path:
         _panel(axis, section, block, names)
     grid = section.grid
     figure.suptitle(
-        f"SR (%) / SPL on {grid.split}, severity {section.severity:g}, N = {len(grid.episodes)}\n"
-        f"{grid.rule}; suite {grid.suite}",
+        f"SR (%) / SPL on {_plain(grid.split)}, severity {section.severity:g}, "
+        f"N = {len(grid.episodes)}\n"
+        f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
     )
     return _save(figure, path)
@@ -62,12 +63,12 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
         axis.tick_params(labelbottom=True)
     figure.supylabel("SR (%)", fontsize=9)
     figure.suptitle(
-        f"SR against severity on {grid.split}, N = {len(grid.episodes)}; {grid.rule}; "
-        f"suite {grid.suite}",
+        f"SR against severity on {_plain(grid.split)}, N = {len(grid.episodes)}; "
+        f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
     )
     drawn = {line.get_label(): line for axis in axes for line in axis.get_lines()}
-    handles = [drawn[column] for column in grid.columns if column in drawn]
+    handles = [drawn[x] for x in map(_plain, grid.columns) if x in drawn]
     figure.legend(handles=handles, loc="outside lower center", ncols=across, fontsize=8)
     return _save(figure, path)
 
@@ -95,7 +96,9 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
             *(j, i, text), ha="center", va="center", fontsize=8, color="white" if dark else "black"
         )
     axis.axhline(1.5, color="black", linewidth=1.5)
-    axis.set_xticks(range(shape[1]), section.columns, rotation=25, ha="right", fontsize=8)
+    axis.set_xticks(
+        range(shape[1]), map(_plain, section.columns), rotation=25, ha="right", fontsize=8
+    )
     axis.set_yticks(range(shape[0]), rows, fontsize=8)
     axis.set_title(block, fontsize=9)
 
@@ -114,8 +117,13 @@ def _curve(axis: Axes, grid: Grid, column: str, name: str, colour: tuple) -> Non
     values = [100 * estimate.value for _, estimate in points]
     low = [100 * estimate.low for _, estimate in points]
     high = [100 * estimate.high for _, estimate in points]
-    axis.plot(at, values, "o-", color=colour, markersize=3, linewidth=1.2, label=column)
+    axis.plot(at, values, "o-", color=colour, markersize=3, linewidth=1.2, label=_plain(column))
     axis.fill_between(at, low, high, color=colour, alpha=0.15, linewidth=0)
+
+
+def _plain(name: str) -> str:
+    """A name that rows bring, as matplotlib shows it as it is: no formula, in the legend too."""
+    return name.replace("$", r"\$").replace("_", " _", name.startswith("_"))
 
 
 def _save(figure: Figure, path: Path | str) -> Path:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from mitigate.core.files import atomic_text
+from mitigate.core.names import markdown_of
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
 from mitigate.evaluation.grid import METRICS, PROMPT_ONLY, Grid, meant
 from mitigate.evaluation.metrics import FLOOR
@@ -61,11 +62,13 @@ def _heading(section: Section) -> str:
     at = f"{section.kind}, {at}" if section.kind else at
     kinds = {grid.seeds[column, section.severity] for column in columns}
     seeds = "seed " + _listed(kinds.pop()) if len(kinds) == 1 else _seeds_by_column(section)
-    agents = ", ".join(f"{x} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns)
+    agents = ", ".join(
+        f"{markdown_of(x)} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns
+    )
     return (
-        f"## {grid.split}, {at}\n\n"
+        f"## {markdown_of(grid.split)}, {at}\n\n"
         f"N = {len(grid.episodes)} episodes, {seeds}, corruption suite "
-        f"{grid.suite}. Success: {grid.rule}. Agents: {agents}.\n"
+        f"{markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Agents: {agents}.\n"
         f"SR in %. PRS = mean over the block's corruptions of SR (SPL) / the same agent's clean "
         f"SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over episodes, {RESAMPLES:,} "
         f"resamples."
@@ -74,7 +77,7 @@ def _heading(section: Section) -> str:
 
 def _seeds_by_column(section: Section) -> str:
     seeds = {c: section.grid.seeds[c, section.severity] for c in section.columns}
-    found = (f"{_listed(held)} of {column}" for column, held in seeds.items())
+    found = (f"{_listed(held)} of {markdown_of(column)}" for column, held in seeds.items())
     return f"seeds {'; '.join(found)}"
 
 
@@ -83,14 +86,14 @@ def _listed(seeds: Iterable[int]) -> str:
 
 
 def _table(section: Section) -> str:
-    lines = [["Corruption", *section.columns]]
+    lines = [["Corruption", *map(markdown_of, section.columns)]]
     for metric in METRICS:
         cells = [_interval(section.clean.get((c, metric)), metric) for c in section.columns]
         lines.append([f"Clean {metric}", *cells])
     lines += _by_seed(section, "clean", "Clean SR", lambda value: f"{100 * value:.1f}")
     if len(section.columns) > 1:
         cells = [_moved(section.moved.get(c)) for c in section.columns]
-        lines.append([f"Clean SR against {section.reference}", *cells])
+        lines.append([f"Clean SR against {markdown_of(section.reference)}", *cells])
     if section.corrupted:
         lines += _mean_sr(section)
     for block, names in section.blocks.items():
@@ -101,7 +104,7 @@ def _table(section: Section) -> str:
         if len(section.columns) > 1:
             for metric in METRICS:
                 cells = [_change(section, (c, block, metric)) for c in section.columns]
-                lines.append([f"PRS-{metric} against {section.reference}", *cells])
+                lines.append([f"PRS-{metric} against {markdown_of(section.reference)}", *cells])
         for half in section.halves.get(block, {}):
             lines.append(
                 [f"PRS-SR ({half})", *(_prs(section, (c, half, "SR")) for c in section.columns)]
@@ -128,7 +131,9 @@ def _mean_sr(section: Section) -> list[list[str]]:
     title = f"Mean SR of {count} corruptions"
     lines = [[title, *cells(section.corrupted, lambda estimate: _interval(estimate, "SR"))]]
     if len(section.columns) > 1:
-        lines.append([f"Mean SR against {section.reference}", *cells(section.raised, _moved)])
+        lines.append(
+            [f"Mean SR against {markdown_of(section.reference)}", *cells(section.raised, _moved)]
+        )
     return lines
 
 
@@ -172,13 +177,14 @@ def _notes(section: Section) -> str:
     for column in section.columns:
         for seed, (have, want) in section.grid.unfinished[column, section.severity].items():
             notes.append(
-                f"Seed {seed} of {column} is not finished and left out: {have:,} of {want:,} rows."
+                f"Seed {seed} of {markdown_of(column)} is not finished and left out: "
+                f"{have:,} of {want:,} rows."
             )
     if section.gaps:
         notes.append("\\* over the episodes at hand. Missing cells:")
         notes += [
-            f"- {gap.column}, {gap.corruption} at {gap.severity:g}: {gap.have} of {gap.want} "
-            "episodes"
+            f"- {markdown_of(gap.column)}, {gap.corruption} at {gap.severity:g}: "
+            f"{gap.have} of {gap.want} episodes"
             for gap in section.gaps
         ]
     return "\n".join(notes)

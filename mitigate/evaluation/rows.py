@@ -9,12 +9,15 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
 from typing import Any
 
 from mitigate.core.files import atomic_text, open_text
+from mitigate.core.json_files import parse_json
+from mitigate.core.names import short
 
 Row = dict[str, Any]
 IDENTITY: dict[str, Any] = {
@@ -34,6 +37,14 @@ MEASURES = (
     *("collisions", "decisions", "steps"),
 )
 SUFFIXES = (".jsonl", ".jsonl.gz")
+LONGEST_LINE = 1 << 16  # characters; a row has about 450 (ours)
+LONGEST_TEXT = 200  # characters of an entry (ours)
+GREATEST = 1e9  # of a measure: metres, steps (ours)
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + is between those of a pair
+_HASH = re.compile(r"[A-Za-z0-9_.-]+")
+_TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights")
+_SHARES = ("severity", "success", "spl", "ndtw")  # numbers from 0 to 1
+_ROUNDING = 1e-9
 
 
 def identity(row: Row) -> tuple:
@@ -51,9 +62,12 @@ def read(path: Path | str) -> list[Row]:
     rows: list[Row] = []
     try:
         with open_text(path) as file:
-            for number, line in enumerate(file, 1):
+            number = 0
+            while line := file.readline(LONGEST_LINE + 1):
+                number += 1
                 row = _parse(line)
-                if row is None and not line.endswith("\n") and not _gzipped(path):
+                cut = row is None and len(line) <= LONGEST_LINE and not line.endswith("\n")
+                if cut and not _gzipped(path):
                     break
                 problem = _problem(row)
                 if problem:
@@ -62,7 +76,7 @@ def read(path: Path | str) -> list[Row]:
                         f"with {', '.join(REQUIRED)}. Delete the line and evaluate again."
                     )
                 rows.append(row)
-    except (EOFError, UnicodeDecodeError, OSError) as error:
+    except (UnicodeDecodeError, OSError) as error:
         if isinstance(error, FileNotFoundError):
             raise
         raise ValueError(
@@ -130,16 +144,16 @@ def _files(path: Path) -> list[Path]:
 def _holds_rows(path: Path) -> bool:
     try:
         with open_text(path) as file:
-            first = _parse(file.readline())
-    except (EOFError, UnicodeDecodeError, OSError):
+            first = _parse(file.readline(LONGEST_LINE + 1))
+    except (UnicodeDecodeError, OSError):
         return True  # damaged: let read() say so
     return isinstance(first, dict) and IDENTITY.keys() <= first.keys()
 
 
 def _parse(line: str) -> Any:
     try:
-        return json.loads(line)
-    except ValueError:
+        return parse_json(line) if len(line) <= LONGEST_LINE else None
+    except (ValueError, RecursionError):
         return None
 
 
@@ -149,8 +163,39 @@ def _problem(row: Any) -> str:
     lacking = [key for key in REQUIRED if key not in row]
     if lacking:
         return f"lacks {', '.join(lacking)}"
-    wrong = [key for key, kind in REQUIRED.items() if not isinstance(row[key], kind)]
-    return f"has a wrong {wrong[0]}: {row[wrong[0]]!r:.60}" if wrong else ""
+    for key, kind in REQUIRED.items():
+        if not isinstance(row[key], kind):
+            return f"has a wrong {key}: {short(row[key])}"
+    for key, value in row.items():
+        allowed = _allowed(key, value)
+        if allowed:
+            return f"has a wrong {short(key)}: {short(value)} ({allowed})"
+    return ""
+
+
+def _allowed(key: str, value: Any) -> str:
+    """Return what ``value`` may be in place of what it is; empty if it is good."""
+    if key in _SHARES and value is not None and not _number(value, 0, 1):
+        return "a number from 0 to 1"
+    if key == "corruption" and not _NAME.fullmatch(value):
+        return "a name of letters, digits and _.+-"
+    if key == "agent" and not _HASH.fullmatch(value):
+        return "a hash: letters, digits and _.-"
+    if key in REQUIRED and value == "":
+        return "it is empty"
+    if key in _TEXTS and not (
+        isinstance(value, str) and len(value) <= LONGEST_TEXT and value.isprintable()
+    ):
+        return f"a line of at most {LONGEST_TEXT} printable characters"
+    if key == "seed" and not _number(value, -(2**63), 2**63):
+        return "a whole number below 2^63"
+    if key in MEASURES and value is not None and not _number(value, 0, GREATEST):
+        return f"a number from 0 to {GREATEST:g}"
+    return ""
+
+
+def _number(value: Any, low: float, high: float) -> bool:
+    return isinstance(value, (int, float)) and low <= value <= high + _ROUNDING
 
 
 def _line(row: Row) -> str:

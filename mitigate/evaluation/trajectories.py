@@ -125,7 +125,7 @@ def write_pictures(
     chosen = list(won_back(rows, before, after))[:count] or _first_corrupted(rows)
     written = []
     for episode_id, corruption in chosen:
-        safe = re.sub(r"[^\w.-]+", "_", episode_id)  # an id may hold what no file name should
+        safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]  # an id may hold what no file name should
         out = Path(folder) / f"{safe}-{corruption.name}.png"
         written.append(draw_trajectories(agents, world, known[episode_id], corruption, out, seed))
     return [*written, contact_sheet(written, Path(folder) / "sheet.png")] if written else []

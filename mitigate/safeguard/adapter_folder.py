@@ -11,6 +11,7 @@ from typing import Any
 from torch import Tensor
 
 from mitigate.core import checksums
+from mitigate.core.json_files import read_json
 
 CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
 ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card and of PEFT's config
@@ -35,7 +36,7 @@ def write_adapter(
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder) as temporary:
+    with tempfile.TemporaryDirectory(".0.tmp", ".adapter-", folder) as temporary:
         network.save_pretrained(temporary, state_dict=tensors, save_embedding_layers=False)
         (Path(temporary) / CARD).write_text(json.dumps(card, indent=1) + "\n", "utf-8")
         digest = checksums.announce(folder / ADAPTER, Path(temporary) / ADAPTER)
@@ -68,10 +69,7 @@ def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
     """Return the JSON object in ``file``, whose entries must be of ``kinds``."""
-    try:
-        found = json.loads(file.read_text("utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{file} is cut short or damaged ({error}). {_AGAIN}") from error
+    found = read_json(file, _AGAIN)
     for name, kind in kinds.items():
         value = found.get(name) if isinstance(found, dict) else None
         if type(value) not in kind:

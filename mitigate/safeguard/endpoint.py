@@ -8,21 +8,24 @@ from __future__ import annotations
 
 import json
 import os
-import sqlite3
 import time
 import urllib.error
-import urllib.request
 from collections.abc import Sequence
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
 
+from mitigate.core.json_files import parse_json
+from mitigate.core.names import short
 from mitigate.core.seeding import digest
+from mitigate.safeguard.addresses import check_url
+from mitigate.safeguard.answers import AnswerCache
 from mitigate.safeguard.data import PROMPTS, prompt_messages
+from mitigate.safeguard.posting import post
 
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
-LARGEST = 1 << 20  # bytes of an answer that are read (ours)
 
 
 class ChatEndpoint:
@@ -39,7 +42,7 @@ class ChatEndpoint:
         options: further fields of the request, such as ``{"temperature": 0}``.
 
     Raises:
-        ValueError: for a URL that is none.
+        ValueError: for a URL that is none, or that holds a password or a key.
     """
 
     def __init__(
@@ -55,16 +58,12 @@ class ChatEndpoint:
         cache: str | Path | None = None,
         options: dict[str, Any] | None = None,
     ) -> None:
-        if not url.startswith(("http://", "https://")):
-            raise ValueError(
-                f"The endpoint {url!r} is no URL: write http:// or https:// and the path up to "
-                "/chat/completions, such as http://localhost:8000/v1."
-            )
+        check_url(url)
         self.url, self.model, self.prompt, self.key = url.rstrip("/"), model, prompt, key
         self.timeout, self.retries, self.pause = timeout, retries, pause
         self.options = options or {}
         self.failures: list[str] = []
-        self._cache = None if cache is None else _open_cache(Path(cache))
+        self._cache = None if cache is None else AnswerCache(Path(cache))
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
         """Return the answer to each text; None where the endpoint gave none that can be used, or
@@ -77,16 +76,11 @@ class ChatEndpoint:
         name = (
             f"{digest(self.url, self.model, PROMPTS[self.prompt], repr(self.options), text):032x}"
         )
-        if self._cache is not None:
-            row = self._cache.execute(
-                "SELECT answer FROM answers WHERE name = ?", (name,)
-            ).fetchone()
-            if row is not None:
-                return row[0]
-        answer = self._ask(text, ends)
-        if self._cache is not None and answer is not None:
-            with self._cache:
-                self._cache.execute("INSERT OR REPLACE INTO answers VALUES (?, ?)", (name, answer))
+        answer = None if self._cache is None else self._cache.get(name)
+        if answer is None:
+            answer = self._ask(text, ends)
+            if self._cache is not None and answer is not None:
+                self._cache.put(name, answer)
         return answer
 
     def _ask(self, text: str, ends: float | None) -> str | None:
@@ -98,11 +92,11 @@ class ChatEndpoint:
             try:
                 return _content(self._post(text, left))
             except urllib.error.HTTPError as error:
-                problem = f"HTTP {error.code} {error.reason}"
+                problem = f"HTTP {error.code} {short(error.reason)}"
                 if error.code not in RETRIED:
                     break
-            except (OSError, ValueError) as error:  # no connection, time-out, no JSON
-                problem = f"{type(error).__name__}: {error}"
+            except (OSError, ValueError, RecursionError, HTTPException) as error:
+                problem = f"{type(error).__name__}: {short(str(error), 200)}"
             wait = self.pause * 2**attempt
             if attempt == self.retries or (ends is not None and time.monotonic() + wait > ends):
                 break
@@ -115,11 +109,8 @@ class ChatEndpoint:
         headers = {"Content-Type": "application/json"}
         if os.environ.get(self.key):
             headers["Authorization"] = f"Bearer {os.environ[self.key]}"
-        request = urllib.request.Request(
-            f"{self.url}/chat/completions", json.dumps(body).encode(), headers
-        )
-        with urllib.request.urlopen(request, timeout=timeout) as reply:
-            return json.loads(reply.read(LARGEST))
+        url = f"{self.url}/chat/completions"
+        return parse_json(post(url, json.dumps(body).encode(), headers, timeout))
 
 
 def _content(reply: Any) -> str:
@@ -131,15 +122,3 @@ def _content(reply: Any) -> str:
     if not isinstance(content, str):
         raise ValueError(f"the answer is no text: {content!r:.120}")
     return content.strip()
-
-
-def _open_cache(path: Path) -> sqlite3.Connection:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        cache = sqlite3.connect(path)
-        cache.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer TEXT)")
-    except sqlite3.DatabaseError as error:
-        raise ValueError(
-            f"{path} is no cache of endpoint answers ({error}): name another file, or delete it."
-        ) from error
-    return cache

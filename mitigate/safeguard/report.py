@@ -22,6 +22,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
+from mitigate.safeguard.addresses import check_choice
 from mitigate.safeguard.data import read_texts
 from mitigate.safeguard.guard import PASSAGE, Rewriter, Safeguard, open_safeguard
 from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
@@ -79,6 +80,7 @@ def choose(name: str) -> Repairer:
     """Return the repairer of a name on the command line."""
     if name == "none":
         return list
+    check_choice(name)
     safeguard = open_safeguard(name.removesuffix(ALONE))
     if safeguard is None or (name.endswith(ALONE) and safeguard.rewriter is None):
         raise ValueError(f"{name} has no language model that could work alone: write lora{ALONE}.")

@@ -12,6 +12,7 @@ from typing import Any
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
 from mitigate.core.files import find, sha256
+from mitigate.core.names import markdown_of
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.rows import Row
@@ -145,9 +146,10 @@ def _table(entry: dict[str, Any]) -> str:
     lines += [f"| SR, {label(name)} | {_cell([sr])} |" for name, sr in entry["SR"].items()]
     gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
     return (
-        f"## {entry['split']}, severity {entry['severity']:g}\n\n{entry['episodes']} episodes, "
-        f"seed {', '.join(map(str, entry['seeds']))}, suite {entry['suite']}. Success: "
-        f"{entry['rule']}.\n\n" + "\n".join(lines) + gaps
+        f"## {markdown_of(entry['split'])}, severity {entry['severity']:g}\n\n"
+        f"{entry['episodes']} episodes, seed {', '.join(map(str, entry['seeds']))}, "
+        f"suite {entry['suite']}. "
+        f"Success: {markdown_of(entry['rule'])}.\n\n" + "\n".join(lines) + gaps
     )
 
 

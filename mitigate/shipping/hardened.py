@@ -17,6 +17,7 @@ import torch
 from mitigate.agents import adapters, schema
 from mitigate.core import checkpoint, settings
 from mitigate.core.files import PACKAGE, ROOT, sha256
+from mitigate.core.json_files import read_json
 
 FORMAT = 1
 CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
@@ -103,6 +104,14 @@ def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
     return schema.check(settings.read_agent(config, target, known), config, target)
 
 
+def check_own(held: dict[str, Any]) -> None:
+    """Raise ValueError if a user's own config ``held`` sets an agent of ours to what it cannot be;
+    settings that are not in its schema are for its class to refuse."""
+    target = held["_target_"]
+    given = {k: v for k, v in held.items() if k in schema.KINDS[target].settings}
+    schema.check(given, "The options", target, "Set it on the command line, as agent.size=64.")
+
+
 def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
     """Read the weights of a hardened folder into ``agent``, adapters and base alike.
 
@@ -164,10 +173,7 @@ def read_card(folder: Path) -> dict[str, Any]:
             f"{folder} is no hardened checkpoint: {CARD} is missing. Name a folder such as "
             "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`."
         )
-    try:
-        card = json.loads(file.read_text(encoding="utf-8"))
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f"{file} is cut short or damaged ({error}). {_AGAIN}") from error
+    card = read_json(file, _AGAIN)
     if not isinstance(card, dict) or card.get("format") != FORMAT:
         raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {_AGAIN}")
     if card.get("sha256") != card_sha(card):
@@ -177,6 +183,11 @@ def read_card(folder: Path) -> dict[str, Any]:
     lacking = [name for name in ENTRIES if name not in card]
     if lacking or not isinstance(card["files"], dict):
         raise ValueError(f"{file} lacks {', '.join(lacking or ['files'])}. {_AGAIN}")
+    base = card["base"] if card["adapters_only"] else {"weights": "", "sha256": ""}
+    if not isinstance(base, dict) or not all(
+        isinstance(base.get(name), str) for name in ("weights", "sha256")
+    ):
+        raise ValueError(f"{file} does not say to which base its adapters belong. {_AGAIN}")
     return card
 
 

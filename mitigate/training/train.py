@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import re
 import sys
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 from inspect import signature
 from pathlib import Path
@@ -26,6 +27,7 @@ from torch import nn
 from mitigate.core import checkpoint, conf, precision, seeding
 from mitigate.core.build import OWN_CONFIG_ONLY, build_agent, maker
 from mitigate.core.files import atomic_text
+from mitigate.core.locks import FolderLock
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
 from mitigate.corruptions import Corruption
@@ -37,12 +39,14 @@ from mitigate.evaluation.evaluate import (
     episodes,
     load,
 )
+from mitigate.training import limits
 from mitigate.training.batches import MOST, Workers
 from mitigate.training.ranks import Ranks
 from mitigate.training.stages import nothing_to_do, plain, train_stage, trainer_settings
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
 EPISODE_COST = 0.12  # seconds of one core for an episode, on the machine of precision.REFERENCE
+MOST_ROLLOUTS, MOST_WORKERS = 100_000, 256  # (ours)
 EPISODES = 300  # of a list, where the estimate need not open it
 
 
@@ -113,7 +117,8 @@ def run(cfg: DictConfig) -> Path:
     check(cfg)
     with Ranks.of_environment() as ranks:
         cfg.folder = cfg.folder or default_folder(cfg)  # what refers to it finds it
-        return _run(cfg, Path(cfg.folder), ranks)
+        with FolderLock(cfg.folder) if ranks.first else nullcontext():
+            return _run(cfg, Path(cfg.folder), ranks)
 
 
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
@@ -179,11 +184,22 @@ def check(cfg: DictConfig) -> None:
                 f"{key}={value:g} is out of range: a severity is a number from 0 (clean) to 1 "
                 f"(strongest). Write, for instance, {key}=0.6."
             )
-    if cfg.workers is not None and cfg.workers < 0:
+    seeding.check(cfg.seed)
+    if not 1 <= cfg.rollouts <= MOST_ROLLOUTS:
+        raise ValueError(
+            f"rollouts={cfg.rollouts} must be a number of episodes a step, from 1 to "
+            f"{MOST_ROLLOUTS}, as rollouts=24."
+        )
+    if cfg.workers is not None and not 0 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(
             f"workers={cfg.workers}: give a number of processes that make batches, 0 for none "
-            f"beside this one, or null for one a core ({MOST} at most)."
+            f"beside this one and {MOST_WORKERS} at most, or null for one a core ({MOST} at most)."
         )
+    for stage in cfg.stages.values():
+        if stage is not None:
+            settings = trainer_settings(cfg, stage)
+            limits.check(settings)
+            precision.device_of(settings.get("device", "auto"))
     if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
     if OmegaConf.select(cfg, "env.training") is None and cfg.report == TrainConfig.report:

@@ -18,9 +18,10 @@ from torch import Tensor
 from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate.core import checkpoint, seeding
-from mitigate.core.precision import choose, computing
+from mitigate.core.precision import choose, computing, device_of
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, held
+from mitigate.training import limits
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
 from mitigate.training.ranks import Ranks
@@ -87,20 +88,11 @@ class Trainer:
         config: dict[str, Any] | None = None,
     ) -> None:
         _check("trainer.schedule", schedule, SCHEDULES)
-        if steps < 1 or keep < 1 or lr <= 0:
-            raise ValueError(
-                f"trainer.steps ({steps}) and trainer.keep ({keep}) must be at least 1, "
-                f"trainer.lr ({lr}) above 0. Set them on the command line, e.g. trainer.steps=100."
-            )
-        if not grad_clip >= 0:
-            raise ValueError(
-                f"trainer.grad_clip ({grad_clip}) must be a norm above 0, or 0 to clip nothing."
-            )
+        limits.check({k: v for k, v in locals().items() if k in limits.LIMITS})
         self.folder, self.steps, self.seed, self.keep = Path(folder), steps, seed, keep
         self.log_every, self.save_every, self.grad_clip = log_every, save_every, grad_clip
         self.eval_every, self.figure_every = eval_every, figure_every
-        found = "cuda" if torch.cuda.is_available() else "cpu"
-        self.device = torch.device(found if device == "auto" else device)
+        self.device = device_of(device)
         self.asked, self.precision = precision, choose(precision, self.device)
         self.workers, self.ranks = workers, ranks or Ranks()
         self.recipe = recipe.to(self.device)
@@ -231,6 +223,13 @@ class Trainer:
         return max(group["lr"] for group in self.optimizer.param_groups)
 
     def _save(self, done: int) -> None:
+        bad = checkpoint.not_finite(self.recipe)
+        if bad:
+            raise LossNotFinite(
+                f"Training stopped: after step {done} of {self.name} the weights are no finite "
+                f"numbers ({', '.join(bad[:3])}), so nothing was saved of that step. Lower "
+                f"trainer.lr ({self._lr():g} now), or use trainer.precision=fp32."
+            )
         state = {
             "step": done,
             "model": self.recipe.state_dict(),

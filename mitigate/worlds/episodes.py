@@ -8,28 +8,23 @@ in memory, whatever the size of the file; keys this code does not know come back
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import numpy as np
 
-from mitigate.core.files import atomic_text, json_members, sha256
+from mitigate.core.files import atomic_text, sha256
+from mitigate.core.json_files import json_members
+from mitigate.core.names import short
+from mitigate.worlds.records import Record, Vector
 
-Vector = tuple[float, ...]
 IDS = ("episode_id", "trajectory_id")
+LONGEST_ID, LONGEST_TEXT = 200, 100_000  # characters (ours)
 KEYS = (
     *("scene_id", "start_position", "start_rotation", "info", "goals", "instruction"),
     "reference_path",
-)
-NEEDED = (
-    "An episode needs episode_id, trajectory_id, scene_id, start_position [x, y, z], "
-    "start_rotation [x, y, z, w], goals [{position, radius}], instruction {instruction_text} and "
-    "reference_path [[x, y, z], ...] (goals and reference_path may be absent from a test split "
-    "read with hidden_goals=True); a ground-truth entry needs locations [[x, y, z], ...]. "
-    "Correct the file, or download it again."
 )
 
 
@@ -164,7 +159,7 @@ def read_ground_truth(path: Path | str) -> dict[str, GroundTruth]:
     for key, value in json_members(path, "episodes"):
         if key == "episodes":
             raise ValueError(f"{path} is an episode file: read it with read_episodes.")
-        record = _Record(value, path, f"ground-truth entry {key!r}")
+        record = Record(value, path, f"ground-truth entry {key!r}")
         locations = record.vectors("locations", 3)
         truths[key] = GroundTruth(np.array(locations), tuple(record.get("actions", list, [])))
     return truths
@@ -191,67 +186,17 @@ def to_json(episode: Episode) -> dict[str, Any]:
     return written | {key: value for key, value in episode.extra.items() if key not in IDS}
 
 
-class _Record:
-    """A JSON object of a file, read with errors that say where it stands."""
-
-    def __init__(self, raw: Any, path: Path | str, where: str) -> None:
-        self.raw, self.path, self.where = raw, path, where
-        if not isinstance(raw, dict):
-            self.fail("is not a JSON object")
-
-    def fail(self, problem: str) -> NoReturn:
-        """Raise ValueError with file, place, ``problem`` and what is needed."""
-        raise ValueError(f"{self.path}: {self.where} {problem}. {NEEDED}")
-
-    def get(self, key: str, kinds: type | tuple[type, ...], default: Any = ...) -> Any:
-        """Return the value of ``key``, checked against ``kinds``; ``...`` means required."""
-        value = self.raw.get(key)
-        if value is None and default is not ...:
-            return default
-        if value is None:
-            self.fail(f"lacks the key {key!r}")
-        if not isinstance(value, kinds) or isinstance(value, bool):
-            self.fail(f"has a wrong {key!r}: {value!r:.80}")
-        return value
-
-    def vector(self, key: str, size: int) -> Vector:
-        """Return ``key`` as ``size`` finite numbers."""
-        return self._vector(key, self.get(key, list), size)
-
-    def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
-        """Return ``key`` as a non-empty list of vectors."""
-        values = self.get(key, list)
-        if not values:
-            self.fail(f"has an empty {key!r}")
-        return tuple(self._vector(key, value, size) for value in values)
-
-    def records(self, key: str) -> list[_Record]:
-        """Return the objects of the non-empty list ``key``."""
-        values = self.get(key, list)
-        if not values:
-            self.fail(f"has an empty {key!r}")
-        return [_Record(v, self.path, f"{self.where}, {key}[{i}],") for i, v in enumerate(values)]
-
-    def rest(self, *known: str) -> dict[str, Any]:
-        """Return the keys that are not ``known``."""
-        return {key: value for key, value in self.raw.items() if key not in known}
-
-    def _vector(self, key: str, value: Any, size: int) -> Vector:
-        if not isinstance(value, list) or len(value) != size or not all(map(_finite, value)):
-            self.fail(f"has a wrong {key!r}: {size} finite numbers are needed, not {value!r:.80}")
-        return tuple(map(float, value))
-
-
-def _finite(value: Any) -> bool:
-    return isinstance(value, (int, float)) and math.isfinite(value)
-
-
 def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Episode:
     identity = raw.get("episode_id") if isinstance(raw, dict) else None
-    record = _Record(raw, path, f"episode {index} of the list (episode_id {identity!r})")
+    record = Record(raw, path, f"episode {index} of the list (episode_id {short(identity)})")
     hide = hidden_goals and raw.get("goals") is None and raw.get("reference_path") is None
     info = record.get("info", dict, {})
     ids = {key: record.get(key, (int, str)) for key in IDS}
+    for key, value in ids.items():
+        if not str(value) or len(str(value)) > LONGEST_ID or not str(value).isprintable():
+            record.fail(
+                f"has a wrong {key!r}: it must be one line of at most {LONGEST_ID} characters"
+            )
     return Episode(
         episode_id=str(ids["episode_id"]),
         trajectory_id=str(ids["trajectory_id"]),
@@ -261,28 +206,29 @@ def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Epis
         goals=() if hide else tuple(map(_goal, record.records("goals"))),
         instruction=_instruction(record),
         reference_path=() if hide else record.vectors("reference_path", 3),
-        geodesic_distance=_Record(info, path, f"{record.where}, info,").get(
-            "geodesic_distance", (int, float), None
-        ),
+        geodesic_distance=Record(info, path, f"{record.where}, info,").metres("geodesic_distance"),
         info=info,
         extra=record.rest(*IDS, *KEYS) | {k: v for k, v in ids.items() if isinstance(v, int)},
     )
 
 
-def _goal(record: _Record) -> Goal:
+def _goal(record: Record) -> Goal:
     return Goal(
         position=record.vector("position", 3),
-        radius=record.get("radius", (int, float), None),
+        radius=record.metres("radius"),
         extra=record.rest("position", "radius"),
     )
 
 
-def _instruction(episode: _Record) -> Instruction:
+def _instruction(episode: Record) -> Instruction:
     raw = episode.get("instruction", dict)
-    record = _Record(raw, episode.path, f"{episode.where}, instruction,")
+    record = Record(raw, episode.path, f"{episode.where}, instruction,")
     tokens = record.get("instruction_tokens", list, None)
+    text = record.get("instruction_text", str)
+    if len(text) > LONGEST_TEXT:
+        record.fail(f"has an 'instruction_text' of more than {LONGEST_TEXT} characters")
     return Instruction(
-        text=record.get("instruction_text", str),
+        text=text,
         tokens=None if tokens is None else tuple(tokens),
         language=record.get("language", str, None),
         extra=record.rest("instruction_text", "instruction_tokens", "language"),

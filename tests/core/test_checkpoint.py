@@ -5,13 +5,15 @@ from __future__ import annotations
 import os
 import pickle
 import random
+import resource
+import signal
 
 import numpy
 import pytest
 import torch
 from torch import nn
 
-from mitigate.core import checkpoint, checksums, seeding
+from mitigate.core import checkpoint, checksums, files, seeding
 
 STATE = {
     "step": 3,
@@ -134,3 +136,46 @@ def test_a_part_alone_is_read_from_whole_weights(tmp_path):
         checkpoint.load_part(part, "c", file)
     with pytest.raises(ValueError, match="do not fit"):
         checkpoint.load_part(part, "a", file)
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
+def test_weights_that_are_no_numbers_are_refused(tmp_path, value):
+    module = torch.nn.Sequential(torch.nn.Linear(3, 3), torch.nn.BatchNorm1d(3))
+    with torch.no_grad():
+        module[0].weight[1, 1] = value
+    file = checkpoint.save_weights(module, tmp_path)
+    with pytest.raises(ValueError, match="holds? NaN.*0.weight"):
+        checkpoint.load_weights(module, file)
+    assert checkpoint.not_finite(torch.nn.Linear(2, 2)) == []
+
+
+def test_a_mask_of_infinity_is_no_damage(tmp_path):
+    module = torch.nn.Linear(2, 2)
+    module.register_buffer("mask", torch.full((2, 2), -float("inf")))
+    checkpoint.load_weights(module, checkpoint.save_weights(module, tmp_path))
+    module.mask[0, 0] = float("nan")
+    assert checkpoint.not_finite(module) == ["mask"]
+
+
+def test_a_full_disk_is_named_and_leaves_what_was_there(tmp_path):
+    made = torch.nn.Linear(2, 2)
+    before = checkpoint.save_weights(made, tmp_path).read_bytes()
+    limit = resource.getrlimit(resource.RLIMIT_FSIZE)
+    before_signal = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    state = {k: {} for k in checkpoint.REQUIRED} | {"step": 1, "model": {"w": torch.zeros(99999)}}
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))  # as a disk that fills up
+    try:
+        with pytest.raises(OSError, match="could not be written|too large"):
+            checkpoint.save(tmp_path, state)
+        with pytest.raises(OSError, match="could not be written|too large"):
+            checkpoint.save_weights(torch.nn.Linear(99, 999), tmp_path)
+        with pytest.raises(OSError):
+            files.write_bytes(tmp_path / "x", bytes(99_999))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limit)
+        signal.signal(signal.SIGXFSZ, before_signal)
+    assert (tmp_path / checkpoint.WEIGHTS).read_bytes() == before
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        checkpoint.WEIGHTS,
+        f"{checkpoint.WEIGHTS}.sha256",
+    ]

@@ -225,7 +225,10 @@ def test_bytes_that_are_no_text_are_refused(tmp_path):
         assert all(WORDS in said for said in refusals(tmp_path))
 
 
-@pytest.mark.parametrize("text", ["", "null", "[]", "agent", "{}", "agent:", "agent: []", "a: {}"])
+@pytest.mark.parametrize(
+    "text",
+    ["", "null", "[]", "agent", "agent: hello", "agent: 7", "{}", "agent:", "agent: []", "a: {}"],
+)
 def test_a_file_without_settings_is_refused(tmp_path, text):
     for said in refusals(folder_with(tmp_path, text)):
         assert "settings of an agent" in said

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+import torch
 
 from mitigate.core.observation import DEPTH, POSE, RGB, STOP, Observation
 from mitigate.corruptions import (
@@ -231,3 +232,12 @@ def test_controls_need_an_episode(count, monkeypatch, capsys):
     with pytest.raises(SystemExit):
         controls.main()
     assert f"--episodes {count} is none: give 1 or more" in capsys.readouterr().err
+
+
+def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):
+    agent = wanderer(stop=0.0)
+    with torch.no_grad():
+        next(agent.parameters()).view(-1)[0] = float("nan")
+    with pytest.raises(ValueError, match="The weights of test hold NaN or infinity"):
+        run(tmp_path, agent=agent)
+    assert not list(tmp_path.iterdir())

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import cv2
 import numpy as np
 import pytest
 
+from mitigate.core.names import markdown_of
 from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
 from mitigate.corruptions.registry import unseen_names
 from mitigate.evaluation import rows, table
@@ -318,3 +321,23 @@ def test_pairs_have_a_table_of_their_own():
     assert section.kind == "pairs of corruptions"
     assert section.blocks == {"Pairs": ("low_light+mask", "spatter+missing_data")}
     assert "| Spatter + Missing data | 40.0 |" in markdown([section])
+
+
+HOSTILE = "a|b`c`<script>x</script>[y](http://z)![p](q)$\\frac$*#"
+
+
+def test_names_of_anybody_stay_names_in_tables_and_pictures(tmp_path):
+    mine = {"name": HOSTILE, "agent": "ffff00000000", "rule": f"{HOSTILE} |", "split": HOSTILE}
+    made = [r | {"split": HOSTILE, "rule": mine["rule"]} for r in column(8, ALL)]
+    text = write([*made, *column(4, ALL, **mine)], tmp_path)[0].read_text()
+    shown = next(line for line in text.splitlines() if line.startswith("| Corruption"))
+    assert len(re.findall(r"(?<!\\)\|", shown)) == 4  # two columns and the first, no further cell
+    for mark in ("<script", "</script", "[y](", "![p]", "`c`", "\n#a"):
+        assert not re.search(rf"(?<!\\){re.escape(mark)}", text)
+    assert (tmp_path / "heatmap.png").is_file() and (tmp_path / "severity.png").is_file()
+
+
+def test_a_name_as_it_usually_is_stays_as_it_is():
+    for name in ("da_per_episode", "frontier (0123ab)", "STOP and geodesic < 2.0 m", "base+rules"):
+        assert markdown_of(name) == name
+    assert markdown_of("a\n## b\r\n| c") == "a ## b \\| c"

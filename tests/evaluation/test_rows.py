@@ -105,3 +105,70 @@ def test_a_folder_or_file_without_rows_is_named(tmp_path):
         rows.gather([tmp_path])
     with pytest.raises(FileNotFoundError, match=r"nearest names there are chat\.jsonl"):
         rows.gather([tmp_path / "chats.jsonl"])
+
+
+BAD_VALUES = [
+    *(("success", value) for value in (5, -1, 233, 1e300, 10**400)),
+    *(("spl", value) for value in (1e300, -0.1, 1.01, 10**400)),
+    *(("severity", value) for value in (-1, 1.5, 1e300)),
+    *(("ndtw", value) for value in (2.0, "0.5", [1])),
+    *(("path_length", value) for value in (-1.0, 1e300, "long")),
+    *(("steps", value) for value in (-5, 10**400, {})),
+    *(("seed", value) for value in (10**30, -(10**30))),
+    *(("corruption", value) for value in ("../../x", "/etc/passwd", "", "a b", "x\n", "..", "-o")),
+    *(("agent", value) for value in ("a`b", "a b", "", "<b>", "x" * 500)),
+    *(("name", value) for value in ("", "a\nb", "x" * 500, "\x1b[31m", "a\u202eb")),
+    *(("split", value) for value in ("", "a\tb")),
+    *(("rule", value) for value in ("", "x" * 5000, "a\r\nb")),
+    *(("suite", value) for value in ("", "1\x00")),
+    *(("episode_id", value) for value in ("", "e\n1", "x" * 500)),
+    ("version", 7),
+]
+
+
+@pytest.mark.parametrize(("key", "value"), BAD_VALUES, ids=lambda v: repr(v)[:24])
+def test_a_value_out_of_its_range_is_refused_read_or_written(tmp_path, key, value):
+    path = tmp_path / "rows.jsonl"
+    bad = row(1, True) | {key: value}
+    path.write_text(json.dumps(row(0, True)) + "\n" + json.dumps(bad) + "\n")
+    with pytest.raises(ValueError, match=f"line 2 has a wrong '?{key}'?: ") as error:
+        rows.read(path)
+    assert "\n" not in str(error.value) and len(str(error.value)) < 600
+    with pytest.raises(ValueError, match="A result row has a wrong"):
+        rows.append(path, [bad])
+
+
+BAD_LINES = {
+    "deep": "[" * 60_000,
+    "deep mappings": '{"a":' * 10_000,
+    "not a number": json.dumps(row(1, True)).replace("0.5", "NaN"),
+    "infinity": json.dumps(row(1, True)).replace("0.5", "1e999"),
+    "digits": json.dumps(row(1, True)).replace("0.5", "9" * 5000),
+    "long": json.dumps(row(1, True) | {"note": "x" * (1 << 20)}),
+    "a text": '"row"',
+    "null": "null",
+    "control": "\x00\x01\x02",
+}
+
+
+@pytest.mark.parametrize("line", BAD_LINES.values(), ids=BAD_LINES)
+@pytest.mark.parametrize("packed", [False, True])
+def test_a_line_that_is_no_row_is_named(tmp_path, line, packed):
+    path = tmp_path / ("rows.jsonl.gz" if packed else "rows.jsonl")
+    raw = f"{json.dumps(row(0, True))}\n{line}\n{json.dumps(row(2, True))}\n".encode()
+    path.write_bytes(gzip.compress(raw) if packed else raw)
+    with pytest.raises(ValueError, match="line 2 ") as error:
+        rows.read(path)
+    assert len(str(error.value)) < 600
+
+
+def test_damaged_gzip_and_a_bomb_are_refused(tmp_path):
+    path = tmp_path / "rows.jsonl.gz"
+    raw = gzip.compress(b"".join(rows._line(r).encode() for r in cell(3)))
+    bomb = gzip.compress(rows._line(row(0, True, note="x" * 60_000)).encode() * 1000)
+    for data in (raw[:40], raw[:30] + bytes(8) + raw[38:], raw[:-1], b"\x1f\x8b", bomb):
+        path.write_bytes(data)
+        with pytest.raises(ValueError, match="is damaged"):
+            rows.read(path)
+        with pytest.raises(ValueError, match="is damaged"):
+            rows.gather([tmp_path])

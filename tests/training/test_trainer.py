@@ -211,11 +211,53 @@ def test_a_folder_with_another_run_is_refused_by_naming_the_difference(tmp_path)
         ({"precision": "fp8"}, "auto, fp32, bf16"),
         ({"steps": 0}, "at least 1"),
         ({"grad_clip": -1.0}, "0 to clip nothing"),
+        ({"grad_clip": float("nan")}, "0 to clip nothing"),
+        ({"grad_clip": float("inf")}, "0 to clip nothing"),
+        ({"lr": float("inf")}, "trainer.lr=inf .* above 0"),
+        ({"lr": float("nan")}, "trainer.lr=nan"),
+        ({"lr": -1e-3}, "above 0"),
+        ({"lr": 1e9}, "trainer.lr=1e[+]09 must be a number from"),
+        ({"weight_decay": float("inf")}, "trainer.weight_decay"),
+        ({"weight_decay": -1.0}, "trainer.weight_decay"),
+        ({"warmup": -5}, "trainer.warmup=-5"),
+        ({"log_every": -1}, "trainer.log_every"),
+        ({"save_every": 10**30}, "trainer.save_every"),
+        ({"steps": 10**30}, "trainer.steps"),
+        ({"keep": 10**30}, "trainer.keep"),
+        ({"device": "banana"}, "trainer.device=banana cannot be used here .* auto, cpu"),
+        ({"device": "cuda:99"}, "trainer.device=cuda:99 cannot be used here"),
+        ({"device": "meta"}, "it holds no numbers"),
+        ({"device": "mps"}, "trainer.device=mps cannot be used here"),
+        ({"device": ""}, "trainer.device= cannot"),
     ],
 )
 def test_a_setting_out_of_range_names_the_allowed_values(tmp_path, setting, words):
     with pytest.raises(ValueError, match=words):
         trained(tmp_path, **setting)
+
+
+def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
+    class Poisoned(TinyRecipe):
+        def forward(self, batch):
+            if self.count == 8:  # after the gradient is known, as an overflow in the update does
+                self.agent.body[2].bias.register_hook(self._poison)
+            return super().forward(batch)
+
+        def _poison(self, gradient):
+            with torch.no_grad():
+                self.agent.body[0].weight[0, 0] = float("inf")
+
+    with pytest.raises(LossNotFinite, match=r"no finite numbers \(agent.body.0.weight\)"):
+        Trainer(Poisoned(), steps=9, folder=tmp_path, save_every=3).fit()
+    assert [p.name for p in checkpoint.checkpoints(tmp_path)][-1] == "step-00000006.pt"
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="there is CUDA")
+def test_a_gpu_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(
+        ValueError, match="trainer.device=cuda cannot be used here .it is not there"
+    ):
+        trained(tmp_path, device="cuda")
 
 
 def test_learning_rate_warms_up_and_falls_to_zero(tmp_path):

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mitigate.core import files
+from mitigate.core import json_files
 from mitigate.worlds.episodes import (
     Goal,
     read_episodes,
@@ -127,7 +127,7 @@ def test_values_split_by_the_reading_buffer_are_whole(tmp_path):
 
 @pytest.mark.parametrize("size", [1, 2, 5])
 def test_values_are_whole_wherever_the_buffer_ends(tmp_path, monkeypatch, size):
-    monkeypatch.setattr(files, "CHUNK", size)
+    monkeypatch.setattr(json_files, "CHUNK", size)
     path = write_json(tmp_path / "a.json", {"x": 12345, "episodes": [R2R, RXR], "y": -1.5e3})
     assert [e.episode_id for e in read_episodes(path)] == ["7", "0041"]
     assert read_extras(path) == {"x": 12345, "y": -1500.0}

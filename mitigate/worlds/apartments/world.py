@@ -42,6 +42,7 @@ from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_fie
 from mitigate.worlds.episodes import Episode, from_vlnce
 
 KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
+LARGEST = 2048  # pixels of a view (ours)
 RULES = {"apartments": metrics.Rule("vln", SUCCESS_METRES), **metrics.RULES}
 STOP_WITHIN = 1.0  # metres from the goal at which the oracle stops
 
@@ -61,6 +62,8 @@ class ApartmentsWorld:
             raise ValueError(unknown("success rule", rule, RULES))
         if views not in (1, VIEWS):
             raise ValueError(f"views={views}: an agent sees {VIEWS} views, or 1 ahead.")
+        if not 8 <= size <= LARGEST:
+            raise ValueError(f"size={size}: a view has from 8 to {LARGEST} pixels, as env.size=64.")
         self.size, self.layouts, self.views = size, layouts, views
         self._rule, self.rule = rule, str(RULES[rule])
         self.sensors: dict[str, Sensor] = cameras(size, views)

@@ -1,0 +1,139 @@
+"""JSON of anybody: small files at once, large ones by value; what is wrong is a ValueError."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NoReturn, TextIO
+
+from mitigate.core.files import open_text
+
+CHUNK = 1 << 16  # characters read at a time (ours)
+LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (ours)
+LARGEST_JSON = 1 << 24  # bytes of a JSON file that is read at once; a card has 1e4 (ours)
+
+
+def read_json(path: Path, again: str) -> Any:
+    """Return what the JSON file ``path`` holds, which may be of anybody: at most ``LARGEST_JSON``
+    bytes, finite numbers alone. Raises ValueError, which ends in ``again`` (what to do)."""
+    with open(path, "rb") as file:
+        raw = file.read(LARGEST_JSON + 1)
+    try:
+        if len(raw) > LARGEST_JSON:
+            raise ValueError(f"more than {LARGEST_JSON} bytes")
+        return parse_json(raw.decode("utf-8"))
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{path} is cut short or damaged ({error!s:.200}). {again}") from error
+
+
+def parse_json(text: str | bytes) -> Any:
+    """As ``json.loads``, but NaN, infinity and numbers that would become one are ValueErrors."""
+    return json.loads(text, parse_constant=_no_number, parse_float=_finite)
+
+
+def _no_number(name: str) -> NoReturn:
+    raise ValueError(f"{name} is no number of JSON")
+
+
+def _finite(digits: str) -> float:
+    value = float(digits)
+    if not math.isfinite(value):
+        raise ValueError(f"{digits:.20} is too great a number")
+    return value
+
+
+def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
+    """Yield the (key, value) pairs of the JSON object in ``path``, one value in memory at a time.
+
+    The value of the key ``streamed``, if it is a list, comes as an iterator over its items.
+    Raises ValueError if the file is no JSON object, is malformed, cut short or not text.
+    """
+    with open_text(path) as file:
+        json_file = _JsonFile(file, path)
+        json_file.expect("{", "a JSON object")
+        for _ in json_file.until("}"):
+            key = json_file.value()
+            json_file.expect(":", "':' after a key")
+            if key == streamed and json_file.accept("["):
+                items = (json_file.value() for _ in json_file.until("]"))
+                yield key, items
+                for _ in items:  # what the caller left unread
+                    pass
+            else:
+                yield key, json_file.value()
+
+
+class _JsonFile:
+    """Reads JSON from an open text file value by value; ``_at`` is the place in the buffer."""
+
+    _decode = json.JSONDecoder().raw_decode
+    _space = re.compile(r"[ \t\r\n]*")
+
+    def __init__(self, file: TextIO, path: Path | str) -> None:
+        self._file, self._path = file, path
+        self._text, self._at, self._before = "", 0, 0
+
+    def until(self, bracket: str) -> Iterator[None]:
+        """Yield before each comma-separated item, up to the closing ``bracket``."""
+        if self.accept(bracket):
+            return
+        while True:
+            yield
+            if self.accept(bracket):
+                return
+            self.expect(",", f"',' or '{bracket}'")
+
+    def expect(self, character: str, name: str) -> None:
+        """Pass ``character`` or raise."""
+        if not self.accept(character):
+            self._fail(f"expected {name}")
+
+    def accept(self, character: str) -> bool:
+        """Pass white space, and ``character`` if it comes next; return whether it did."""
+        while True:
+            self._at = self._space.match(self._text, self._at).end()  # type: ignore[union-attr]
+            if self._at < len(self._text) or not self._more():
+                break
+        found = self._text.startswith(character, self._at)
+        self._at += len(character) * found
+        return found
+
+    def value(self) -> Any:
+        """Return the next JSON value, reading on until it is whole."""
+        self.accept("")
+        while True:
+            try:
+                value, end = self._decode(self._text, self._at)
+                if end < len(self._text) or not self._more():
+                    self._at = end
+                    return value
+            except json.JSONDecodeError as error:
+                if len(self._text) - self._at > LARGEST_VALUE or not self._more():
+                    self._fail(error.msg)
+            except ValueError as error:  # a number of more digits than Python converts
+                self._fail(str(error))
+            except RecursionError:
+                self._fail("too many levels")
+
+    def _more(self) -> bool:
+        """Append what comes next, as much as is held, and drop what is done."""
+        self._before += self._at
+        self._text = self._text[self._at :]
+        self._at = 0
+        try:
+            more = self._file.read(max(CHUNK, len(self._text)))
+        except (gzip.BadGzipFile, UnicodeDecodeError) as error:
+            self._fail(str(error))
+        self._text += more
+        return bool(more)
+
+    def _fail(self, problem: str) -> NoReturn:
+        raise ValueError(
+            f"{self._path} is not whole JSON: {problem}, near character "
+            f"{self._before + self._at}. It is cut short, damaged or another kind of file: "
+            "download or write it again."
+        )

@@ -1,0 +1,102 @@
+"""One process at a time in a folder, and nothing left there of those that were killed."""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import re
+import shlex
+import shutil
+import socket
+import sys
+from pathlib import Path
+from typing import IO
+
+NAME = ".lock"
+_LEFT = re.compile(r"\..+\.\d+\.tmp")  # as mitigate/core/files.py names what is not yet whole
+_held: set[Path] = set()  # by this process, which a record lock would let in twice
+
+
+class FolderLock:
+    """Use it as a context manager around all that is written to ``folder``, which it makes.
+
+    It is a record lock of the system (``fcntl``) on a file in the folder: it ends with its process,
+    however that ends, is not inherited by workers, and holds for other machines where the file
+    system has locks for them. Where it has none, nothing is locked.
+
+    Raises ValueError, naming the process, if another one is there.
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        self.folder = Path(folder)
+        self.path = self.folder.resolve() / NAME
+        self._file: IO[str] | None = None
+
+    def __enter__(self) -> FolderLock:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        while True:
+            file = open(self.path, "a+", encoding="utf-8")
+            try:
+                if self.path in _held:
+                    raise BlockingIOError
+                fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except (BlockingIOError, PermissionError):
+                problem = self._taken(file)
+                if self.path not in _held:  # closing it would end our own lock
+                    file.close()
+                raise ValueError(problem) from None
+            except OSError:  # a file system without locks
+                file.close()
+                return self
+            if _same(file, self.path):
+                break
+            file.close()  # the one before us deleted it in this moment
+        self._file = file
+        _held.add(self.path)
+        file.truncate(0)
+        json.dump({"pid": os.getpid(), "host": socket.gethostname(), "command": _command()}, file)
+        file.flush()
+        delete_leftovers(self.folder)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._file is not None:
+            self.path.unlink(missing_ok=True)
+            _held.discard(self.path)
+            self._file.close()
+            self._file = None
+
+    def _taken(self, file: IO[str]) -> str:
+        file.seek(0)
+        try:
+            note = json.loads(file.read(4096))
+            who = f"process {int(note['pid'])} on {note['host']!s:.60} ({note['command']!s:.200})"
+        except (ValueError, TypeError, KeyError):
+            who = "another process"
+        return (
+            f"{self.folder} is in use: {who} is writing there. Wait for it or stop it, or name "
+            "another folder (folder=... of a training, out=... of an evaluation)."
+        )
+
+
+def delete_leftovers(folder: Path) -> list[Path]:
+    """Delete what processes that were killed in mid-write left below ``folder``; return it."""
+    left = [path for path in folder.rglob(".*.tmp") if _LEFT.fullmatch(path.name)]
+    for path in left:
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
+    return left
+
+
+def _same(file: IO[str], path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), os.stat(path))
+    except FileNotFoundError:
+        return False
+
+
+def _command() -> str:
+    return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])

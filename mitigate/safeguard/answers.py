@@ -1,0 +1,55 @@
+"""Answers of an endpoint, kept in a SQLite file, which may come from anybody."""
+
+from __future__ import annotations
+
+import sqlite3
+from pathlib import Path
+
+LONGEST = 1 << 16  # characters of an answer (ours)
+
+
+class AnswerCache:
+    """Keeps texts by name. Raises ValueError for a file that is no such cache; one that is damaged
+    further on, or written by another process for long, costs a question more, and no error."""
+
+    def __init__(self, path: Path) -> None:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            self._file = sqlite3.connect(path)
+            self._file.execute("PRAGMA trusted_schema = OFF")
+            self._file.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer)")
+            held = self._file.execute("SELECT type, name FROM sqlite_master").fetchall()
+        except sqlite3.Error as error:
+            raise ValueError(
+                f"{path} is no cache of endpoint answers ({error}): name another file, or delete "
+                "it."
+            ) from error
+        others = [name for kind, name in held if (kind, name) not in _OURS]
+        if others:  # a view or trigger would run with our queries
+            raise ValueError(
+                f"{path} is no cache of endpoint answers (it holds {others[0]!r:.60}): name "
+                "another file, or delete it."
+            )
+
+    def get(self, name: str) -> str | None:
+        """Return the text that is kept under ``name``, None if there is none that can be used."""
+        try:
+            found = self._file.execute(
+                "SELECT answer FROM answers WHERE name = ? AND typeof(answer) = 'text' "
+                "AND length(answer) <= ?",
+                (name, LONGEST),
+            ).fetchone()
+        except (sqlite3.Error, UnicodeDecodeError):
+            return None
+        return None if found is None else found[0]
+
+    def put(self, name: str, answer: str) -> None:
+        """Keep ``answer``, unless the file cannot be written now."""
+        try:
+            with self._file:
+                self._file.execute("INSERT OR REPLACE INTO answers VALUES (?, ?)", (name, answer))
+        except sqlite3.Error:
+            pass
+
+
+_OURS = (("table", "answers"), ("index", "sqlite_autoindex_answers_1"))

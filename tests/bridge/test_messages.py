@@ -1,0 +1,247 @@
+"""What another program may send: each message is answered, refused by name, or the end."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mitigate.bridge.connection import EVENTS, Connection
+from mitigate.bridge.hook import mitigate_hook
+from mitigate.bridge.hook.mitigate_hook import HEADER, LARGEST, MAGIC, PROTOCOL, receive, send
+from mitigate.bridge.server import Listener
+
+from .conftest import condition
+
+TOKEN = "0123456789abcdef"
+HELLO = {"kind": "hello", "protocol": PROTOCOL, "token": TOKEN, "pid": 1}
+CAMERA = {"name": "rgb", "type": "rgb", "shape": [8, 8, 3], "dtype": "uint8", "hfov": 90}
+SPEC = {"kind": "spec", "cameras": [CAMERA]}
+EPISODE = {"kind": "episode", "scene": "a.glb", "id": "1", "text": "go left"}
+
+
+class Peer:
+    """A connection that is served by a thread of this process."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.channel, served = socket.socketpair()
+        self.channel.settimeout(5.0)
+        made = Connection(served, condition("spatter"), folder, TOKEN, folder)
+        self.failure = None
+        self.thread = threading.Thread(target=self._serve, args=(made, served), daemon=True)
+        self.thread.start()
+
+    def _serve(self, made, served):
+        try:
+            made.serve()
+        except Exception as error:
+            self.failure = error
+        finally:
+            served.close()
+
+    def ask(self, message):
+        """The answer; None where the other side has closed."""
+        try:
+            if isinstance(message, bytes):
+                self.channel.sendall(message)
+                self.channel.shutdown(socket.SHUT_WR)
+            else:
+                send(self.channel, message)
+            return receive(self.channel)
+        except OSError:
+            return None
+
+    def close(self):
+        self.channel.close()
+        self.thread.join(5.0)
+        assert not self.thread.is_alive(), "the server hangs"
+        assert self.failure is None, repr(self.failure)
+
+
+@pytest.fixture
+def peer(tmp_path):
+    made = Peer(tmp_path)
+    yield made
+    made.close()
+
+
+def cameras(*told):
+    return {"kind": "spec", "cameras": list(told)}
+
+
+def camera(**changes):
+    return cameras(CAMERA | changes)
+
+
+MESSAGES = {
+    "no kind": {},
+    "an unknown kind": {"kind": "__init__"},
+    "a kind of a list": {"kind": ["spec"]},
+    "an endless kind": {"kind": "x" * 10_000},
+    "serve": {"kind": "serve"},
+    "no cameras": {"kind": "spec"},
+    "cameras of null": {"kind": "spec", "cameras": None},
+    "cameras of text": {"kind": "spec", "cameras": "rgb"},
+    "a camera of null": cameras(None),
+    "a camera of nothing": cameras({}),
+    "a camera twice": cameras(CAMERA, CAMERA),
+    "too many cameras": cameras(*(CAMERA | {"name": str(n)} for n in range(300))),
+    "too many pixels": cameras(
+        *(CAMERA | {"name": str(n), "shape": [65535, 65535, 3]} for n in range(9))
+    ),
+    "no shape": camera(shape=None),
+    "a shape of a number": camera(shape=8),
+    "a shape of texts": camera(shape=["8", "8", "3"]),
+    "a negative shape": camera(shape=[-8, 8, 3]),
+    "four channels": camera(shape=[8, 8, 4]),
+    "an endless shape": camera(shape=[10**30, 8, 3]),
+    "objects": camera(dtype="object"),
+    "a type of a list": camera(dtype=["uint8"]),
+    "no kind of camera": camera(type="../../etc"),
+    "a position of text": camera(position="here"),
+    "a field of view of text": camera(hfov="wide"),
+    "an orientation of text": camera(orientation=["a", "b", "c"]),
+    "an episode without a scene": {"kind": "episode", "id": "1"},
+    "an episode without an id": {"kind": "episode", "scene": "a.glb"},
+    "a frame without cameras": {"kind": "frame", "call": 0},
+    "an end without an episode": {"kind": "end"},
+    "a data set of null": {"kind": "adapted"},
+}
+
+
+@pytest.mark.parametrize("message", MESSAGES.values(), ids=MESSAGES)
+def test_a_message_that_is_none_is_refused_by_name(peer, message):
+    assert peer.ask(HELLO) == {}
+    said = peer.ask(message)["error"]
+    assert said and "\n" not in said and len(said) < 1500
+    peer.close()
+    events = [json.loads(line) for line in (peer.folder / EVENTS).read_text().splitlines()]
+    assert events[-1]["event"] == "refused" and events[-1]["problem"] == said
+
+
+FRAMES = {
+    "no number": {"kind": "frame"},
+    "a number of text": {"kind": "frame", "call": "first"},
+    "an endless number": {"kind": "frame", "call": 1e999},
+    "a heading of text": {"kind": "frame", "call": 0, "heading": "north"},
+    "metrics of a list": {"kind": "end", "metrics": [1]},
+    "an end before a frame": {"kind": "end", "metrics": {"success": 1}},
+}
+
+
+@pytest.mark.parametrize("message", FRAMES.values(), ids=FRAMES)
+def test_a_frame_or_end_that_is_none_is_refused_by_name(peer, message):
+    for good in (HELLO, SPEC, EPISODE):
+        assert "error" not in peer.ask(good)
+    assert peer.ask(message)["error"]
+
+
+def packed(body: bytes, magic: bytes = MAGIC, size: int | None = None) -> bytes:
+    return HEADER.pack(magic, len(body) if size is None else size) + body
+
+
+RAW = {
+    "nothing": b"",
+    "half a head": MAGIC[:2],
+    "HTTP": b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",
+    "another magic": packed(b"{}", b"evil"),
+    "too large": packed(b"", size=LARGEST + 1),
+    "far too large": struct.pack("!4sI", MAGIC, 0xFFFFFFFF),
+    "less than said": packed(b"{}", size=100),
+    "a list": packed(b"[]"),
+    "null": packed(b"null"),
+    "half JSON": packed(b'{"kind": '),
+    "bytes": packed(bytes(range(256))),
+    "deep": packed(b'{"a":' * 100_000),
+    "deep lists": packed(b"[" * 1_000_000),
+    "many digits": packed(b'{"kind": ' + b"9" * 100_000 + b"}"),
+    "no token": packed(json.dumps(HELLO | {"token": None}).encode()),
+    "a token of a list": packed(json.dumps(HELLO | {"token": [TOKEN]}).encode()),
+    "another token": packed(json.dumps(HELLO | {"token": TOKEN[:-1]}).encode()),
+    "a token in other letters": packed(json.dumps(HELLO | {"token": "ä" * 16}).encode()),
+}
+
+
+@pytest.mark.parametrize("raw", RAW.values(), ids=RAW)
+def test_who_does_not_speak_the_protocol_or_know_the_token_gets_no_answer(peer, raw):
+    assert peer.ask(raw) is None
+    assert not (peer.folder / EVENTS).exists()
+
+
+def test_another_version_is_told_so(peer):
+    assert "another version" in peer.ask(HELLO | {"protocol": PROTOCOL + 1})["error"]
+
+
+@pytest.mark.parametrize("name", ["too large", "deep", "half JSON", "less than said"])
+def test_rubbish_after_the_greeting_is_an_end(peer, name):
+    assert peer.ask(HELLO) == {} and peer.ask(RAW[name]) is None
+
+
+VALUES = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(max_size=9),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=9), inner),
+    max_leaves=6,
+)
+
+
+@settings(
+    max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
+@given(
+    st.sampled_from([SPEC, EPISODE, {"kind": "frame"}, {"kind": "end"}, {"kind": "dataset"}]),
+    st.sampled_from(["cameras", "scene", "id", "text", "tokens", "call", "metrics", "keys"]),
+    VALUES,
+)
+def test_any_value_in_any_place_is_answered_or_refused(tmp_path, message, key, value):
+    made = Peer(tmp_path)
+    assert made.ask(HELLO) == {}
+    answer = made.ask(message | {key: value})
+    assert answer is not None and "\n" not in answer.get("error", "")
+    made.close()
+
+
+CONNECT = (
+    "import os, socket, sys\nos.setgid(65534); os.setuid(65534)\n"
+    "try:\n    socket.socket(socket.AF_UNIX).connect(sys.argv[1])\n"
+    "except PermissionError:\n    sys.exit(7)"
+)
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root may become another user")
+def test_another_user_cannot_connect_nor_see_the_frames(tmp_path):
+    with Listener(condition("spatter"), tmp_path) as listener:
+        command = [sys.executable, "-S", "-c", CONNECT, listener.address]
+        assert subprocess.run(command, cwd="/", check=False).returncode == 7
+        assert os.stat(listener.memory).st_mode & 0o077 == 0
+
+
+def test_many_who_say_nothing_do_not_keep_others_out(tmp_path):
+    with Listener(condition("spatter"), tmp_path) as listener:
+        silent = []
+        for _ in range(40):
+            silent.append(socket.socket(socket.AF_UNIX))
+            silent[-1].connect(listener.address)
+        with socket.socket(socket.AF_UNIX) as channel:
+            channel.settimeout(10.0)
+            channel.connect(listener.address)
+            began = time.monotonic()
+            send(channel, HELLO | {"token": listener.token})
+            assert receive(channel) == {} and time.monotonic() - began < 9
+        for each in silent:
+            each.close()
+
+
+def test_a_message_of_our_own_that_is_too_large_is_not_sent(peer):
+    with pytest.raises(ValueError, match="is more than"):
+        send(peer.channel, {"kind": "episode", "text": "x" * LARGEST})
+    assert mitigate_hook.LARGEST == LARGEST

@@ -1,0 +1,90 @@
+"""Files of anybody: gzip that is damaged or a bomb, JSON that no reader can hold."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import resource
+import zlib
+
+import pytest
+
+from mitigate.core import files, json_files
+
+TEXT = "".join(f'{{"line": {n}}}\n' for n in range(20_000))
+
+
+@pytest.fixture
+def packed(tmp_path):
+    path = tmp_path / "text.gz"
+    path.write_bytes(gzip.compress(TEXT.encode()))
+    return path
+
+
+def read(path) -> str:
+    with files.open_text(path) as file:
+        return file.read()
+
+
+def test_gzip_is_read_whole_by_lines_and_in_pieces(packed):
+    assert read(packed) == TEXT
+    with files.open_text(packed) as file:
+        assert "".join(file) == TEXT
+    with files.open_text(packed) as file:
+        assert "".join(iter(lambda: file.read(1000), "")) == TEXT
+
+
+def test_gzip_that_is_cut_or_damaged_is_one_named_error(packed):
+    raw = packed.read_bytes()
+    damaged = [raw[: len(raw) // 2], raw[:-4], raw[:12], raw[:2]]
+    damaged += [raw[:n] + bytes([raw[n] ^ 0x5A]) + raw[n + 1 :] for n in range(20, len(raw), 997)]
+    for data in damaged:
+        packed.write_bytes(data)
+        with pytest.raises(gzip.BadGzipFile):
+            assert read(packed) == TEXT  # a flipped bit may leave the text, not the checksum
+
+
+def bomb(path, size):
+    """A gzip file of ``size`` spaces, made without holding them."""
+    packer, block = zlib.compressobj(1, wbits=31), b" " * (1 << 22)
+    with open(path, "wb") as file:
+        for _ in range(size // len(block)):
+            file.write(packer.compress(block))
+        file.write(packer.flush())
+    return path
+
+
+def test_a_gzip_bomb_is_refused_before_it_is_unpacked(tmp_path):
+    path = bomb(tmp_path / "bomb.gz", 1 << 28)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for take in (read, lambda p: list(files.open_text(p)), lambda p: files.open_text(p).readline()):
+        with pytest.raises(gzip.BadGzipFile, match="unpacks to more than"):
+            take(path)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 400_000  # KiB
+    with pytest.raises(ValueError, match="unpacks to more than"):
+        list(json_files.json_members(path, "episodes"))
+
+
+JSON = {
+    "deep lists": b"[" * 100_000,
+    "deep mappings": b'{"a":' * 100_000,
+    "digits": b"9" * 100_000,
+    "not a number": b"NaN",
+    "infinity": b'{"a": -Infinity}',
+    "too great": b"1e999",
+    "bytes": b"\xff\xfe\x00",
+    "nothing": b"",
+    "half": b'{"a": [1, 2',
+    "large": b" " * (json_files.LARGEST_JSON + 1),
+}
+
+
+@pytest.mark.parametrize("raw", JSON.values(), ids=JSON)
+def test_json_of_anybody_is_plain_data_or_a_value_error(tmp_path, raw):
+    path = tmp_path / "card.json"
+    path.write_bytes(raw)
+    with pytest.raises(ValueError, match="is cut short or damaged .* Fetch it again") as error:
+        json_files.read_json(path, "Fetch it again.")
+    assert "\n" not in str(error.value) and len(str(error.value)) < 600
+    path.write_text(json.dumps({"a": [1, 0.5, None, True, "x"]}))
+    assert json_files.read_json(path, "") == {"a": [1, 0.5, None, True, "x"]}

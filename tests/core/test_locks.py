@@ -1,0 +1,97 @@
+"""One process at a time in a folder; what a killed one left is cleaned away and blocks nobody."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mitigate.core.conf import load_config
+from mitigate.core.locks import NAME, FolderLock, delete_leftovers
+from mitigate.evaluation import evaluate
+from mitigate.training import train
+
+HOLD = (
+    "import sys; from mitigate.core.locks import FolderLock; lock = FolderLock(sys.argv[1])\n"
+    "lock.__enter__(); print('in', flush=True); sys.stdin.read()"
+)
+
+
+@pytest.fixture
+def other(tmp_path):
+    """Another process that holds ``tmp_path / "run"``."""
+    command = [sys.executable, "-c", HOLD, str(tmp_path / "run")]
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    given = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "env": environment}
+    with subprocess.Popen(command, **given) as process:
+        assert process.stdout.readline() == b"in\n"
+        yield process
+        process.kill()
+
+
+def test_a_second_process_is_refused_and_told_of_the_first(tmp_path, other):
+    with pytest.raises(ValueError, match=rf"is in use: process {other.pid} on .* Wait for it"):
+        FolderLock(tmp_path / "run").__enter__()
+    with FolderLock(tmp_path / "another"):
+        pass
+
+
+def test_the_lock_of_a_killed_process_does_not_block(tmp_path, other):
+    other.send_signal(signal.SIGKILL)
+    other.wait()
+    assert (tmp_path / "run" / NAME).is_file()  # stale
+    with FolderLock(tmp_path / "run"):
+        pass
+    assert not (tmp_path / "run" / NAME).exists()
+
+
+@pytest.mark.parametrize("note", ["", "{", "[]", '{"pid": "x"}', "[" * 9999, "\x00"])
+def test_a_damaged_note_of_a_lock_blocks_nobody(tmp_path, note):
+    (tmp_path / NAME).write_text(note)
+    with FolderLock(tmp_path):
+        with pytest.raises(ValueError, match=f"process {os.getpid()} on"):
+            FolderLock(tmp_path).__enter__()
+        with pytest.raises(ValueError, match="is in use"):  # and the lock still holds
+            FolderLock(tmp_path).__enter__()
+
+
+def test_a_worker_does_not_inherit_the_lock(tmp_path):
+    with FolderLock(tmp_path):
+        child = os.fork()
+        if child == 0:
+            signal.pause()
+    try:
+        with FolderLock(tmp_path):
+            pass
+    finally:
+        os.kill(child, signal.SIGKILL)
+        os.waitpid(child, 0)
+
+
+def test_what_was_not_yet_whole_is_deleted_and_nothing_else(tmp_path):
+    left = [".step-00000100.pt.4711.tmp", "agent/.model.safetensors.1.tmp", "a/b/.rows.jsonl.9.tmp"]
+    kept = ["step-00000050.pt", ".step-00000100.pt", "notes.tmp", ".mine.tmp", "agent/.x.tmp.5"]
+    for name in (*left, *kept):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("x")
+    (tmp_path / ".adapter-abc.0.tmp").mkdir()
+    (tmp_path / ".away.7.tmp").symlink_to(tmp_path / "agent")
+    with FolderLock(tmp_path):
+        pass
+    assert all((tmp_path / name).is_file() for name in kept)
+    assert not any((tmp_path / name).exists() for name in left)
+    assert not delete_leftovers(tmp_path) and (tmp_path / "agent").is_dir()
+
+
+@pytest.mark.parametrize("name", ["train", "evaluate"])
+def test_a_second_training_or_evaluation_in_a_folder_is_refused(tmp_path, name):
+    place = {"train": "folder", "evaluate": "out"}[name]
+    small = ["debug=smoke"] if name == "train" else ["episodes=1", "conditions=[clean]"]
+    cfg = load_config(name, [*small, f"{place}={tmp_path}"])
+    with FolderLock(tmp_path), pytest.raises(ValueError, match="is in use: process"):
+        {"train": train.run, "evaluate": evaluate.run}[name](cfg)
+    assert not list(tmp_path.iterdir())
