@@ -242,8 +242,7 @@ def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece]
         if inside and _route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
-            ahead = one.piece in ahead_of_plain(text)
-            problem = "" if ahead else gate.removal_refused(one.text, one.own)
+            problem = gate.removal_refused(one.text, one.own)
             if problem:
                 reasons.append(f"kept {one.text[:40]!r}: {problem}")
             else:

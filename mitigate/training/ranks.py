@@ -9,11 +9,16 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable
+from datetime import timedelta
 from typing import Any
 
 import torch
 import torch.distributed as dist
 from torch import Tensor, nn
+from torch.distributed.distributed_c10d import _set_pg_timeout
+
+FIND = timedelta(seconds=40)  # until all ranks have found each other (ours)
+WAIT = timedelta(hours=2)  # for a rank that makes a cache, or evaluates (ours)
 
 
 class Ranks:
@@ -33,7 +38,10 @@ class Ranks:
         if self.count > 1:
             if torch.cuda.is_available():
                 torch.cuda.set_device(int(os.environ.get("LOCAL_RANK", 0)))
-            dist.init_process_group("nccl" if torch.cuda.is_available() else "gloo")
+            # ranks that do not find each other end, and torchrun starts them again
+            backend = "nccl" if torch.cuda.is_available() else "gloo"
+            dist.init_process_group(backend, timeout=FIND)
+            _set_pg_timeout(WAIT)
             if not self.first:
                 sys.stdout = open(os.devnull, "w", encoding="utf-8")
         return self
