@@ -4,7 +4,8 @@ Attackers put their sentences in front, whole. In front of what is surely a plai
 more of them than :mod:`evidence`, which looks everywhere and must be more careful: beside a
 sentence that is surely foreign goes what is likely, before it in any case, behind it if it names
 nothing that routes name. The weights are of a logistic regression on the train split of the prefix
-bank and our own routes; the thresholds were chosen on its validation families.
+bank and our own routes, by the fit of an earlier version; ``fit.py`` does not make them anew. The
+thresholds were chosen on the bank's validation families.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ VERBS = MOTION | STOPS | TURN_VERBS
 _IDIOMS = re.compile(r"\b(?:all\s+(?:the\s+)?way|each other|each side|all around)\b")
 
 
-def counts(sentence: str, marks: frozenset[str] = STYLE) -> dict[str, float]:
+def counts(sentence: str) -> dict[str, float]:
     """Return what a sentence is made of, as counts or shares about 0 to 3."""
     found = words(_IDIOMS.sub(" ", MASK.sub(" ", sentence).lower()))  # hidden words tell nothing
     size = max(1, len(found))
@@ -80,7 +81,7 @@ def counts(sentence: str, marks: frozenset[str] = STYLE) -> dict[str, float]:
         for name, group in CLOSED.items()
     }
     return values | {
-        "style": min(3.0, float(sum(word in marks for word in found))),
+        "style": min(3.0, float(sum(word in STYLE for word in found))),
         "unknown": 1 - known / size,
         "late_verb": min(lead, 6) / 3,
         "no_verb": float(lead == size),
