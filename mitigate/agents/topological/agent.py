@@ -154,9 +154,9 @@ class TopologicalAgent(nn.Module):
 
     stored_parts = ("planner",)  # what trains on stored features
 
-    def store(self, world: Callable[[], Any], folder: str) -> Store:
+    def store(self, world: Callable[[], Any], folder: str, **variants: Any) -> Store:
         """Features of all scenes of a world, to train on without rendering (``stored.py``)."""
-        return Store(self, world, folder)
+        return Store(self, world, folder, **variants)
 
     def parts(self) -> dict[str, nn.Module]:
         """Its four modules by name."""
