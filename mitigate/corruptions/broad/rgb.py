@@ -211,13 +211,13 @@ RECORD = Record(
     apply=broad_rgb,
     version="1",
     label="Broad RGB",
-    severity="largest strength of each primitive",
+    severity="strongest primitive",
     fails="anything: it is drawn to train on",
     formula="one to three of " + ", ".join(p.__name__.replace("_", " ") for p in PRIMITIVES),
     sources=(
         "PRIME (Modas et al., ECCV 2022), AugMix (Hendrycks et al., ICLR 2020); strengths are ours"
     ),
     source="PRIME, AugMix",
-    episode="which primitives, how strong, their maps",
+    episode="primitives, maps",
     frame="noise, lost views",
 )
