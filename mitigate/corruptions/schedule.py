@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate
 from typing import Any
 
@@ -95,6 +95,13 @@ class Schedule:
     def weights(self) -> dict[str, float]:
         """Probability of each corruption given that the frame is not clean; adds up to 1."""
         return dict(zip(self.names, self._weights, strict=True))
+
+    def only(self, modality_: str) -> Schedule:
+        """The same, drawing corruptions of one modality alone. ValueError if it has none."""
+        names = tuple(name for name in self.names if modality(name) == modality_)
+        if not names:
+            raise ValueError(f"The schedule draws no {modality_} corruption: names={self.names}.")
+        return replace(self, names=names)
 
     def refresh(self, success: dict[str, float]) -> None:
         """Recompute the weights from success rates by name ("clean" and others are ignored).

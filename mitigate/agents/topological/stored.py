@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
+from torch import Tensor
 
 from mitigate.agents.topological.decisions import Piece
 from mitigate.agents.topological.rollout import roll_out
@@ -149,12 +150,13 @@ class Store:
         points = self.world.points()
         xy = points[lattice(points)]
         clean = [_frames(self.world, p) for p in xy]
+        known = _features(self.agent, clean)
         for variant in range(self.variants + 1):
             if self.path(scene, variant).exists():
                 continue
             frames = clean if not variant else self._corrupted(clean, f"{scene}-{variant}")
-            made = _features(self.agent, frames)
-            tensors = {name: torch.from_numpy(array) for name, array in made.items()}
+            made = {**known, **_features(self.agent, frames, clean)}
+            tensors = {name: torch.from_numpy(array) for name, array in _stored(made).items()}
             yield variant, ScenePoses(**tensors, xy=torch.from_numpy(xy), batch_size=[len(xy)])
 
     def _corrupted(self, frames: list[tuple], name: str) -> list[tuple]:
@@ -201,21 +203,47 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
     return frames[RGB], frames[DEPTH], bits
 
 
-def _features(agent: TopologicalAgent, frames: list[tuple]) -> dict[str, np.ndarray]:
-    views, chosen = [], np.zeros((len(frames), COUNT, 2), np.float32)
+def _features(
+    agent: TopologicalAgent, frames: list[tuple], known: list[tuple] | None = None
+) -> dict[str, np.ndarray]:
+    """Features of frames by what made them; those of frames that ``known`` holds are left out."""
+    seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch maps no uint64
+    found = {"seen": seen}
+    rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
+    same_rgb, same_depth = (
+        known is not None and all(a[i] is b[i] for a, b in zip(frames, known, strict=True))
+        for i in (0, 1)
+    )
+    if not same_rgb:
+        found["rgb"] = np.concatenate([_rgb(agent, part) for part in _parts(agent, rgb)])
+    if not same_depth:
+        views, logits = zip(*(_depth(agent, part) for part in _parts(agent, depth)), strict=True)
+        found["depth"] = np.concatenate(views)
+        found["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
+        for row, grid in enumerate(np.concatenate(logits)):
+            chosen = select(grid)
+            found["waypoints"][row, : len(chosen)] = chosen
+    return found
+
+
+def _parts(agent: TopologicalAgent, frames: list[np.ndarray]) -> Iterator[Tensor]:
     for first in range(0, len(frames), _BATCH):
-        part = frames[first : first + _BATCH]
-        rgb, depth = (
-            torch.from_numpy(np.stack([frame[i] for frame in part])).to(agent.device)
-            for i in (0, 1)
-        )
-        features, _, logits = agent.encode(rgb, depth)
-        views.append(features.half().cpu().numpy())
-        for row, grid in enumerate(logits.float().cpu().numpy(), first):
-            found = select(grid)
-            chosen[row, : len(found)] = found
-    return {
-        "views": np.concatenate(views),
-        "waypoints": chosen,
-        "seen": np.stack([frame[2] for frame in frames]).view(np.int64),  # torch maps no uint64
-    }
+        yield torch.from_numpy(np.stack(frames[first : first + _BATCH])).to(agent.device)
+
+
+def _rgb(agent: TopologicalAgent, frames: Tensor) -> np.ndarray:
+    """float16 [n, 12, rgb + concepts]."""
+    features, concepts = agent.encode_rgb(frames)
+    return torch.cat([features, concepts.sigmoid()], -1).half().cpu().numpy()
+
+
+def _depth(agent: TopologicalAgent, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
+    """float16 [n, 12, depth] and waypoint logits."""
+    features, logits = agent.encode_depth(frames)
+    return features.half().cpu().numpy(), logits.float().cpu().numpy()
+
+
+def _stored(made: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The entries of ``ScenePoses`` but xy."""
+    views = np.concatenate([made["rgb"], made["depth"]], -1)
+    return {"views": views, "waypoints": made["waypoints"], "seen": made["seen"]}

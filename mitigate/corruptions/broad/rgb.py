@@ -59,6 +59,14 @@ def colour_mix(views, strength, rng, now):
     return np.clip(views @ matrix.T.astype(np.float32), 0.0, 1.0)
 
 
+def contrast(views, strength, rng, now):
+    """Less contrast, towards a colour, or more."""
+    share, colour = strength * rng.uniform(0.3, 0.95), _colour(rng)
+    if rng.random() < 0.25:
+        return np.clip(views + 2.0 * share * (views - np.float32(0.5)), 0.0, 1.0)
+    return views + (colour - views) * np.float32(share)
+
+
 def filtered(views, strength, rng, now):
     """A random kernel (PRIME), or a blur along any direction, blended with the identity."""
     side = min(views.shape[1:3])
@@ -189,6 +197,7 @@ PRIMITIVES = (
     exposure,
     tone,
     colour_mix,
+    contrast,
     filtered,
     coarse,
     warped,
