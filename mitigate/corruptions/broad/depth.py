@@ -12,7 +12,6 @@ import numpy as np
 from mitigate.corruptions.broad.composition import composed, displaced, field, log_uniform, shapes
 from mitigate.corruptions.depth import NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.record import Record
 
 NAME = "broad_depth"
 
@@ -133,7 +132,7 @@ def _each(views, change) -> np.ndarray:
 PRIMITIVES = (curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidden, lost)
 
 
-def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+def compose(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """One to three primitives of random strength up to ``severity``, kept through the episode."""
     valid = (views > 0) & np.isfinite(views)
     shares = np.where(valid, views / np.float32(sensor.z_max), np.float32(np.nan))
@@ -141,18 +140,3 @@ def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
     metres = np.clip(made, NEAREST, np.float32(sensor.z_max))
     metres = np.where(np.isnan(made), np.float32(sensor.missing), metres).astype(np.float32)
     return np.where(valid, metres, views)
-
-
-RECORD = Record(
-    name=NAME,
-    modality="depth",
-    apply=broad_depth,
-    version="1",
-    severity="strongest primitive",
-    fails="anything: it is drawn to train on",
-    formula="one to three of " + ", ".join(p.__name__.replace("_", " ") for p in PRIMITIVES),
-    sources="after PRIME (Modas et al., ECCV 2022); primitives and strengths are ours",
-    source="ours, after PRIME",
-    episode="primitives, maps",
-    frame="noise, pixels, views",
-)

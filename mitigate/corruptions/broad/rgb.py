@@ -16,7 +16,6 @@ from mitigate.corruptions.broad.composition import (
     shapes,
 )
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.record import Record
 
 NAME = "broad_rgb"
 STOPS = (-4.0, 2.5)  # of light at strength 1
@@ -208,25 +207,7 @@ PRIMITIVES = (
 )
 
 
-def broad_rgb(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+def compose(views: np.ndarray, severity: float, key: Key) -> np.ndarray:
     """One to three primitives of random strength up to ``severity``, kept through the episode."""
     made = composed(views.astype(np.float32) / 255.0, severity, key, NAME, PRIMITIVES)
     return np.rint(np.clip(made, 0.0, 1.0) * 255.0).astype(np.uint8)
-
-
-RECORD = Record(
-    name=NAME,
-    modality="rgb",
-    apply=broad_rgb,
-    version="1",
-    label="Broad RGB",
-    severity="strongest primitive",
-    fails="anything: it is drawn to train on",
-    formula="one to three of " + ", ".join(p.__name__.replace("_", " ") for p in PRIMITIVES),
-    sources=(
-        "PRIME (Modas et al., ECCV 2022), AugMix (Hendrycks et al., ICLR 2020); strengths are ours"
-    ),
-    source="PRIME, AugMix",
-    episode="primitives, maps",
-    frame="noise, lost views",
-)
