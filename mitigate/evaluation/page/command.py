@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -119,9 +119,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     return told("report", lambda: run(paths or [_shipped()], options=options, **given))
 
 
-def told(name: str, work: Any) -> int:
-    """Do ``work``, which returns the file it wrote; return the exit status, and say what is wrong
-    with an input in one paragraph."""
+def told(name: str, work: Callable[[], Path | None]) -> int:
+    """Do ``work``, which returns the file it wrote, if any; return the exit status, and say what is
+    wrong with an input in one paragraph."""
     from hydra.errors import HydraException
     from omegaconf.errors import OmegaConfBaseException
 
@@ -135,7 +135,8 @@ def told(name: str, work: Any) -> int:
     except (HydraException, OmegaConfBaseException) as error:
         print(f"{name}: {conf.explain(error, 'evaluate')}", file=sys.stderr)
         return 2
-    print(f"wrote {written} ({Path(written).stat().st_size / 1e6:.1f} MB)")
+    if written is not None:
+        print(f"wrote {written} ({Path(written).stat().st_size / 1e6:.1f} MB)")
     return 0
 
 

@@ -96,8 +96,8 @@ def page(
         "walksAbout": WALKS,
         "notes": list(notes),
         "first": first,
-        "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. This "
-        "file is whole: it asks no network for anything.",
+        "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
+        "This file is whole: it asks no network for anything.",
     }
     style = (ASSETS / "style.css").read_text(encoding="utf-8")
     scripts = [(ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS]
@@ -122,7 +122,7 @@ def write(text: str, out: Path | str) -> Path:
 
 
 def _filled(frame: str, values: dict[str, str]) -> str:
-    """Return ``frame`` with each ``%NAME%`` replaced once; what is put in is not looked at again."""
+    """Return ``frame`` with each ``%NAME%`` replaced once; what is put in is not read again."""
     pieces = frame.split("%")
     return "".join(values.get(piece, piece) for piece in pieces)
 

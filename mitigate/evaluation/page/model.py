@@ -27,9 +27,9 @@ def section_data(section: Section) -> dict[str, Any]:
     """Return all that the page shows of one section but its episodes.
 
     ``columns`` are the agents, ``measures`` the columns of the table, ``values[c][m]`` their
-    numbers, where one may need marks with these as the fourth entry. ``corruptions`` are those of the heatmap, clean first,
-    ``cells[c][k]`` is [SR, SPL, episodes held]. ``pairs["i-j"]`` are the differences of column i to
-    column j, i > j, j below :data:`BASELINES`.
+    numbers, where one may need marks with these as the fourth entry. ``corruptions`` are those of
+    the heatmap, clean first, ``cells[c][k]`` is [SR, SPL, episodes held]. ``pairs["i-j"]`` are the
+    differences of column i to column j, i > j, j below :data:`BASELINES`.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
@@ -113,6 +113,8 @@ def _whole(section: Section) -> int:
 
 def _values(section: Section, column: str) -> list[Numbers]:
     found = [numbers(section.clean.get((column, metric))) for metric in METRICS]
+    fewer = "*" * section.partial(column, CLEAN)
+    found = [value and [*value, fewer] for value in found]
     if section.corrupted:
         found.append(_marked(section, section.corrupted.get(column), *section.blocks))
     for part, metric in _prs_places(section):
@@ -174,7 +176,7 @@ def _notes(section: Section, values: list[list[Numbers]]) -> list[str]:
         )
     if section.gaps:
         notes.append(
-            "* Over the episodes at hand: some cells lack episodes (their count is shown)."
+            "* Over fewer episodes than there are: point at a cell to read how many it holds."
         )
     for column in section.columns:
         for seed, (have, want) in section.grid.unfinished[column, section.severity].items():

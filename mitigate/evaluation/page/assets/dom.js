@@ -18,6 +18,9 @@ function fill(node, props, children) {
 const el = (tag, props, ...children) => fill(document.createElement(tag), props, children);
 const svg = (tag, props, ...children) => fill(document.createElementNS(SVG, tag), props, children);
 
+// A name that may break after a sign that joins words.
+const breakable = (text) => String(text).split(/(?<=[_+.\/-])/).flatMap((part, n) => (n ? [el("wbr"), part] : [part]));
+
 const MINUS = "\u2212";
 
 // A number of a measure: SR in percent with one digit, all else with two.

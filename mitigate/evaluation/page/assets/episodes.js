@@ -40,14 +40,15 @@ const FILTERS = {
   won: ["won", (row) => row.success >= 0.5],
   lost: ["lost", (row) => row.success < 0.5],
   harmed: ["lost, won when clean", (row) => row.clean && row.success < 0.5 && row.clean.success >= 0.5],
-  gained: ["won, lost by the baseline", (row) => row.base && row.success >= 0.5 && row.base.success < 0.5],
-  given: ["lost, won by the baseline", (row) => row.base && row.success < 0.5 && row.base.success >= 0.5],
+  gained: ["won, lost by BASE", (row) => row.base && row.success >= 0.5 && row.base.success < 0.5],
+  given: ["lost, won by BASE", (row) => row.base && row.success < 0.5 && row.base.success >= 0.5],
 };
 
 function cellBody(one, rows, view, others, show, dialog) {
   const kinds = Object.entries(FILTERS).filter(([name]) =>
     name === "harmed" ? others.clean : name === "gained" || name === "given" ? others.base : true);
-  const counted = kinds.map(([name, [text, test]]) => [name, `${text} (${rows.filter(test).length})`]);
+  const named = (text) => text.replace("BASE", others.base ? one.columns[others.other].label : "");
+  const counted = kinds.map(([name, [text, test]]) => [name, `${named(text)} (${rows.filter(test).length})`]);
   const wanted = view.search.trim().toLowerCase();
   const kept = rows.filter(FILTERS[view.filter][1]).filter((row) => row.id.toLowerCase().includes(wanted));
   const order = sorted(kept, (row) => row[view.sort.key]?.success ?? (["clean", "base"].includes(view.sort.key) ? null : row[view.sort.key]), view.sort.down);

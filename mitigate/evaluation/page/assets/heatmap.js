@@ -3,7 +3,7 @@
 function heatmap(one) {
   const readout = el("p", { class: "readout", "aria-live": "polite" }, hint(one));
   const names = one.columns.map((column, c) => el("th", { scope: "col", class: c === state.baseline ? "base" : null },
-    el("span", {}, column.label)));
+    el("span", {}, breakable(column.label))));
   const lines = [];
   let block = "";
   one.corruptions.forEach((corruption, k) => {
@@ -14,8 +14,7 @@ function heatmap(one) {
     lines.push(el("tr", {}, el("th", { scope: "row" }, corruption.title),
       one.columns.map((_, c) => heatCell(one, c, k, readout))));
   });
-  const table = el("table", { class: "heat", onkeydown: arrows },
-    el("caption", {}, `${state.metric === "SR" ? "Success rate (%)" : "SPL"} by agent and corruption`),
+  const table = el("table", { class: "heat", onkeydown: arrows, "aria-label": `${state.metric} by agent and corruption` },
     el("thead", {}, el("tr", {}, el("td", {}), names)), el("tbody", {}, lines));
   const first = table.querySelector("button");
   if (first) first.tabIndex = 0;

@@ -23,6 +23,7 @@ function chooser() {
   const some = Object.keys(one.pairs).length > 0;
   const last = Math.max(-1, ...Object.keys(one.pairs).map((pair) => Number(pair.split("-")[1])));
   const bases = one.columns.map((column, c) => [c, column.label]).filter(([c]) => c <= last);
+  if (list.length < 2 && !some) return null;
   return el("div", { class: "controls choose" },
     list.length > 1 && labelled("Results", choice(list, state.section, (value) => {
       state.section = Number(value); state.baseline = -1; state.sort = { key: -1, down: false }; writeAddress(null); draw();
@@ -47,7 +48,7 @@ function draw() {
   redraw(main, () => (one ? [
     el("section", { class: "card", "aria-label": "Results" }, chooser(), facts(one), summaryTable(one), notes(one)),
     one.corruptions.length > 1 && el("section", { class: "card", "aria-label": "Heatmap" }, el("h2", {}, "By corruption"), heatmap(one)),
-    curvesPart(), walksPart(),
+    one.grid === null && detailsPart(one), curvesPart(), walksPart(),
   ].flat() : [el("p", {}, "There is nothing to show yet.")]));
 }
 

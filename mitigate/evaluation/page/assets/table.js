@@ -15,26 +15,26 @@ function summaryTable(one) {
   const reach = one.measures.map((_, m) => bounds(one, m));
   const heads = one.measures.map((measure, m) =>
     sortHeading(measure.title + (measure.unit ? ` (${measure.unit})` : ""), m, sort, onsort, { class: "number" }));
-  return el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table of agents" },
+  const about = base >= 0
+    ? `Below each value: its paired difference to ${one.columns[base].label}, bold where the interval leaves out zero. Columns sort by it.`
+    : Object.keys(one.pairs).length ? "Values with 95 % intervals. Choose a baseline to see paired differences." : "Values with 95 % intervals.";
+  return [el("p", { class: "facts" }, about), el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table of agents" },
     el("table", { class: "agents" },
-      el("caption", {}, base >= 0
-        ? `Below each value: its paired difference to ${one.columns[base].label}, bold where the interval leaves out zero. Columns sort by it.`
-        : "Values with 95 % intervals. Choose a baseline to see paired differences."),
       el("thead", {}, el("tr", {},
         sortHeading("Agent", -2, sort, onsort, { class: "name", "data-first": "up" }), heads)),
       el("tbody", {}, order.map((c) => el("tr", { class: c === base ? "base" : null },
         agentHeading(one, c),
         one.measures.map((measure, m) =>
           el("td", { class: "number" }, valueCell(measured(c, m), measure.unit, reach[m]),
-            base >= 0 && c !== base && changeLine(compared(c, m), measure.unit))))))));
+            base >= 0 && c !== base && changeLine(compared(c, m), measure.unit))))))))];
 }
 
 function agentHeading(one, c) {
   const column = one.columns[c];
   const facts = column.details.map(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
   const about = el("details", {}, el("summary", {}, "details"), el("dl", {}, facts));
-  return el("th", { scope: "row", class: "name" }, el("span", { class: "agent" }, column.label),
-    c === state.baseline && el("span", { class: "tag" }, "baseline"), facts.length ? about : null);
+  return el("th", { scope: "row", class: "name" }, el("span", { class: "agent" }, breakable(column.label)),
+    c === state.baseline && el("span", { class: "tag" }, "baseline"), facts.length && one.grid !== null ? about : null);
 }
 
 function valueCell(found, unit, [low, high]) {
@@ -52,6 +52,17 @@ function changeLine(found, unit) {
   const kind = !clear ? "same" : found[0] > 0 ? "up" : "down";
   return el("span", { class: `change ${kind}` }, shown(found[0], unit, true), " ",
     el("span", { class: "interval" }, interval(found, unit, true)));
+}
+
+// All details of all agents side by side, where the page has no rows behind it.
+function detailsPart(one) {
+  const names = [...new Set(one.columns.flatMap((column) => column.details.map(([name]) => name)))];
+  const cell = (column, name) => column.details.find(([own]) => own === name)?.[1] ?? "\u2013";
+  return el("section", { class: "card", "aria-label": "Entries" }, el("h2", {}, "Entries"),
+    el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table of entries" }, el("table", { class: "entries" },
+      el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Agent"), names.map((name) => el("th", { scope: "col" }, name)))),
+      el("tbody", {}, one.columns.map((column) => el("tr", {}, el("th", { scope: "row" }, breakable(column.label)),
+        names.map((name) => el("td", {}, cell(column, name)))))))));
 }
 
 // The lowest and highest bound of a measure, for the whiskers of its column.
