@@ -181,10 +181,11 @@ def sensors_of(sensors: Mapping[str, Sensor]) -> tuple[str, ...]:
     """Return a line for each sensor of a world."""
     lines = []
     for name, sensor in sensors.items():
-        views = f"{len(sensor.yaws)} views, " if len(sensor.yaws) > 1 else ""
+        several = len(sensor.yaws) > 1
+        views = f"{len(sensor.yaws)} views of " if several else ""
         seen = f", {sensor.hfov:g} degrees wide" if sensor.hfov else ""
         unit = f", {sensor.unit}" if sensor.unit else ""
-        shape = " x ".join(map(str, sensor.shape))
+        shape = " x ".join(map(str, sensor.shape[several:]))
         lines.append(f"{name}: {views}{shape} {sensor.dtype}{unit}{seen}")
     return tuple(lines)
 

@@ -103,7 +103,7 @@ def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
         agents = ", ".join(str(one["agent"]) for one in entry.agents)
         own = f"{entry.name} ({entry.agents[0]['agent'][:6]})"
         details = [
-            ["agent", agents],
+            ["hash", agents],
             ["seeds", ", ".join(str(one["seed"]) for one in entry.agents)],
             ["sensors", "; ".join(entry.sensors) or "not stated"],
             ["trained on", entry.training_data or "not stated"],

@@ -88,7 +88,7 @@ def _column(section: Section, column: str) -> dict[str, Any]:
         "label": column,
         "place": list(section.grid.columns).index(column),
         "seeds": list(seeds),
-        "details": [["agent", ", ".join(agents)], ["seeds", ", ".join(map(str, seeds))]],
+        "details": [["hash", ", ".join(agents)], ["seeds", ", ".join(map(str, seeds))]],
     }
 
 
