@@ -2,19 +2,30 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from mitigate.corruptions import CLEAN
+from torch import nn
+
+from mitigate.core import conf, seeding
+from mitigate.core.build import maker
+from mitigate.core.locks import FolderLock
+from mitigate.core.progress import duration
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation import evaluate as evaluation
+from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, entry_of, sensors_of
+from mitigate.scale.launcher import count
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
 OUT = Path("runs/benchmark")
-TIMED = 2  # walks by which the time is told, after one that loads what is needed (ours)
+TIMED = 2  # clean walks, by the last of which the time is told (ours)
 
 
 def benchmark(
@@ -55,38 +66,16 @@ def benchmark(
     Raises ValueError for unknown names and numbers out of range, FileNotFoundError for missing
     weights.
     """
-    from mitigate.core import conf, seeding
-    from mitigate.core.build import maker
-    from mitigate.core.locks import FolderLock
-    from mitigate.evaluation import evaluate as evaluation
-    from mitigate.evaluation.evaluator import evaluate
-
-    seeding.check(seed)
-    cfg = conf.load_config("evaluate", [*options, *_suite(suite)])
-    if isinstance(agent, (str, Path)):
-        name = name or evaluation.name_of(str(agent))
-        agent = evaluation.load(cfg.agent, str(agent), seed)
-    name = name or type(agent).__name__
-    names = list(cfg.suite.conditions) if isinstance(suite, str) else list(suite)
-    met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
-    split = split or cfg.split
-    made = world or maker(cfg.env.world)
+    cfg, met = _conditions(suite, severity, seed, options)
+    agent, name = _agent(agent, name, cfg, seed)
+    split, made = split or cfg.split, world or maker(cfg.env.world)
     chosen = evaluation.episodes(cfg.env, split, episodes) if listed is None else list(listed)
-    folder = Path(out or OUT / f"{name}-{split}-s{severity:g}")
     _tell(agent, made(), chosen, len(met), workers)
+    folder = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}")
     file = folder / evaluation.ROWS
+    label = {"name": name, "split": split, "seed": seed}
     with FolderLock(folder):
-        rows = evaluate(
-            agent,
-            made,
-            chosen,
-            met,
-            name=name,
-            out=file,
-            split=split,
-            seed=seed,
-            workers=workers,
-        )
+        rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
         rows,
         name,
@@ -98,26 +87,43 @@ def benchmark(
     )
 
 
-def _suite(suite: str | Sequence[str]) -> list[str]:
-    return [f"suite={suite}"] if isinstance(suite, str) else []
+def _conditions(
+    suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
+) -> tuple[Any, list[Corruption]]:
+    """Return the config of an evaluation, and the conditions of the suite, clean first."""
+    seeding.check(seed)
+    named = [f"suite={suite}"] if isinstance(suite, str) else []
+    cfg = conf.load_config("evaluate", [*options, *named])
+    names = list(cfg.suite.conditions) if isinstance(suite, str) else list(suite)
+    met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
+    if all(corruption.name == "clean" for corruption in met):
+        raise ValueError(f"suite={suite!r} corrupts nothing: name a suite or corruptions.")
+    return cfg, met
+
+
+def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]:
+    """Return the agent itself, loaded if ``agent`` is a path, and its heading."""
+    if isinstance(agent, (str, Path)):
+        loaded = evaluation.load(cfg.agent, str(agent), seed)
+        return loaded, name or evaluation.name_of(str(agent))
+    return agent, name or type(agent).__name__
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
 def _tell(
     agent: Any, world: World, episodes: Sequence[Episode], conditions: int, workers: int | None
 ) -> None:
     """Print how much there is to walk, and about how long it takes, from a few clean walks."""
-    from mitigate.core.progress import duration
-    from mitigate.evaluation.episode import run_episode
-    from mitigate.evaluation.evaluator import LOCAL, WORTH
-    from mitigate.scale.launcher import count
-
     total = len(episodes) * conditions
-    getattr(agent, "eval", lambda: None)()
-    run_episode(agent, world, episodes[0], CLEAN, 0)
-    started = time.monotonic()
-    for episode in episodes[:TIMED]:
+    if isinstance(agent, nn.Module):
+        agent.eval()
+    for episode in episodes[:TIMED]:  # the first one loads what is needed
+        started = time.monotonic()
         run_episode(agent, world, episode, CLEAN, 0)
-    each = (time.monotonic() - started) / len(episodes[:TIMED])
+        each = time.monotonic() - started
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
     print(
         f"benchmark: {len(episodes)} episodes x {conditions} conditions = {total} walks of about "

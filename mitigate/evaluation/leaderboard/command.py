@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import argparse
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from itertools import zip_longest
 from pathlib import Path
@@ -26,6 +26,7 @@ from mitigate.evaluation.leaderboard.entry import (
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.command import told
+from mitigate.evaluation.rows import Row
 
 FOLDER = "docs/leaderboard"
 OUT = Path("runs/leaderboard.html")
@@ -45,27 +46,32 @@ def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
     return [load(file) for file in files]
 
 
-def differences(entry: LeaderboardEntry) -> list[str]:
-    """Return how ``entry`` differs from what its rows say, a line each; none if it does not.
-
-    Raises FileNotFoundError if the rows are not at hand, ValueError if they are damaged or hold
-    nothing of the entry.
-    """
+def rows_of(entry: LeaderboardEntry) -> list[Row]:
+    """Return the rows in the file that ``entry`` names, of other agents, too. Raises
+    FileNotFoundError if they are not at hand, ValueError if they are damaged."""
     file = entry.rows["file"]
     if not file or not find(file).exists():
         raise FileNotFoundError(
             f"The rows of {entry.name} are not at hand ({file or 'no file is named'}): fetch them "
             f"to {file or 'a file'}, from the folder in which you run this."
         )
+    return result_rows.gather([find(file)])
+
+
+def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
+    """Return how ``entry`` differs from what ``rows`` say, a line each; none if it does not.
+
+    Raises ValueError if they hold nothing of the entry.
+    """
     again = entry_of(
-        result_rows.gather([find(file)]),
+        rows,
         entry.name,
         severity=entry.severity,
         split=entry.split,
         sensors=entry.sensors,
         training_data=entry.training_data,
         link=entry.link,
-        file=file,
+        file=entry.rows["file"],
         agents=[one["agent"] for one in entry.agents],
     )
     said, found = asdict(entry), asdict(again)
@@ -96,7 +102,7 @@ def check(paths: Sequence[Path | str] = ()) -> list[str]:
     wrong = []
     for entry in entries_of(paths):
         try:
-            found = differences(entry)
+            found = differences(entry, rows_of(entry))
         except (FileNotFoundError, ValueError) as error:
             found = [str(error)]
         print(f"{entry.name}: {'as its rows say' if not found else 'NOT as its rows say'}")
