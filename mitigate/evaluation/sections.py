@@ -137,7 +137,10 @@ def _section(grid: Grid, kind: str, severity: float) -> Section:
     blocks, reference = grid.blocks_at(severity), columns[0]
     parted = halves(blocks)
     measured = _measured(blocks)
-    clean, moved, retained, gained, corrupted, raised = {}, {}, {}, {}, {}, {}
+    clean, retained, corrupted = {}, {}, {}
+    gained: dict[tuple[str, str, str], Retained] = {}
+    moved: dict[str, Estimate] = {}
+    raised: dict[str, Retained] = {}
     every = tuple(name for names in blocks.values() for name in names)
     for column in columns:
         if parts := grid.retention([column], every, severity, METRICS["SR"]):
@@ -190,14 +193,14 @@ def _compared(
     change = first - second
     known = change[~np.isnan(change)]
     every = tuple(name for names in blocks.values() for name in names)
-    raised = both.retention(pair, every, severity, METRICS["SR"])
-    gained = {}
+    parts = both.retention(pair, every, severity, METRICS["SR"])
+    gained: dict[tuple[str, str], Retained] = {}
     for metric, key in METRICS.items():
         for block, names in _measured(blocks).items():
-            if parts := both.retention(pair, names, severity, key):
-                gained[block, metric] = _retained(parts)
+            if held := both.retention(pair, names, severity, key):
+                gained[block, metric] = _retained(held)
     return Compared(
-        bootstrap.mean(known) if len(known) else None, raised and _mean_sr(raised), gained
+        bootstrap.mean(known) if len(known) else None, _mean_sr(parts) if parts else None, gained
     )
 
 

@@ -70,10 +70,12 @@ def benchmark(
     agent, name = _agent(agent, name, cfg, seed)
     split, made = split or cfg.split, world or maker(cfg.env.world)
     chosen = evaluation.episodes(cfg.env, split, episodes) if listed is None else list(listed)
+    if not chosen:
+        raise ValueError("listed holds no episode: give some, or leave it out.")
     _tell(agent, made(), chosen, len(met), workers)
     folder = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}")
     file = folder / evaluation.ROWS
-    label = {"name": name, "split": split, "seed": seed}
+    label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     with FolderLock(folder):
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(

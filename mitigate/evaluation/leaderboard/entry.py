@@ -19,6 +19,7 @@ from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.names import unknown
 from mitigate.core.observation import Sensor
+from mitigate.corruptions.registry import UNSEEN
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.grid import METRICS, SUITE
 from mitigate.evaluation.leaderboard.checks import problem
@@ -115,7 +116,8 @@ def entry_of(
 
     ``split`` and ``agents`` (hashes) may be left out where the rows are of one column. ``file``:
     where they are, as the entry says. Raises ValueError if there are none, if they are of several
-    splits, suites or rules, or of agents that are no training seeds of one another.
+    splits, suites or rules, or of agents that are no training seeds of one another, and if a
+    condition lacks episodes that others have.
     """
     own = chosen(rows, name, severity, split, agents)
     found = [part for part in sections(own) if part.blocks] or sections(own)
@@ -125,6 +127,11 @@ def entry_of(
             f"The rows of {name} are of several splits, suites, rules or agents: "
             f"{'; '.join(', '.join(grid) for grid in sorted(grids))}. Name a split, or a file of "
             "one."
+        )
+    for gap in [gap for part in found for gap in part.gaps][:1]:
+        raise ValueError(
+            f"The rows of {name} hold {gap.have} of {gap.want} episodes under {gap.corruption}: an "
+            "entry needs all of them under each. The evaluation's own command goes on from there."
         )
     scores, rates = _figures(found)
     ((at_split, suite, rule),) = grids
@@ -201,13 +208,20 @@ def _figures(found: Sequence[Section]) -> tuple[dict[str, Numbers], dict[str, di
         if part.kind == SUITE and column in part.corrupted:
             scores["Mean SR"] = numbers(part.corrupted[column].estimate)
         for (_, block, metric), held in part.retained.items():
-            scores[f"PRS-{metric} ({block})"] = numbers(held.estimate)
+            title = f"PRS-{metric} ({_heading(block, held.corruptions)})"
+            scores[title] = numbers(held.estimate)
         names = [CLEAN, *(name for block in part.blocks.values() for name in block)]
         for metric, key in METRICS.items():
             table = [part.grid.cell(column, name, part.severity, key) for name in names]
             for name, estimate in zip(names, bootstrap.means(table, shares=True), strict=True):
                 rates[metric].setdefault(name, numbers(estimate))
     return scores, rates
+
+
+def _heading(block: str, names: Iterable[str]) -> str:
+    """Return what a PRS over ``names`` is of: a block, or the one half of it that was measured."""
+    own = {UNSEEN[name].half for name in names if name in UNSEEN}
+    return f"{block}, {own.pop()}" if len(own) == 1 and "," not in block else block
 
 
 def _agents(rows: Iterable[Row]) -> list[dict[str, Any]]:

@@ -6,9 +6,9 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from typing import Any
 
-from mitigate.corruptions.registry import AND
+from mitigate.corruptions.registry import AND, UNSEEN
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES
-from mitigate.evaluation.grid import BLOCKS
+from mitigate.evaluation.grid import BLOCKS, PROMPT_ONLY, SUITE, kind
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page import document
@@ -26,7 +26,8 @@ NOTES = (
 
 
 def render(entries: Sequence[LeaderboardEntry], title: str = "Leaderboard") -> str:
-    """Return the HTML page of ``entries``, the largest table first; by falling mean SR in each.
+    """Return the HTML page of ``entries``, the largest table first; by falling mean SR in each,
+    those whose mean is over other corruptions than the suite's last.
 
     Raises ValueError if there are none.
     """
@@ -45,6 +46,7 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
     shown = [title for title in titles() if any(title in entry.scores for entry in held)]
     names = _conditions(held)
     most = max(entry.episodes for entry in held)
+    values = [[_value(entry, title, most) for title in shown] for entry in held]
     return {
         "title": f"{first.split}, severity {first.severity:g}, suite {first.suite}",
         "facts": [
@@ -57,7 +59,7 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
         "severity": first.severity,
         "columns": _columns(held),
         "measures": [{"title": title, "unit": _unit(title)} for title in shown],
-        "values": [[_value(entry, title, most) for title in shown] for entry in held],
+        "values": values,
         "corruptions": [
             {"name": name, "title": "Clean" if name == CLEAN else label(name), "block": block}
             for name, block in names.items()
@@ -67,19 +69,41 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
         ],
         "wanted": most,
         "pairs": {},
-        "notes": ["* Over fewer episodes than others."] * any(e.episodes < most for e in held),
+        "notes": _notes(values),
         "grid": None,
     }
 
 
+def _notes(values: list[list[Any]]) -> list[str]:
+    marks = "".join(value[3] for line in values for value in line if value)
+    fewer = "* Over fewer episodes than others."
+    other = "† k/K: over k corruptions, not the K that the score stands for; do not compare."
+    return [note for sign, note in (("*", fewer), ("†", other)) if sign in marks]
+
+
 def _rank(entry: LeaderboardEntry) -> float:
-    found = entry.scores.get("Mean SR") or entry.scores["Clean SR"]
-    return found[0] if found else -1.0
+    found = entry.scores.get("Mean SR")
+    return found[0] - 2 * bool(_over(entry, "Mean SR")) if found else -2.0
 
 
 def _value(entry: LeaderboardEntry, title: str, most: int) -> list[Any] | None:
     found = entry.scores.get(title)
-    return found and [*found, "*" * (entry.episodes < most)]
+    return found and [*found, "*" * (entry.episodes < most) + _over(entry, title)]
+
+
+def _over(entry: LeaderboardEntry, title: str) -> str:
+    """Return the mark of a score that is over other corruptions than it stands for, else ""."""
+    met = set(entry.SR) - {CLEAN}
+    if title == "Mean SR":
+        own = {name for name in met if kind(name) == SUITE}
+        wanted = {*BLOCKS["RGB"], *BLOCKS["Depth"]}
+    else:
+        block, _, half = title.partition("(")[2].rstrip(")").partition(", ")
+        wanted = {n for n in BLOCKS.get(block, ()) if not half or UNSEEN[n].half == half}
+        own, wanted = met & wanted, wanted - {PROMPT_ONLY}
+    if not wanted or own >= wanted and (title != "Mean SR" or own == wanted):
+        return ""
+    return f" † {len(own)}/{len(wanted)}"
 
 
 def _unit(title: str) -> str:
@@ -98,7 +122,7 @@ def _conditions(entries: Sequence[LeaderboardEntry]) -> dict[str, str]:
 
 def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
     twice = Counter(entry.name for entry in entries)
-    found = []
+    found: list[dict[str, Any]] = []
     for entry in entries:
         agents = ", ".join(str(one["agent"]) for one in entry.agents)
         own = f"{entry.name} ({entry.agents[0]['agent'][:6]})"

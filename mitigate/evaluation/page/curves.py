@@ -22,7 +22,8 @@ def curves(parts: Sequence[Section]) -> list[dict[str, Any]]:
     of a line, the clean one at 0 too, are over the same seeds and episodes, those that each of them
     holds: ``count`` episodes.
     """
-    found, done = [], []
+    found: list[dict[str, Any]] = []
+    done: list[Grid] = []
     for section in parts:
         if any(section.grid is grid for grid in done):
             continue

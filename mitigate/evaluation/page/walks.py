@@ -52,9 +52,9 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     found: dict[tuple[bool, bool], dict[tuple[str, float], list[str]]] = {k: {} for k in KINDS}
     for place, won in first.items():
         if place in last:
-            episode, *met = place
+            episode, corruption, severity = place
             kind = (bool(won), bool(last[place]))
-            found[kind].setdefault((met[0], met[1]), []).append(episode)
+            found[kind].setdefault((corruption, severity), []).append(episode)
     turns = [_turns(held, offset) for offset, held in enumerate(found.values())]
     return list(islice(_once(turns), most))
 

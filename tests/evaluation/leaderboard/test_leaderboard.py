@@ -10,8 +10,11 @@ import pytest
 
 import mitigate
 from mitigate.core.observation import FORWARD, STOP
+from mitigate.corruptions.registry import HALVES, unseen_names
 from mitigate.evaluation import rows as result_rows
+from mitigate.evaluation.grid import BLOCKS
 from mitigate.evaluation.leaderboard import command
+from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import entry_of, load, rows_sha
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.sections import sections
@@ -49,10 +52,39 @@ def test_what_makes_no_entry_is_refused(rows):
         entry_of(rows, "bass", severity=0.6)
     with pytest.raises(ValueError, match=r"no corruption at severity 0\.5"):
         entry_of(rows, "base", severity=0.5)
+    with pytest.raises(ValueError, match="9 of 10 episodes under spatter"):
+        entry_of(
+            [r for r in rows if r["corruption"] != "spatter" or r["episode_id"] != "3"],
+            "base",
+            severity=0.6,
+        )
     other = [r | {"split": "val_seen"} for r in rows]
     with pytest.raises(ValueError, match="Name a split"):
         entry_of(rows + other, "base", severity=0.6)
     assert entry_of(rows + other, "base", severity=0.6, split="val_seen").split == "val_seen"
+
+
+def test_a_score_over_other_corruptions_is_marked_and_ranks_last(rows):
+    suite = [*BLOCKS["RGB"], *BLOCKS["Depth"]]
+    whole = entry_of(column(5, dict.fromkeys(suite, 4), name="whole"), "whole", severity=0.6)
+    part = entry_of(rows, "base", severity=0.6)
+    (shown,) = held(render([replace(part, scores=part.scores | {"Mean SR": [0.9] * 3}), whole]))[0][
+        "sections"
+    ]
+    shown_titles = [measure["title"] for measure in shown["measures"]]
+    assert [c["label"] for c in shown["columns"]] == ["whole", "base"]
+    marks = {t: [line[n][3] for line in shown["values"]] for n, t in enumerate(shown_titles)}
+    assert marks["Mean SR"] == ["", " † 2/12"] and marks["PRS-SR (RGB)"] == ["", " † 1/8"]
+    assert marks["Clean SR"] == ["", ""] and any("†" in note for note in shown["notes"])
+
+
+def test_half_of_the_unseen_corruptions_is_called_so():
+    halves = {half: unseen_names("rgb", half=half) for half in HALVES}
+    test = entry_of(column(5, dict.fromkeys(halves["test"], 3)), "base", severity=0.6)
+    assert "PRS-SR (unseen RGB, test)" in test.scores and "PRS-SR (unseen RGB)" not in test.scores
+    every = dict.fromkeys([*halves["test"], *halves["validation"]], 3)
+    both = entry_of(column(5, every), "base", severity=0.6).scores
+    assert {"PRS-SR (unseen RGB)", "PRS-SR (unseen RGB, test)"} <= both.keys() <= set(titles())
 
 
 def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, monkeypatch, capsys):
