@@ -30,7 +30,7 @@ from mitigate.evaluation.rows import Row
 
 FOLDER = "docs/leaderboard"
 OUT = Path("runs/leaderboard.html")
-CLOSE = 1.5e-4  # of figures that entries round to four digits (ours)
+CLOSE = 1e-5  # of figures that entries round to six digits (ours)
 
 
 def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:

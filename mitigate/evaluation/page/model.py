@@ -18,7 +18,7 @@ from mitigate.evaluation.grid import METRICS
 from mitigate.evaluation.sections import Retained, Section, compare, label
 
 BASELINES = 12  # columns that the others can be compared with, the first ones (ours)
-DIGITS = 4
+DIGITS = 6  # more than are shown: what is rounded twice may end elsewhere
 CLEAN = "clean"
 Numbers = list[Any] | None
 

@@ -59,6 +59,7 @@ function heatLook(one, c, k, own, unit) {
   if (state.show === "change") {
     const found = c === state.baseline ? [0, 0, 0] : difference(one, c, state.baseline, (pair) => pair[state.metric][k]);
     if (!found) return { text: "\u2013", range: "", paint: {} };
+    if (c === state.baseline) return { text: "0", range: "", paint: paint(APART, 0.5) };
     return { text: shown(found[0], unit, true), range: interval(found, unit, true), clear: onOneSide(found),
       paint: paint(APART, 0.5 + found[0] / 0.8) };
   }
