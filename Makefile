@@ -10,7 +10,7 @@ RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --ma
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install test-faults train evaluate sweep table table1 table2 export test lint bench doctor clean
+.PHONY: help install test-faults train evaluate sweep table report table1 table2 export test lint bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /\1|/' \
@@ -42,6 +42,9 @@ sweep: $(VENV)/.stamp-sweep ## many runs, one table: ARGS="recipe=da_per_frame,d
 
 table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --out report"
 	$(BIN)/python -m mitigate.table $(ARGS)
+
+report: $(VENV)/.stamp ## the same as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
+	$(BIN)/python -m mitigate.report $(ARGS)
 
 table1: $(VENV)/.stamp ## all kinds of agent under everything, the paper's Table I: ARGS="split=val_unseen_ogn"
 	$(BIN)/python -m mitigate.table1 $(ARGS)

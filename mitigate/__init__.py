@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from mitigate.evaluation.leaderboard.benchmark import benchmark
+    from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
     from mitigate.shipping.hardened import load_hardened
 
 # OpenMP reads this when torch is imported. By default a thread that waits for another one spins: as
@@ -17,13 +20,16 @@ os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 # ``python -m mitigate.train`` and its like are files of ``commands/``.
 __path__.append(os.path.join(os.path.dirname(__file__), "commands"))
 
-__all__ = ["load_hardened"]
+__all__ = ["LeaderboardEntry", "benchmark", "load_hardened"]
+_HOMES = {
+    "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
+    "benchmark": "mitigate.evaluation.leaderboard.benchmark",
+    "load_hardened": "mitigate.shipping.hardened",
+}
 
 
 def __getattr__(name: str) -> Any:
-    """Import ``load_hardened``, and torch with it, when it is first asked for."""
-    if name in __all__:
-        from mitigate.shipping import hardened
-
-        return getattr(hardened, name)
+    """Import what is in ``__all__``, and torch with it, when it is first asked for."""
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -40,6 +40,16 @@ COMMANDS = {
         "join result rows of any number of runs into one table with pictures",
         "runs/a runs/b --out report",
     ),
+    "report": Command(
+        "mitigate.evaluation.page.command",
+        "write result rows as one HTML file: tables that sort, heatmaps, episodes, walks",
+        "runs/a runs/b --out report.html --walk base=checkpoints/base",
+    ),
+    "leaderboard": Command(
+        "mitigate.evaluation.leaderboard.command",
+        "show, check and add entries of the leaderboard",
+        "show --out leaderboard.html",
+    ),
     "table1": Command(
         "mitigate.training.table1",
         "evaluate all kinds of agent, plain and hardened, under everything: the paper's Table I",

@@ -27,6 +27,7 @@ TARGETS = {
     "table2",
     "sweep",
     "table",
+    "report",
     "export",
     "test",
     "lint",

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 RESAMPLES = 10_000
 LEVEL = 0.95
 Z = 1.959964  # of the normal distribution at LEVEL
+_BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
 CHUNK = 1 << 20  # draws handled at a time (ours): 8 MiB of indices
 
 
@@ -82,6 +83,29 @@ def share(values: ArrayLike, **options: int) -> Estimate:
     return Estimate(found.value, 1 - reach, 1.0) if (known == 1).all() else found
 
 
+def means(table: ArrayLike, *, shares: bool = False, **options: int) -> list[Estimate | None]:
+    """Return the mean of each row of ``table`` [K, N] with its interval, None for a row of NaN.
+
+    Each is over the episodes that the row holds, as :func:`mean`, or :func:`share` with ``shares``,
+    of these alone; rows that hold the same ones are resampled at once.
+    """
+    values = np.asarray(table, float)
+    groups: dict[bytes, list[int]] = {}
+    for place, known in enumerate(~np.isnan(values)):
+        groups.setdefault(known.tobytes(), []).append(place)
+    found: list[Estimate | None] = [None] * len(values)
+    for places in groups.values():
+        held = values[np.ix_(places, ~np.isnan(values[places[0]]))]
+        if not held.size:
+            continue
+        low, high = np.quantile(resampled_means(held, **options), _BOUNDS, axis=0)
+        for k, place in enumerate(places):
+            even = shares and held[k].min() == held[k].max() and held[k, 0] in (0, 1)
+            own = Estimate(float(held[k].mean()), float(low[k]), float(high[k]))
+            found[place] = share(held[k], **options) if even else own
+    return found
+
+
 def prs(clean: ArrayLike, corrupted: ArrayLike, **options: int) -> Estimate:
     """Return PRS with its interval; ``clean`` [N] and ``corrupted`` [K, N] share their episodes."""
     value, samples = _prs(clean, corrupted, options)
@@ -113,5 +137,5 @@ def _estimate(value: float, samples: np.ndarray) -> Estimate:
     known = samples[np.isfinite(samples)]
     if not len(known) or math.isnan(value):
         return Estimate(value, math.nan, math.nan)
-    low, high = np.quantile(known, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
+    low, high = np.quantile(known, _BOUNDS)
     return Estimate(value, float(low), float(high))

@@ -19,6 +19,7 @@ from typing import Any, ClassVar
 
 import torch
 
+from mitigate.agents.agent import Agent
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.identity import identity as identity_of
@@ -63,7 +64,8 @@ class EpisodeTask:
         processes, and inside a training in bf16."""
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
-        self.agent.eval()
+        if isinstance(self.agent, torch.nn.Module):
+            self.agent.eval()
         self.world = self.world or self.make_world()
         device = next((p.device for p in _parameters(self.agent)), torch.device("cpu"))
         try:
@@ -93,7 +95,7 @@ def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
 
 
 def evaluate(
-    agent: torch.nn.Module,
+    agent: Agent | torch.nn.Module,
     world: Callable[[], World],
     episodes: list[Episode],
     conditions: list[Corruption],

@@ -94,6 +94,22 @@ class Section:
         return fewer + f" † {held}/{wanted}" * (held < wanted) + " ‡" * found.near_floor
 
 
+@dataclass(frozen=True)
+class Compared:
+    """Paired differences of one column to another, over the seeds that both have: of clean SR
+    (``moved``), of the mean SR under corruption (``raised``), and of PRS by (block or half,
+    metric), each where it was measured."""
+
+    moved: Estimate | None
+    raised: Retained | None
+    gained: dict[tuple[str, str], Retained]
+
+
+def compare(section: Section, column: str, reference: str) -> Compared:
+    """Return how ``column`` differs from ``reference``, any two columns of ``section``."""
+    return _compared(section.grid, section.severity, (column, reference), section.blocks)
+
+
 def sections(rows: Iterable[Row]) -> list[Section]:
     """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 
@@ -120,19 +136,20 @@ def _section(grid: Grid, kind: str, severity: float) -> Section:
     )
     blocks, reference = grid.blocks_at(severity), columns[0]
     parted = halves(blocks)
-    measured = blocks | {half: names for own in parted.values() for half, names in own.items()}
-    clean, moved, retained, gained, corrupted, raised = {}, {}, {}, {}, {}, {}
+    measured = _measured(blocks)
+    clean, retained, corrupted = {}, {}, {}
+    gained: dict[tuple[str, str, str], Retained] = {}
+    moved: dict[str, Estimate] = {}
+    raised: dict[str, Retained] = {}
     every = tuple(name for names in blocks.values() for name in names)
     for column in columns:
-        pair = () if column == reference else (column, reference)
-        both = grid.paired(pair, severity) if pair else grid
-        clean_sr = [both.cell(label, "clean", severity, METRICS["SR"]) for label in pair]
-        if pair and not np.isnan(change := clean_sr[0] - clean_sr[1]).all():
-            moved[column] = bootstrap.mean(change[~np.isnan(change)])
         if parts := grid.retention([column], every, severity, METRICS["SR"]):
             corrupted[column] = _mean_sr(parts)
-        if pair and (parts := both.retention(pair, every, severity, METRICS["SR"])):
-            raised[column] = _mean_sr(parts)
+        if column != reference:
+            found = _compared(grid, severity, (column, reference), blocks)
+            gained |= {(column, *place): value for place, value in found.gained.items()}
+            moved |= {column: found.moved} if found.moved else {}
+            raised |= {column: found.raised} if found.raised else {}
         for metric, key in METRICS.items():
             values = grid.cell(column, "clean", severity, key)
             values = values[grid.measured(column, severity, key)]
@@ -142,8 +159,6 @@ def _section(grid: Grid, kind: str, severity: float) -> Section:
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):
                     retained[place] = _retained(parts)
-                if pair and (parts := both.retention(pair, names, severity, key)):
-                    gained[place] = _retained(parts)
     return Section(
         grid,
         kind,
@@ -160,6 +175,32 @@ def _section(grid: Grid, kind: str, severity: float) -> Section:
         raised,
         grid.gaps(severity),
         _by_seed(grid, severity, blocks),
+    )
+
+
+def _measured(blocks: dict[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
+    """Return the blocks and, where both were measured, their halves."""
+    own = halves(blocks).values()
+    return blocks | {half: names for parts in own for half, names in parts.items()}
+
+
+def _compared(
+    grid: Grid, severity: float, pair: tuple[str, str], blocks: dict[str, tuple[str, ...]]
+) -> Compared:
+    """Return the differences of the first of ``pair`` to the second."""
+    both = grid.paired(pair, severity)
+    first, second = (both.cell(label, "clean", severity, METRICS["SR"]) for label in pair)
+    change = first - second
+    known = change[~np.isnan(change)]
+    every = tuple(name for names in blocks.values() for name in names)
+    parts = both.retention(pair, every, severity, METRICS["SR"])
+    gained: dict[tuple[str, str], Retained] = {}
+    for metric, key in METRICS.items():
+        for block, names in _measured(blocks).items():
+            if held := both.retention(pair, names, severity, key):
+                gained[block, metric] = _retained(held)
+    return Compared(
+        bootstrap.mean(known) if len(known) else None, _mean_sr(parts) if parts else None, gained
     )
 
 

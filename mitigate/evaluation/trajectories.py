@@ -32,13 +32,17 @@ INCHES, DPI = (9.0, 10.5), 80
 
 @dataclass(frozen=True)
 class Walk:
-    """One agent's way through an episode: ``path`` float64 [n, 2], plan metres."""
+    """One agent's way through an episode: ``path`` float64 [n, 2], plan metres; ``agent`` is its
+    name alone, ``measures`` those of a row."""
 
     name: str
     path: np.ndarray
     won: bool
     metres_left: float
     colour: str
+    agent: str
+    corruption: Corruption
+    measures: Mapping[str, Any]
 
     @property
     def legend(self) -> str:
@@ -66,7 +70,7 @@ def draw_trajectories(
         out: the PNG to write; parent folders are made.
         seed: of the corruption's keys.
     """
-    walks = list(_walks(agents, world, episode, corruption, seed))
+    walks = list(walked(agents, world, episode, corruption, seed))
     start = dict(world.reset(episode))
     key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
     met = corrupt_observation(start, corruption, key, sensor)
@@ -152,24 +156,29 @@ def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
     return [(r["episode_id"], Corruption(r["corruption"], r["severity"])) for r in met[:1]]
 
 
-def _walks(
+def walked(
     agents: Mapping[str, Agent],
     world: World,
     episode: Episode,
     corruption: Corruption,
     seed: int,
 ) -> Iterator[Walk]:
-    plans: list[tuple[str, Agent, Corruption, str]] = []
-    for index, (name, agent) in enumerate(agents.items()):
+    """Walk ``episode`` and yield the walks: the first agent's clean one, then each one's corrupted.
+
+    Keys and measures are those of an evaluation with ``seed``.
+    """
+    plans: list[tuple[str, str, Corruption, str]] = []
+    for index, name in enumerate(agents):
         if index == 0:
-            plans.append((f"{name}, clean", agent, CLEAN, CLEAN_WALK))
+            plans.append((f"{name}, clean", name, CLEAN, CLEAN_WALK))
         colour = CORRUPTED_WALKS[index % len(CORRUPTED_WALKS)]
-        plans.append((f"{name}, {label(corruption.name)}", agent, corruption, colour))
-    for name, agent, met, colour in plans:
+        plans.append((f"{name}, {label(corruption.name)}", name, corruption, colour))
+    for title, name, met, colour in plans:
         traced = Traced(world)
-        measures: dict[str, Any] = run_episode(agent, traced, episode, met, seed)
+        measures: dict[str, Any] = run_episode(agents[name], traced, episode, met, seed)
         left = measures.get("distance_to_goal", np.nan)
-        yield Walk(name, np.array(traced.path), bool(measures["success"]), left, colour)
+        path, won = np.array(traced.path), bool(measures["success"])
+        yield Walk(title, path, won, left, colour, name, met, measures)
 
 
 class Traced:

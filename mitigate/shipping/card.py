@@ -18,6 +18,7 @@ from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Section, label, sections
 from mitigate.shipping import hardened
+from mitigate.shipping.front_matter import front_matter
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
 LICENCE = "Apache-2.0"
@@ -76,11 +77,11 @@ def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
 
 
 def readme(card: dict[str, Any]) -> str:
-    """Return the README of a folder as Markdown."""
+    """Return the README of a folder as Markdown, with Hugging Face's front matter."""
     parts = [f"# {card['name']}", _origin(card), *map(_table, card["metrics"]), _use(card)]
     if not card["metrics"]:
         parts.insert(2, "No evaluation rows were given when it was exported.")
-    return "\n\n".join(parts) + "\n"
+    return front_matter(card) + "\n" + "\n\n".join(parts) + "\n"
 
 
 def _entry(section: Section) -> dict[str, Any]:

@@ -1,0 +1,135 @@
+"""``mitigate.benchmark(agent)``: an agent under the suite, in one call; returns its entry."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from torch import nn
+
+from mitigate.core import conf, seeding
+from mitigate.core.build import maker
+from mitigate.core.locks import FolderLock
+from mitigate.core.progress import duration
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation import evaluate as evaluation
+from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
+from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, entry_of, sensors_of
+from mitigate.scale.launcher import count
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.world import World
+
+EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
+OUT = Path("runs/benchmark")
+TIMED = 2  # clean walks, by the last of which the time is told (ours)
+
+
+def benchmark(
+    agent: Any,
+    *,
+    name: str | None = None,
+    split: str | None = None,
+    episodes: int | None = EPISODES,
+    suite: str | Sequence[str] = "full",
+    severity: float = 0.6,
+    seed: int = 0,
+    workers: int | None = None,
+    options: Sequence[str] = (),
+    world: Callable[[], World] | None = None,
+    listed: Sequence[Episode] | None = None,
+    training_data: str = "",
+    link: str = "",
+    out: Path | str | None = None,
+) -> LeaderboardEntry:
+    """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
+
+    It says first about how long that takes. The rows are in ``out``; the same call goes on where
+    it was stopped.
+
+    Args:
+        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights,
+            such as "checkpoints/base".
+        name: heading of the entry; None: of the weights' folder, or the agent's class.
+        split: list of episodes of the world; None: its own first. episodes: how many, spread over
+            the list; None: all, as entries of the leaderboard have.
+        suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
+            the corruptions. workers: processes, None: one a core if there is work for them.
+        options: of ``mitigate evaluate``, such as "agent=recurrent" or "env.views=1".
+        world, listed: makes a world of your own, and its episodes, in place of those of
+            ``options``.
+        training_data, link: for the entry. out: folder of the rows; None: one in
+            ``runs/benchmark``.
+    Raises ValueError for unknown names and numbers out of range, FileNotFoundError for missing
+    weights.
+    """
+    cfg, met = _conditions(suite, severity, seed, options)
+    agent, name = _agent(agent, name, cfg, seed)
+    split, made = split or cfg.split, world or maker(cfg.env.world)
+    chosen = evaluation.episodes(cfg.env, split, episodes) if listed is None else list(listed)
+    if not chosen:
+        raise ValueError("listed holds no episode: give some, or leave it out.")
+    _tell(agent, made(), chosen, len(met), workers)
+    folder = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}")
+    file = folder / evaluation.ROWS
+    label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
+    with FolderLock(folder):
+        rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
+    return entry_of(
+        rows,
+        name,
+        severity=severity,
+        sensors=sensors_of(made().sensors),
+        training_data=training_data,
+        link=link,
+        file="" if file.is_absolute() else file.as_posix(),
+    )
+
+
+def _conditions(
+    suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
+) -> tuple[Any, list[Corruption]]:
+    """Return the config of an evaluation, and the conditions of the suite, clean first."""
+    seeding.check(seed)
+    named = [f"suite={suite}"] if isinstance(suite, str) else []
+    cfg = conf.load_config("evaluate", [*options, *named])
+    names = list(cfg.suite.conditions) if isinstance(suite, str) else list(suite)
+    met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
+    if all(corruption.name == "clean" for corruption in met):
+        raise ValueError(f"suite={suite!r} corrupts nothing: name a suite or corruptions.")
+    return cfg, met
+
+
+def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]:
+    """Return the agent itself, loaded if ``agent`` is a path, and its heading."""
+    if isinstance(agent, (str, Path)):
+        loaded = evaluation.load(cfg.agent, str(agent), seed)
+        return loaded, name or evaluation.name_of(str(agent))
+    return agent, name or type(agent).__name__
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
+
+
+def _tell(
+    agent: Any, world: World, episodes: Sequence[Episode], conditions: int, workers: int | None
+) -> None:
+    """Print how much there is to walk, and about how long it takes, from a few clean walks."""
+    total = len(episodes) * conditions
+    if isinstance(agent, nn.Module):
+        agent.eval()
+    for episode in episodes[:TIMED]:  # the first one loads what is needed
+        started = time.monotonic()
+        run_episode(agent, world, episode, CLEAN, 0)
+        each = time.monotonic() - started
+    processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
+    print(
+        f"benchmark: {len(episodes)} episodes x {conditions} conditions = {total} walks of about "
+        f"{each:.2g} s on {processes} process{'es' * (processes > 1)}: about "
+        f"{duration(each * total / processes)}",
+        flush=True,
+    )

@@ -1,0 +1,204 @@
+"""Show, check and add entries of the leaderboard (docs/leaderboard.md).
+
+mitigate leaderboard show --out leaderboard.html
+mitigate leaderboard check docs/leaderboard/stacked.json
+mitigate leaderboard add rows.jsonl.gz --name mine --training-data "R2R-CE train"
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from itertools import zip_longest
+from pathlib import Path
+from typing import Any
+
+from mitigate.core.files import find
+from mitigate.evaluation import rows as result_rows
+from mitigate.evaluation.leaderboard.entry import (
+    LeaderboardEntry,
+    entry_of,
+    load,
+    sensors_of,
+)
+from mitigate.evaluation.leaderboard.page import render
+from mitigate.evaluation.page import document
+from mitigate.evaluation.page.command import told
+from mitigate.evaluation.rows import Row
+
+FOLDER = "docs/leaderboard"
+OUT = Path("runs/leaderboard.html")
+CLOSE = 1e-5  # of figures that entries round to six digits (ours)
+
+
+def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
+    """Return the entries in files and folders; of none, those shipped in ``docs/leaderboard``.
+
+    Raises as ``entry.load``; FileNotFoundError if there is none.
+    """
+    files: list[Path] = []
+    for path in [Path(path) for path in paths] or [find(FOLDER)]:
+        files += sorted(path.glob("*.json")) if path.is_dir() else [path]
+    if not files:
+        raise FileNotFoundError("There is no entry (*.json) in the folders named.")
+    return [load(file) for file in files]
+
+
+def rows_of(entry: LeaderboardEntry) -> list[Row]:
+    """Return the rows in the file that ``entry`` names, of other agents, too. Raises
+    FileNotFoundError if they are not at hand, ValueError if they are damaged."""
+    file = entry.rows["file"]
+    if not file or not find(file).exists():
+        raise FileNotFoundError(
+            f"The rows of {entry.name} are not at hand ({file or 'no file is named'}): fetch them "
+            f"to {file or 'a file'}, from the folder in which you run this."
+        )
+    return result_rows.gather([find(file)])
+
+
+def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
+    """Return how ``entry`` differs from what ``rows`` say, a line each; none if it does not.
+
+    Raises ValueError if they hold nothing of the entry.
+    """
+    again = entry_of(
+        rows,
+        entry.name,
+        severity=entry.severity,
+        split=entry.split,
+        sensors=entry.sensors,
+        training_data=entry.training_data,
+        link=entry.link,
+        file=entry.rows["file"],
+        agents=[one["agent"] for one in entry.agents],
+    )
+    said, found = asdict(entry), asdict(again)
+    return [
+        f"{key} is {said[key]!r:.120}, but its rows say {found[key]!r:.120}"
+        for key in said
+        if key != "version" and not _same(said[key], found[key])
+    ]
+
+
+def _same(a: Any, b: Any) -> bool:
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(_same(a[key], b[key]) for key in a)
+    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
+        return all(_same(x, y) for x, y in zip_longest(a, b))
+    if isinstance(a, float) and isinstance(b, float):
+        return abs(a - b) < CLOSE
+    return bool(a == b)
+
+
+def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
+    """Write the page of the entries in ``paths``; return its path. Errors as :func:`entries_of`."""
+    return document.write(render(entries_of(paths)), out)
+
+
+def check(paths: Sequence[Path | str] = ()) -> list[str]:
+    """Print of each entry whether its rows say the same; return what is wrong, a line each."""
+    wrong = []
+    for entry in entries_of(paths):
+        try:
+            found = differences(entry, rows_of(entry))
+        except (FileNotFoundError, ValueError) as error:
+            found = [str(error)]
+        print(f"{entry.name}: {'as its rows say' if not found else 'NOT as its rows say'}")
+        wrong += [f"{entry.name}: {line}" for line in found]
+    return wrong
+
+
+def add(
+    paths: Sequence[Path | str],
+    name: str,
+    *,
+    severity: float = 0.6,
+    split: str | None = None,
+    training_data: str = "",
+    link: str = "",
+    options: Sequence[str] = (),
+    folder: Path | str = FOLDER,
+    overwrite: bool = False,
+) -> Path:
+    """Write the entry of the column ``name`` of the rows in ``paths``; return its file.
+
+    The sensors are those of the world of ``options`` (of ``mitigate evaluate``). Raises ValueError
+    if the file is there already, and as ``entry_of``.
+    """
+    from mitigate.core import conf
+    from mitigate.core.build import maker
+    from mitigate.evaluation import evaluate  # noqa: F401 - registers the types of conf/evaluate
+
+    place = Path(folder) / f"{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('.-') or 'entry'}.json"
+    if place.exists() and not overwrite:
+        raise ValueError(f"{place} exists already: replace it with --overwrite.")
+    cfg = conf.load_config("evaluate", options)
+    entry = entry_of(
+        result_rows.gather(paths),
+        name,
+        severity=severity,
+        split=split,
+        sensors=sensors_of(maker(cfg.env.world)().sensors),
+        training_data=training_data,
+        link=link,
+        file=_named(paths),
+    )
+    entry.save(place)
+    load(place)
+    return place
+
+
+def _named(paths: Sequence[Path | str]) -> str:
+    """Return the one file of the rows, if it is one and lies below this folder."""
+    path = Path(paths[0])
+    inside = len(paths) == 1 and not path.is_absolute() and ".." not in path.parts
+    return path.as_posix() if inside else ""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run from the command line; return the exit status: 2 for a bad input, 1 for a wrong entry."""
+    options = vars(_parser().parse_args(argv))
+    what = options.pop("what")
+    if what == "check":
+        wrong: list[str] = []
+        status = told("leaderboard", lambda: wrong.extend(check(options["paths"])))
+        print("\n".join(wrong), end="\n" * bool(wrong))
+        return status or int(bool(wrong))
+    if what == "show":
+        return told("leaderboard", lambda: show(**options))
+    words = options.pop("paths")
+    paths = [word for word in words if "=" not in word or Path(word).exists()]
+    own = [word for word in words if word not in paths]
+    return told("leaderboard", lambda: add(paths, options=own, **options))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="mitigate leaderboard",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parts = parser.add_subparsers(dest="what", required=True, metavar="show | check | add")
+    shown = parts.add_parser("show", help="write the page of entries")
+    checked = parts.add_parser("check", help="compute entries again from their rows")
+    for part in (shown, checked):
+        part.add_argument("paths", nargs="*", metavar="ENTRY", help=f"default: all in {FOLDER}")
+    shown.add_argument("--out", type=Path, default=OUT, help=f"file to write (default {OUT})")
+    added = parts.add_parser("add", help="write the entry of an agent's rows")
+    added.add_argument(
+        "paths",
+        nargs="+",
+        metavar="ROWS",
+        help="row file; words with = are options of mitigate evaluate that say what it sees, "
+        "such as env.views=1",
+    )
+    added.add_argument("--name", required=True, help="the agent's name in the rows")
+    added.add_argument("--severity", type=float, default=0.6, help="default 0.6")
+    added.add_argument("--split", help="needed where the rows are of several")
+    added.add_argument("--training-data", default="", help="what the agent was trained on")
+    added.add_argument("--link", default="", help="where its weights or paper are")
+    added.add_argument("--folder", default=FOLDER, help=f"where to write (default {FOLDER})")
+    added.add_argument("--overwrite", action="store_true", help="replace an entry of that name")
+    return parser

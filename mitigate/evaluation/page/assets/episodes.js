@@ -1,0 +1,96 @@
+// The episodes of a cell, in a dialog: success, SPL and steps, beside clean and beside the baseline.
+
+const PAGE = 500; // lines that are drawn at once
+
+function openCell(column, k) {
+  const one = section();
+  const rows = episodesOf(one, column, k);
+  if (!rows) return;
+  const clean = k > 0 ? lookup(episodesOf(one, column, 0)) : null;
+  const other = state.baseline >= 0 && state.baseline !== column ? state.baseline : -1;
+  const base = other >= 0 ? lookup(episodesOf(one, other, k)) : null;
+  for (const row of rows) {
+    row.clean = clean?.get(`${row.seed}/${row.index}`) ?? null;
+    row.base = base?.get(`${row.seed}/${row.index}`) ?? null;
+    row.walk = walkOf(one, row.id, k);
+  }
+  const view = { filter: "both", sort: { key: "id", down: false }, search: "", most: PAGE };
+  const body = el("div", {});
+  const dialog = el("dialog", { class: "cell", "aria-labelledby": "cell-title" },
+    el("header", {}, el("h2", { id: "cell-title" }, one.columns[column].label, " \u00b7 ", one.corruptions[k].title),
+      el("button", { type: "button", class: "close", onclick: () => dialog.close() }, "Close")),
+    el("p", { class: "facts" }, one.title), body);
+  const show = () => redraw(body, () => cellBody(one, rows, view, { clean, base, other, column }, show, dialog));
+  dialog.addEventListener("close", () => {
+    dialog.remove();
+    writeAddress(null);
+    document.querySelector(`[data-at="${column}/${k}"]`)?.focus();
+  });
+  dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
+  document.body.append(dialog);
+  show();
+  dialog.showModal();
+  writeAddress({ column, k });
+}
+
+const lookup = (rows) => rows && new Map(rows.map((row) => [`${row.seed}/${row.index}`, row]));
+
+const FILTERS = {
+  both: ["both", () => true],
+  won: ["won", (row) => row.success >= 0.5],
+  lost: ["lost", (row) => row.success < 0.5],
+  harmed: ["lost, won when clean", (row) => row.clean && row.success < 0.5 && row.clean.success >= 0.5],
+  gained: ["won, lost by BASE", (row) => row.base && row.success >= 0.5 && row.base.success < 0.5],
+  given: ["lost, won by BASE", (row) => row.base && row.success < 0.5 && row.base.success >= 0.5],
+};
+
+function cellBody(one, rows, view, others, show, dialog) {
+  const kinds = Object.entries(FILTERS).filter(([name]) =>
+    name === "harmed" ? others.clean : name === "gained" || name === "given" ? others.base : true);
+  const named = (text) => text.replace("BASE", others.base ? one.columns[others.other].label : "");
+  const counted = kinds.map(([name, [text, test]]) => [name, `${named(text)} (${rows.filter(test).length})`]);
+  const wanted = view.search.trim().toLowerCase();
+  const kept = rows.filter(FILTERS[view.filter][1]).filter((row) => row.id.toLowerCase().includes(wanted));
+  const order = sorted(kept, (row) => row[view.sort.key]?.success ?? (["clean", "base"].includes(view.sort.key) ? null : row[view.sort.key]), view.sort.down);
+  const search = el("input", { type: "search", placeholder: "episode id", value: view.search, "aria-label": "Search episodes",
+    oninput: (event) => { view.search = event.target.value; view.most = PAGE; show(); } });
+  search.value = view.search;
+  return [
+    el("div", { class: "controls" },
+      chips("Episodes", counted, view.filter, (value) => { view.filter = value; view.most = PAGE; show(); }), search),
+    el("p", { class: "readout", "aria-live": "polite" }, cellSummary(kept)),
+    cellTable(one, order, view, others, show, dialog),
+    order.length > view.most && el("button", { type: "button", class: "chip", onclick: () => { view.most += 4 * PAGE; show(); } },
+      `Show more (${order.length - view.most} left)`),
+  ];
+}
+
+function cellSummary(rows) {
+  if (!rows.length) return "No such episode.";
+  const mean = (name) => rows.reduce((sum, row) => sum + row[name], 0) / rows.length;
+  return `${rows.length} episodes: SR ${shown(mean("success"), "%")} %, SPL ${shown(mean("spl"), "")}`;
+}
+
+function cellTable(one, order, view, others, show, dialog) {
+  const onsort = (found) => { view.sort = found; show(); };
+  const head = (text, key, props) => sortHeading(text, key, view.sort, onsort, props);
+  const several = one.columns[others.column].seeds.length > 1;
+  const walks = order.some((row) => row.walk !== null);
+  const heads = [head("Episode", "id", { "data-first": "up" }), several && head("Seed", "seed", { "data-first": "up", class: "number" }),
+    head("Result", "success"), head("SPL", "spl", { class: "number" }), head("Steps", "steps", { class: "number" }),
+    others.clean && head("When clean", "clean"), others.base && head(`By ${one.columns[others.other].label}`, "base"),
+    walks && el("th", { scope: "col" }, "Walk")];
+  const lines = order.slice(0, view.most).map((row) => el("tr", {},
+    el("th", { scope: "row" }, row.id), several && el("td", { class: "number" }, row.seed), outcome(row),
+    el("td", { class: "number" }, shown(row.spl, "")), el("td", { class: "number" }, row.steps ?? "\u2013"),
+    others.clean && outcome(row.clean), others.base && outcome(row.base),
+    walks && el("td", {}, row.walk !== null && el("button", { type: "button", class: "link", onclick: () => { dialog.close(); showWalk(row.walk); } }, "see"))));
+  return el("div", { class: "scroll tall" }, el("table", { class: "episodes" },
+    el("thead", {}, el("tr", {}, heads)), el("tbody", {}, lines)));
+}
+
+function outcome(row) {
+  if (!row) return el("td", { class: "none" }, "\u2013");
+  const won = row.success >= 0.5;
+  return el("td", {}, el("span", { class: won ? "won" : "lost" }, won ? "\u2713 won" : "\u2717 lost"));
+}

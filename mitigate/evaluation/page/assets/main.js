@@ -1,0 +1,62 @@
+// Puts the parts together, and the choices that all of them share.
+
+function theme() {
+  const root = document.documentElement;
+  const next = { auto: "light", light: "dark", dark: "auto" };
+  const button = el("button", { type: "button", class: "chip", onclick: () => {
+    const now = next[root.dataset.theme || "auto"];
+    root.dataset.theme = now;
+    button.textContent = `Colours: ${now}`;
+  } }, "Colours: auto");
+  return button;
+}
+
+function head() {
+  document.getElementById("top").replaceChildren(
+    el("div", { class: "masthead" }, el("h1", {}, DATA.title), theme()),
+    el("p", { class: "lead" }, DATA.about));
+}
+
+function chooser() {
+  const one = section();
+  const list = DATA.sections.map((held, n) => [n, held.title]);
+  const some = Object.keys(one.pairs).length > 0;
+  const last = Math.max(-1, ...Object.keys(one.pairs).map((pair) => Number(pair.split("-")[1])));
+  const bases = one.columns.map((column, c) => [c, column.label]).filter(([c]) => c <= last);
+  if (list.length < 2 && !some) return null;
+  return el("div", { class: "controls choose" },
+    list.length > 1 && labelled("Results", choice(list, state.section, (value) => {
+      state.section = Number(value); state.baseline = -1; state.sort = { key: -1, down: false }; writeAddress(null); draw();
+    })),
+    some && labelled("Baseline", choice([[-1, "none"], ...bases], state.baseline, (value) => {
+      state.baseline = Number(value); writeAddress(null); draw();
+    })));
+}
+
+function facts(one) {
+  return el("dl", { class: "facts line" }, one.facts.map(([name, value]) => el("div", {}, el("dt", {}, name), el("dd", {}, value))));
+}
+
+function notes(one) {
+  const all = [...one.notes, ...DATA.notes];
+  return all.length ? el("ul", { class: "notes" }, all.map((text) => el("li", {}, text))) : null;
+}
+
+function draw() {
+  const main = document.getElementById("main");
+  const one = section();
+  redraw(main, () => (one ? [
+    el("section", { class: "card", "aria-label": "Results" }, chooser(), facts(one), summaryTable(one), notes(one)),
+    one.corruptions.length > 1 && el("section", { class: "card", "aria-label": "Heatmap" }, el("h2", {}, "By corruption"), heatmap(one)),
+    one.grid === null && detailsPart(one), curvesPart(), walksPart(),
+  ].flat() : [el("p", {}, "There is nothing to show yet.")]));
+}
+
+head();
+const asked = readAddress();
+draw();
+document.getElementById("end").append(el("p", { class: "facts" }, DATA.end));
+if (asked.agent !== null && asked.corruption !== null) {
+  const k = section().corruptions.findIndex((held) => held.name === asked.corruption);
+  if (k >= 0) openCell(asked.agent, k);
+}

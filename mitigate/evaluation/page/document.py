@@ -1,0 +1,147 @@
+"""The page as one HTML file: styles, scripts and data inside, nothing fetched from anywhere.
+
+What rows say is data to the scripts, which put it in as text. It cannot end its element (``<`` is
+escaped), and the page's policy lets no other script, style or address in than those written here.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+from collections.abc import Iterable, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from mitigate.core.files import atomic_text
+from mitigate.corruptions import SUITE_VERSION
+from mitigate.evaluation.page.curves import curves
+from mitigate.evaluation.page.episodes import MOST, Packed
+from mitigate.evaluation.page.model import section_data
+from mitigate.evaluation.rows import Row
+from mitigate.evaluation.sections import sections
+
+ASSETS = Path(__file__).parent / "assets"
+SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
+WALKS = (
+    "Walked again for this page with the keys of the rows, by weights that were at hand. Episodes "
+    "are taken by turns of outcomes and corruptions, to look at; how often each outcome comes is "
+    "in the tables. Circles mark the ends (filled: won), the black square the start, the star the "
+    "goal, the grey dots the reference path."
+)
+
+
+def report(
+    rows: Iterable[Row],
+    *,
+    title: str = "Results",
+    walks: Sequence[dict[str, Any]] = (),
+    most: int = MOST,
+) -> str:
+    """Return the HTML page of ``rows``.
+
+    ``walks`` as ``walks.walk_again`` yields them; ``most``: how many episodes of cells it may hold.
+    Raises ValueError if there are no rows.
+    """
+    held = list(rows)
+    parts, packed = sections(held), Packed(most)
+    shown = [{**section_data(part), "grid": packed.add(part, held)} for part in parts]
+    largest = max(range(len(shown)), key=lambda n: _size(shown[n]))
+    notes = []
+    if packed.left_out:
+        notes.append(
+            f"The episodes of {packed.left_out:,} cells (one a seed) are not in this file, which "
+            f"holds {most:,} episodes at most: their numbers stand, but such cells do not open. "
+            "Name fewer rows to see them."
+        )
+    return page(
+        title,
+        f"{len(held):,} rows: {_listed({row['name'] for row in held})}.",
+        shown,
+        curves=curves(parts),
+        grids=packed.grids,
+        packed=packed.text(),
+        walks=walks,
+        notes=notes,
+        first=largest,
+    )
+
+
+def page(
+    title: str,
+    about: str,
+    shown: Sequence[dict[str, Any]],
+    *,
+    curves: Sequence[dict[str, Any]] = (),
+    grids: Sequence[dict[str, Any]] = (),
+    packed: str = "",
+    walks: Sequence[dict[str, Any]] = (),
+    notes: Sequence[str] = (),
+    first: int = 0,
+) -> str:
+    """Return an HTML page of sections (``model.section_data``, with the number of their "grid").
+
+    ``about``: a sentence under the title. ``first``: the section that it opens with. The others
+    are as the scripts read them: see the modules that make them.
+    """
+    data = {
+        "title": title,
+        "about": about,
+        "sections": list(shown),
+        "curves": list(curves),
+        "grids": list(grids),
+        "walks": list(walks),
+        "walksAbout": WALKS,
+        "notes": list(notes),
+        "first": first,
+        "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
+        "This file is whole: it asks no network for anything.",
+    }
+    style = (ASSETS / "style.css").read_text(encoding="utf-8")
+    scripts = [(ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS]
+    script = '(() => {\n"use strict";\n' + "\n".join(scripts) + "})();\n"
+    values = {
+        "STYLE_HASH": _hash(style),
+        "SCRIPT_HASH": _hash(script),
+        "TITLE": html.escape(title),
+        "STYLE": style,
+        "DATA": _embedded(data),
+        "PACKED": packed,
+        "SCRIPT": script,
+    }
+    return _filled((ASSETS / "page.html").read_text(encoding="utf-8"), values)
+
+
+def write(text: str, out: Path | str) -> Path:
+    """Write a page to ``out``, atomically."""
+    with atomic_text(out) as file:
+        file.write(text)
+    return Path(out)
+
+
+def _filled(frame: str, values: dict[str, str]) -> str:
+    """Return ``frame`` with each ``%NAME%`` replaced once; what is put in is not read again."""
+    pieces = frame.split("%")
+    return "".join(values.get(piece, piece) for piece in pieces)
+
+
+def _embedded(data: Any) -> str:
+    """Return JSON that an HTML parser takes as one text."""
+    text = json.dumps(data, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _hash(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+def _size(shown: dict[str, Any]) -> int:
+    return sum(cell[2] for line in shown["cells"] for cell in line)
+
+
+def _listed(names: set[str], most: int = 8) -> str:
+    held = sorted(names)
+    more = f" and {len(held) - most} more agents" if len(held) > most else ""
+    return ", ".join(held[:most]) + more

@@ -1,0 +1,180 @@
+"""Entries say what their rows say; one that was shipped is walked again and says the same."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import mitigate
+from mitigate.core.observation import FORWARD, STOP
+from mitigate.corruptions.registry import HALVES, unseen_names
+from mitigate.evaluation import rows as result_rows
+from mitigate.evaluation.grid import BLOCKS
+from mitigate.evaluation.leaderboard import command
+from mitigate.evaluation.leaderboard.checks import titles
+from mitigate.evaluation.leaderboard.entry import entry_of, load, rows_sha
+from mitigate.evaluation.leaderboard.page import render
+from mitigate.evaluation.sections import sections
+from tests.evaluation.made_rows import column
+from tests.evaluation.page.test_document import held
+
+ROOT = Path(__file__).parents[3]
+SHIPPED = sorted((ROOT / "docs/leaderboard").glob("*.json"))
+
+
+@pytest.fixture
+def rows() -> list[dict]:
+    return column(8, {"spatter": 2, "missing_data": 7})
+
+
+def test_an_entry_has_the_figures_of_the_table_and_comes_back_from_its_file(rows, tmp_path):
+    entry = entry_of(rows, "base", severity=0.6, training_data="nothing", file="rows.jsonl")
+    (part,) = sections(rows)
+    prs = part.retained["base", "RGB", "SR"].estimate
+    assert entry.scores["PRS-SR (RGB)"] == pytest.approx([prs.value, prs.low, prs.high], abs=1e-4)
+    assert entry.scores["Clean SR"][0] == 0.8 and entry.SR["spatter"][0] == 0.2
+    assert entry.episodes == 10 and entry.rows["count"] == 30
+    assert load(entry.save(tmp_path / "base.json")) == entry
+    assert [p.name for p in tmp_path.iterdir()] == ["base.json"]
+    assert "PRS-SR (RGB): 0.250 [" in str(entry)
+
+
+def test_the_sum_of_rows_knows_no_order_but_every_value(rows):
+    assert rows_sha(rows) == rows_sha(rows[::-1])
+    assert rows_sha(rows) != rows_sha([rows[0] | {"spl": 0.25}, *rows[1:]])
+
+
+def test_what_makes_no_entry_is_refused(rows):
+    with pytest.raises(ValueError, match="Did you mean base"):
+        entry_of(rows, "bass", severity=0.6)
+    with pytest.raises(ValueError, match=r"no corruption at severity 0\.5"):
+        entry_of(rows, "base", severity=0.5)
+    with pytest.raises(ValueError, match="9 of 10 episodes under spatter"):
+        entry_of(
+            [r for r in rows if r["corruption"] != "spatter" or r["episode_id"] != "3"],
+            "base",
+            severity=0.6,
+        )
+    other = [r | {"split": "val_seen"} for r in rows]
+    with pytest.raises(ValueError, match="Name a split"):
+        entry_of(rows + other, "base", severity=0.6)
+    assert entry_of(rows + other, "base", severity=0.6, split="val_seen").split == "val_seen"
+
+
+def test_a_score_over_other_corruptions_is_marked_and_ranks_last(rows):
+    suite = [*BLOCKS["RGB"], *BLOCKS["Depth"]]
+    whole = entry_of(column(5, dict.fromkeys(suite, 4), name="whole"), "whole", severity=0.6)
+    part = entry_of(rows, "base", severity=0.6)
+    (shown,) = held(render([replace(part, scores=part.scores | {"Mean SR": [0.9] * 3}), whole]))[0][
+        "sections"
+    ]
+    shown_titles = [measure["title"] for measure in shown["measures"]]
+    assert [c["label"] for c in shown["columns"]] == ["whole", "base"]
+    marks = {t: [line[n][3] for line in shown["values"]] for n, t in enumerate(shown_titles)}
+    assert marks["Mean SR"] == ["", " † 2/12"] and marks["PRS-SR (RGB)"] == ["", " † 1/8"]
+    assert marks["Clean SR"] == ["", ""] and any("†" in note for note in shown["notes"])
+
+
+def test_half_of_the_unseen_corruptions_is_called_so():
+    halves = {half: unseen_names("rgb", half=half) for half in HALVES}
+    test = entry_of(column(5, dict.fromkeys(halves["test"], 3)), "base", severity=0.6)
+    assert "PRS-SR (unseen RGB, test)" in test.scores and "PRS-SR (unseen RGB)" not in test.scores
+    every = dict.fromkeys([*halves["test"], *halves["validation"]], 3)
+    both = entry_of(column(5, every), "base", severity=0.6).scores
+    assert {"PRS-SR (unseen RGB)", "PRS-SR (unseen RGB, test)"} <= both.keys() <= set(titles())
+
+
+def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("rows.jsonl.gz", rows)
+    add = ["add", "rows.jsonl.gz", "--name", "base", "--folder", "entries"]
+    assert command.main(add) == 0 and command.main(["check", "entries"]) == 0
+    assert command.main(add) == 2 and "--overwrite" in capsys.readouterr().err
+    entry = load("entries/base.json")
+    better = replace(entry, SR=entry.SR | {"spatter": [0.9, 0.8, 1.0]})
+    better.save("entries/base.json")
+    assert command.main(["check", "entries"]) == 1
+    assert "base: SR is" in capsys.readouterr().out
+    entry.save("entries/base.json")
+    result_rows.write("rows.jsonl.gz", [rows[0] | {"steps": 5}, *rows[1:]])
+    assert command.differences(entry, command.rows_of(entry))[0].startswith("rows is")
+    Path("rows.jsonl.gz").unlink()
+    assert command.main(["check", "entries"]) == 1
+    assert "not at hand" in capsys.readouterr().out
+
+
+def test_the_page_ranks_entries_and_takes_no_name_as_html(rows, tmp_path):
+    evil = "</script><script>alert(1)</script>"
+    low = entry_of(rows, "base", severity=0.6)
+    high = replace(low, name=evil, scores=low.scores | {"Mean SR": [0.9, 0.8, 1.0]}, link=evil)
+    text = render([low, high, replace(low, severity=0.5)])
+    data, _ = held(text)
+    assert text.count("<script") == 3
+    assert [[c["label"] for c in s["columns"]] for s in data["sections"]] == [
+        [evil, "base"],
+        ["base"],
+    ]
+    with pytest.raises(ValueError, match="no entry to show"):
+        render([])
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_a_shipped_entry_is_sound(path):
+    entry = load(path)
+    assert entry.name == path.stem and entry.episodes == 300
+    assert (ROOT / entry.rows["file"]).is_file() and (ROOT / entry.link).exists()
+
+
+def test_a_shipped_entry_is_what_its_rows_say_and_walked_again_gives_them(tmp_path, monkeypatch):
+    """Two episodes, clean and without part of the depth, by the shipped weights."""
+    entry = load(ROOT / "docs/leaderboard/base.json")
+    said = command.rows_of(entry)
+    assert command.differences(entry, said) == []
+    monkeypatch.chdir(tmp_path)
+    options = {"episodes": 2, "suite": ["missing_data"], "workers": 1, "out": "again"}
+    found = mitigate.benchmark("checkpoints/base", name=entry.name, **options)
+    again = result_rows.read("again/rows.jsonl")
+    index = {(r["episode_id"], r["corruption"]): r for r in said if r["seed"] == 0}
+    assert len(again) == 4 and {r["weights"] for r in again} == {entry.agents[0]["agent"]}
+    for row in again:
+        before = index[row["episode_id"], row["corruption"]]
+        changed = {key for key in before if before[key] != row[key]} - {"agent"}
+        assert not changed, (row, before)
+    assert (found.suite, found.rule, found.sensors) == (entry.suite, entry.rule, entry.sensors)
+
+
+class Straight:
+    """One step ahead, then STOP; reads no frame."""
+
+    def reset(self, instruction: str) -> None:
+        self.left = 1
+
+    def act(self, observation) -> int:
+        self.left -= 1
+        return FORWARD if self.left >= 0 else STOP
+
+
+def test_benchmark_takes_any_agent_says_how_long_and_goes_on(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    options = {"episodes": 2, "suite": ["flare"], "workers": 1, "training_data": "none"}
+    options["options"] = ["env.size=16"]
+    entry = mitigate.benchmark(Straight(), **options)
+    said = capsys.readouterr().out
+    assert "2 episodes x 2 conditions = 4 walks" in said and "1 process: about" in said
+    assert entry.name == "Straight" and entry.SR.keys() == {"clean", "flare"}
+    assert entry.sensors[0] == "rgb: 12 views of 16 x 16 x 3 uint8, 90 degrees wide"
+    rows = Path(entry.rows["file"])
+    before = rows.read_bytes()
+    assert mitigate.benchmark(Straight(), **options) == entry and rows.read_bytes() == before
+    assert command.differences(entry, command.rows_of(entry)) == []
+    json.dumps(entry.scores, allow_nan=False)
+
+
+def test_benchmark_refuses_what_measures_nothing():
+    with pytest.raises(ValueError, match="corrupts nothing"):
+        mitigate.benchmark(Straight(), suite="clean")
+    with pytest.raises(ValueError, match="Did you mean flare"):
+        mitigate.benchmark(Straight(), suite=["flair"])

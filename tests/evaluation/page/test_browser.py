@@ -1,0 +1,136 @@
+"""The page in a browser: it sorts, compares, opens cells, and nothing in rows can run or ask."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from mitigate.evaluation.page import document
+from tests.evaluation.made_rows import column
+from tests.evaluation.page.chromium import PROGRAM, Page
+
+pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no Chromium: apt-get install chromium")
+
+EVIL = "<img src=x onerror=\"document.title='bad'\"></script><script>document.title='bad'</script>"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    shown = Page(tmp_path_factory.mktemp("profile"))
+    yield shown
+    shown.close()
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    """base wins 8 of 10 clean and 2 under spatter, hard 6 and 6."""
+    rows = column(8, {"spatter": 2, "gaussian_noise": 7}, steps=41)
+    rows += column(6, {"spatter": 6, "gaussian_noise": 5}, name="hard", agent="ba9876543210")
+    walk = {
+        "episode": "0",
+        "instruction": EVIL,
+        "heard": EVIL,
+        "corruption": "spatter",
+        "title": "Spatter",
+        "severity": 0.6,
+        "kind": "won by both",
+        "reference": [],
+        "goals": [[1.0, 1.0]],
+        "plan": None,
+        "corners": None,
+        "views": [],
+    }
+    one = {"agent": "base", "clean": True, "won": True, "left": 0.5, "steps": 9, "agrees": True}
+    walk["walks"] = [one | {"points": [[0, 0], [1, 1]]}, one | {"clean": False, "points": [[0, 0]]}]
+    out = tmp_path_factory.mktemp("report") / "report.html"
+    return document.write(document.report(rows, walks=[walk]), out)
+
+
+def agents(page: Page) -> list[str]:
+    return page.ask(
+        "[...document.querySelectorAll('.agents tbody .agent')].map(e => e.textContent)"
+    )
+
+
+def lines(page: Page) -> list[list[str]]:
+    found = "[...document.querySelectorAll('dialog tbody tr')]"
+    return page.ask(f"{found}.map(r => [...r.children].map(c => c.textContent))")
+
+
+def test_headings_sort_the_agents_and_a_baseline_shows_differences(page, report):
+    page.open(report)
+    assert agents(page) == ["base", "hard"] and page.errors == []
+    page.click(".agents .sort", "Clean SR")
+    page.click(".agents .sort", "Clean SR")
+    assert agents(page) == ["hard", "base"]
+    page.ask(
+        "(s => { s.value = 0; s.dispatchEvent(new Event('change')); })"
+        "([...document.querySelectorAll('select')].find(s => s.value === '-1'))"
+    )
+    shown = page.ask("document.querySelector('.agents .change').textContent")
+    assert shown.startswith("\u221220.0 [\u2212")
+    assert "baseline=0" in page.ask("location.hash")
+
+
+def test_a_cell_opens_its_episodes_and_filters_them(page, report):
+    page.open(report, "#baseline=0")
+    page.click('[data-at="1/1"]')
+    assert len(lines(page)) == 10 and "SR 60.0 %" in page.ask(
+        "document.querySelector('dialog').textContent"
+    )
+    page.click("dialog .chip", "lost (")
+    assert [line[0] for line in lines(page)] == ["6", "7", "8", "9"]
+    page.click("dialog .chip", "won, lost by base")
+    assert [line[0] for line in lines(page)] == ["2", "3", "4", "5"]
+    page.click("dialog .chip", "both")
+    page.click("dialog .sort", "Result")
+    assert [line[0] for line in lines(page)][:2] == ["0", "1"]
+    page.click("dialog .close")
+    page.until("!document.querySelector('dialog')")
+    page.click('[data-at="0/1"]')
+    assert lines(page)[0][3] == "41"  # steps
+
+
+def test_an_address_opens_a_cell_and_keys_are_enough(page, report):
+    page.open(report, "#section=0&agent=0&corruption=spatter")
+    assert "base" in page.ask("document.querySelector('dialog h2').textContent")
+    page.press("Escape")
+    page.until("!document.querySelector('dialog')")
+    page.press("ArrowRight")
+    page.press("ArrowDown")
+    assert page.ask("document.activeElement.dataset.at") == "1/2"
+    page.press("Enter")
+    page.until("document.querySelector('dialog') !== null")
+    assert "hard" in page.ask("document.querySelector('dialog h2').textContent")
+
+
+def test_walks_are_drawn_and_filtered(page, report):
+    page.open(report)
+    assert page.ask("document.querySelectorAll('.walk polyline').length") > 0
+    page.click("#walks .chip", "base, clean")
+    assert page.ask("document.querySelectorAll('.walk circle').length") == 1
+
+
+def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):
+    rows = column(5, {"spatter": 3}, name=EVIL)
+    rows = [row | {"episode_id": f"{EVIL}{row['episode_id']}", "split": EVIL} for row in rows]
+    out = document.write(document.report(rows, title=EVIL), tmp_path / "evil.html")
+    page.open(out, "#agent=0&corruption=spatter")
+    assert page.errors == [] and page.ask("document.title") == EVIL
+    assert page.ask("document.querySelectorAll('img, script[src]').length") == 0
+    assert page.ask("document.querySelector('.agents .agent').textContent") == EVIL
+    assert EVIL in json.dumps(lines(page), ensure_ascii=False).replace('\\"', '"')
+
+
+def test_the_page_asks_for_nothing_and_its_policy_lets_nothing_in(page, report, tmp_path):
+    page.open(report)
+    assert list(page.requests.values()) == [report.as_uri()]
+    text = report.read_text(encoding="utf-8")
+    spoiled = tmp_path / "spoiled.html"
+    inside = "<script>document.title='bad'</script><img src='http://127.0.0.1:9/x.png'>"
+    spoiled.write_text(text.replace("<noscript>", f"{inside}<noscript>"), encoding="utf-8")
+    page.open(spoiled)
+    page.until("document.title === 'Results'")
+    assert list(page.requests.values()) == [spoiled.as_uri()]
+    assert len(page.errors) == 2, page.errors

@@ -1,0 +1,169 @@
+"""The page holds the rows' numbers, their episodes as far as it may, and nothing from outside."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+
+import numpy as np
+import pytest
+
+from mitigate.core.observation import FORWARD, STOP
+from mitigate.corruptions import Corruption
+from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.page import command, document
+from mitigate.evaluation.page.curves import curves
+from mitigate.evaluation.page.walks import KINDS, choose, walk_again
+from mitigate.evaluation.rows import write
+from mitigate.evaluation.sections import sections
+from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.evaluation.made_rows import cell, column, row
+
+
+def held(text: str) -> tuple[dict, np.ndarray]:
+    """The data of a page, and its episodes [cell, field, ...] as one array."""
+    data = re.search(r'id="data">(.*?)</script>', text, re.S)
+    packed = re.search(r'id="packed">(.*?)</script>', text, re.S)
+    assert data and packed
+    return json.loads(data[1]), np.frombuffer(base64.b64decode(packed[1]), "<u2")
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[dict]:
+    base = column(8, {"spatter": 2, "missing_data": 7}, steps=41)
+    return base + column(6, {"spatter": 6, "missing_data": 5}, name="hard", agent="ba9876543210")
+
+
+def test_values_and_differences_are_those_of_the_table(rows):
+    (part,) = sections(rows)
+    data, _ = held(document.report(rows))
+    (shown,) = data["sections"]
+    titles = [measure["title"] for measure in shown["measures"]]
+    clean = part.clean["hard", "SR"]
+    got = shown["values"][1][titles.index("Clean SR")]
+    assert got[:3] == pytest.approx([clean.value, clean.low, clean.high], abs=1e-4)
+    moved, raised = part.moved["hard"], part.raised["hard"].estimate
+    pair = shown["pairs"]["1-0"]["measures"]
+    assert pair[titles.index("Clean SR")] == pytest.approx(
+        [moved.value, moved.low, moved.high], abs=1e-4
+    )
+    mean = pair[titles.index("Mean SR, 12 corruptions")]
+    assert mean[:3] == pytest.approx([raised.value, raised.low, raised.high], abs=1e-4)
+    assert mean[3] == "† 2/12"
+    assert [line["label"] for line in shown["columns"]] == ["base", "hard"]
+
+
+def test_the_episodes_of_a_cell_come_back_as_they_were(rows):
+    data, packed = held(document.report(rows))
+    (grid,) = data["grids"]
+    begin = grid["cells"]["0|spatter|0.6|0"]
+    success, spl, steps = packed[3 * begin : 3 * (begin + 10)].reshape(3, 10)
+    assert grid["episodes"] == [str(n) for n in range(10)]
+    assert success.tolist() == [1000, 1000] + [0] * 8 and spl.tolist() == [500, 500] + [0] * 8
+    assert set(steps) == {41}
+
+
+def test_rows_that_are_missing_are_missing_in_the_page(rows):
+    fewer = [r for r in rows if (r["episode_id"], r["corruption"]) != ("3", "spatter")]
+    data, packed = held(document.report(fewer))
+    begin = data["grids"][0]["cells"]["0|spatter|0.6|0"]
+    assert packed[3 * begin + 3] == 65535
+    assert data["sections"][0]["cells"][0][1][2] == 9
+    assert any("fewer episodes" in note for note in data["sections"][0]["notes"])
+
+
+def test_a_page_is_bounded_and_says_what_it_leaves_out(rows):
+    data, packed = held(document.report(rows, most=25))
+    assert len(packed) == 3 * 20 and len(data["grids"][0]["cells"]) == 2
+    assert "4 cells (one a seed) are not in this file" in data["notes"][0]
+
+
+def test_several_seeds_and_kinds_of_corruption_have_their_own_cells(rows):
+    more = rows + column(5, {"spatter": 4, "haze": 3}, seed=1, agent="aaaaaaaaaaaa")
+    data, _ = held(document.report(more))
+    seeds = {key.rpartition("|")[2] for grid in data["grids"] for key in grid["cells"]}
+    assert seeds >= {"0", "1"} and len(data["sections"]) == 2
+
+
+def test_all_points_of_a_curve_are_over_the_same_episodes():
+    rows = cell(10) + cell(6, corruption="spatter", severity=0.4)
+    rows += cell(0, 4, corruption="spatter", severity=0.8)
+    ((figure,), (panel,)) = (found := curves(sections(rows))), found[0]["panels"]
+    (line,) = panel["lines"]
+    assert figure["columns"] == ["base"] and line["count"] == 4
+    assert [point[:2] for point in line["points"]] == [[0.0, 1.0], [0.4, 1.0], [0.8, 0.0]]
+
+
+def test_one_severity_makes_no_curve(rows):
+    assert curves(sections(rows)) == []
+
+
+def test_text_of_rows_ends_no_element_and_the_page_names_no_address(rows):
+    evil = "</script><script>alert(1)</script><!-- <script>"
+    named = [r | {"name": evil, "episode_id": f"{evil}{r['episode_id']}"} for r in rows[:30]]
+    text = document.report(named, title=evil)
+    assert len(re.findall(r"<script", text)) == 3 and len(re.findall(r"</script", text)) == 3
+    assert "<!--" not in text and held(text)[0]["sections"][0]["columns"][0]["label"] == evil
+    addresses = set(re.findall(r"https?://[^\"'\s)]+", text))
+    assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address that is asked
+
+
+class Straight:
+    """Walks a number of steps ahead, then stops; reads no frame."""
+
+    def __init__(self, steps: int) -> None:
+        self.steps = steps
+
+    def reset(self, instruction: str) -> None:
+        self.left = self.steps
+
+    def act(self, observation) -> int:
+        self.left -= 1
+        return FORWARD if self.left >= 0 else STOP
+
+
+def test_walks_are_chosen_by_turns_of_outcomes_and_corruptions():
+    first = {"spatter": "0011", "flare": "0011"}
+    last = {"spatter": "0101", "flare": "0101"}
+    made = [
+        row(episode, won == "1", name=name, corruption=met, severity=0.6)
+        for name, cells in (("base", first), ("hard", last))
+        for met, wins in cells.items()
+        for episode, won in zip("abcd", wins, strict=True)
+    ]
+    chosen = choose(made, ["base", "hard"], 9)
+    assert [episode for episode, _ in chosen] == ["b", "a", "d", "c"]  # in the order of KINDS
+    assert {met.name for _, met in chosen} == {"spatter", "flare"} and len(KINDS) == 4
+    assert choose(made, ["base", "hard"], 2) == chosen[:2]
+
+
+def test_a_walk_is_compared_with_its_row():
+    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
+    agents = {"base": Straight(1), "hard": Straight(3)}
+    made = []
+    for name, agent in agents.items():
+        for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
+            measures = run_episode(agent, world, episode, met, 0)
+            at = {"corruption": met.name, "severity": met.severity, "name": name}
+            made.append(row(episode.episode_id, 0, **at) | measures)
+    made[-1]["steps"] += 1  # a row that says otherwise
+    (drawn,) = walk_again(agents, world, [episode], made, most=3, seed=0)
+    assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
+    assert [len(walk["points"]) for walk in drawn["walks"]] == [2, 2, 4]
+    assert drawn["plan"].startswith("data:image/png;base64,") and len(drawn["views"]) == 2
+    assert drawn["kind"] == "lost by both" and drawn["title"] == "L-L w/o noise"
+
+
+def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, rows):
+    write(tmp_path / "rows.jsonl", rows)
+    out = tmp_path / "page.html"
+    assert command.main([str(tmp_path / "rows.jsonl"), "--out", str(out)]) == 0
+    assert held(out.read_text(encoding="utf-8"))[0]["title"] == "Results"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["page.html", "rows.jsonl"]
+    assert command.main([str(tmp_path / "nowhere")]) == 2
+    assert "nowhere" in capsys.readouterr().err
+    walk = ["--walk", "bass=checkpoints/base"]
+    assert command.main([str(tmp_path / "rows.jsonl"), *walk]) == 2
+    assert "Did you mean base?" in capsys.readouterr().err

@@ -1,0 +1,70 @@
+"""A hardened folder's README is a model card that Hugging Face's own library reads."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from huggingface_hub import ModelCard
+
+from mitigate.shipping import hardened
+from mitigate.shipping.card import readme
+from mitigate.shipping.front_matter import front_matter
+from tools.renew_cards import renew
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = sorted((ROOT / "checkpoints/hardened").glob("[!.]*"))
+
+
+def card_of(folder: Path) -> dict:
+    return json.loads((folder / "card.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
+def test_a_shipped_folder_is_a_model_repository(folder):
+    card, found = card_of(folder), ModelCard.load(folder / "README.md")
+    data = found.data
+    assert (data.library_name, data.license, data.pipeline_tag) == (
+        "mitigate",
+        "apache-2.0",
+        "robotics",
+    )
+    assert card["recipe"].replace("_", "-") in data.tags and data.model_name == card["name"]
+    (entry,) = card["metrics"]
+    results = {result.metric_name: result for result in data.eval_results}
+    assert len(results) == 2 + len(entry["PRS"]) + len(entry["SR"])
+    for title, (value, low, high) in entry["PRS"].items():
+        assert results[title].metric_value == value
+        assert results[title].metric_args["interval"] == [low, high]
+    clean = results["Clean SR"]
+    assert clean.metric_value == entry["clean"]["SR"][0] and clean.dataset_split == "val_unseen"
+    assert clean.dataset_args["episodes"] == 300 and clean.metric_args["level"] == 0.95
+    assert found.text.strip().startswith(f"# {card['name']}")
+    assert (folder / "README.md").read_text(encoding="utf-8") == readme(card)
+
+
+def test_a_card_without_metrics_or_with_strange_names_is_one_too():
+    card = card_of(SHIPPED[0]) | {"metrics": []}
+    assert ModelCard(front_matter(card)).data.eval_results is None
+    strange = 'a: [b\n---\n"x": !!python/object:os.system'
+    own = card_of(SHIPPED[0])
+    own["name"] = strange
+    own["metrics"][0] |= {"rule": strange, "split": strange, "PRS": {"PRS-SR (RGB)": [None] * 3}}
+    data = ModelCard(front_matter(own)).data
+    assert data.model_name == strange and data.eval_results[0].dataset_split == strange
+    assert "PRS-SR (RGB)" not in {result.metric_name for result in data.eval_results}
+
+
+def test_renewing_a_folder_changes_its_readme_and_the_sums_alone(tmp_path):
+    folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
+    before = card_of(folder)
+    page = folder / "README.md"
+    page.write_text("# old\n", encoding="utf-8")
+    with pytest.raises(ValueError, match="README.md does not have the sha256"):
+        renew(folder)
+    assert page.read_text(encoding="utf-8") == "# old\n"  # as it was
+    page.write_text(readme(before), encoding="utf-8")
+    renew(folder)
+    assert hardened.check(folder) == before and [p.name for p in tmp_path.iterdir()] == ["mine"]
