@@ -11,9 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from torch import nn
+import torch.nn.functional as F
+from torch import Tensor, nn
 
 from mitigate.agents.adapters import adapted, backbone_sha, trainable_share
+from mitigate.agents.gate import FrameGate
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import Distil, DistilViews
@@ -70,7 +72,8 @@ class Adapt(Distil):
 
 
 class AdaptViews(DistilViews):
-    """Args: as ``DistilViews``; its teacher is the agent itself without its adapters.
+    """Args: as ``DistilViews``; its teacher is the agent itself without its adapters. w_gate: of
+    the cross-entropy that teaches the encoders' gates, if they have any, which views are corrupted.
 
     Raises ValueError for an agent that has no adapters in the encoders of ``modality``.
     """
@@ -87,6 +90,8 @@ class AdaptViews(DistilViews):
         w_labels: float = 1.0,
         w_feat: float = 1.0,
         refresh_episodes: int = 8,
+        own: bool = False,
+        w_gate: float = 0.2,
     ) -> None:
         super().__init__(
             agent,
@@ -101,14 +106,43 @@ class AdaptViews(DistilViews):
             w_feat,
             refresh_episodes,
             adapters_only=True,
+            own=own,
         )
-        parts = agent.parts()
-        has_adapters(agent, *(parts[name] for name in agent.encoders[modality]))
-        self.backbone = backbone_sha(agent)
+        encoders = [agent.parts()[name] for name in agent.encoders[modality]]
+        has_adapters(agent, *encoders)
+        self.w_gate, self.backbone = w_gate, backbone_sha(agent)
+        modules = (module for encoder in encoders for module in encoder.modules())
+        self.gates = [module for module in modules if isinstance(module, FrameGate)]
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        values = super().forward(batch)
+        for gate in self.gates:
+            corrupted = differ(batch["frames"], batch["clean"])
+            logits = gate.judged.logits.float()
+            loss = F.binary_cross_entropy_with_logits(logits, corrupted.float())
+            opened = (logits > 0).float()
+            values |= {
+                "loss": values["loss"] + self.w_gate * loss,
+                "gate": loss,
+                "opened_corrupted": share(opened, corrupted),
+                "opened_clean": share(opened, ~corrupted),
+            }
+        return values
 
     def evaluate(self, step: int) -> dict[str, float]:
         """1 if the backbone is what it was when the adapters came in."""
         return {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
+
+
+def differ(frames: Tensor, clean: Tensor) -> Tensor:
+    """bool [P * V]: which views of two batches [P, V, H, W, c] are not equal; NaN equals NaN."""
+    other = (frames != clean) & ~(frames.isnan() & clean.isnan())
+    return other.flatten(0, 1).flatten(1).any(1)
+
+
+def share(values: Tensor, where: Tensor) -> Tensor:
+    """Mean of ``values`` [n] over those of ``where`` [n]; 0 of none."""
+    return (values * where).sum() / where.sum().clamp(min=1)
 
 
 def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:

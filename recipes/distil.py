@@ -148,7 +148,8 @@ class DistilViews(Recipe):
     """Args: agent, modality, world, training, schedule, panoramas, refresh_episodes: as
     ``recipes/pretrain.py``. teacher: weights, or "start" for ``agent`` as it is now. w_labels,
     w_feat: weights of the labels' loss and of the features'. adapters_only: train the agent's
-    adapters and nothing else.
+    adapters and nothing else. own: draw corruptions of this sensor alone, so that three quarters
+    of the frames are corrupted, not a half (RGB) or a quarter (depth).
 
     Raises FileNotFoundError for a missing teacher.
     """
@@ -169,6 +170,7 @@ class DistilViews(Recipe):
         w_feat: float = 1.0,
         refresh_episodes: int = 8,
         adapters_only: bool = False,
+        own: bool = False,
     ) -> None:
         super().__init__()
         self.agent, self.modality = agent, modality
@@ -180,6 +182,7 @@ class DistilViews(Recipe):
             panoramas=panoramas,
             seed=seed,
             refresh_episodes=refresh_episodes,
+            own=own,
             **views_to_learn(agent, modality, adapters_only),
         )
         self.teacher: Any = load_teacher(agent, teacher)

@@ -13,6 +13,7 @@ import numpy as np
 from torch import Tensor
 
 from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import batch_of, falling_share, imitation, loss_weights
 from mitigate.training.parts import train_only
 from mitigate.training.recipe import Recipe
@@ -24,6 +25,8 @@ class ImitateStored(Recipe):
     """Args: agent: ``agent.stored_parts`` of it is trained in place. world, training: of the scenes
     whose features are stored. folder: of the stores. episodes: a step. steps: over 0.6 of them the
     oracle's share of rollout decisions falls from 1 to ``follow_oracle``. losses: as ``Imitate``.
+    variants: of each scene under corruptions that ``schedule`` draws, stored beside the clean one;
+    0: clean alone.
     """
 
     def __init__(
@@ -37,6 +40,8 @@ class ImitateStored(Recipe):
         follow_oracle: float = 0.25,
         seed: int = 0,
         losses: Mapping[str, float] | None = None,
+        schedule: Schedule | None = None,
+        variants: int = 0,
     ) -> None:
         super().__init__()
         if episodes < 1:
@@ -50,10 +55,13 @@ class ImitateStored(Recipe):
             seed,
         )
         self.losses = loss_weights(agent, losses)
+        self.variants = (
+            {"schedule": schedule, "variants": variants, "seed": seed} if variants else {}
+        )
 
     def start(self) -> None:
         """Make the store, in the precision of the training."""
-        self.store = self.agent.store(self.world, self.folder)
+        self.store = self.agent.store(self.world, self.folder, **self.variants)
         self.store.build()
 
     def jobs(self, step: int) -> list[tuple]:

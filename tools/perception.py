@@ -25,7 +25,7 @@ from mitigate.core import conf
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
-from mitigate.corruptions import RGB as RGB_NAMES
+from mitigate.corruptions.registry import HALVES, modality, unseen_names
 from mitigate.evaluation.bootstrap import resampled_means
 from mitigate.evaluation.evaluate import load, name_of
 from mitigate.evaluation.sections import label
@@ -35,7 +35,7 @@ from mitigate.worlds.apartments.simulator import apartment_of
 from mitigate.worlds.apartments.tasks import load_episodes
 
 SIZE = 64  # pixels, as the reference agent sees
-FRAMES = tuple(name for name in NAMES if Corruption(name, 0.0).modality in ("rgb", "depth"))
+SUITES = {"full": NAMES, **{half: unseen_names("rgb", "depth", half=half) for half in HALVES}}
 
 
 class Poses:
@@ -73,14 +73,16 @@ class Poses:
         return np.array(things, float).T, np.array(free, float).T
 
 
-def measure(agent: Any, poses: Poses, severity: float) -> dict[str, tuple[float, float, float]]:
-    """Score with its 95 % interval over poses, by condition: "clean" and every RGB corruption (F1),
-    "clean depth" and every depth corruption (overlap)."""
+def measure(
+    agent: Any, poses: Poses, names: Sequence[str], severity: float
+) -> dict[str, tuple[float, float, float]]:
+    """Score with its 95 % interval over poses, by condition: "clean" and every RGB corruption of
+    ``names`` (F1), "clean depth" and every depth corruption (overlap)."""
     things, free = poses.counts(agent, CLEAN)
     found = {"clean": _ratio(things), "clean depth": _ratio(free)}
-    for name in FRAMES:
+    for name in names:
         things, free = poses.counts(agent, Corruption(name, severity))
-        found[name] = _ratio(things if name in RGB_NAMES else free)
+        found[name] = _ratio(things if modality(name) == "rgb" else free)
     return found
 
 
@@ -92,16 +94,19 @@ def _ratio(counts: np.ndarray) -> tuple[float, float, float]:
 
 def table(scores: dict[str, dict[str, tuple[float, float, float]]]) -> str:
     """Markdown: a row a condition, a column an agent, in percent."""
-    conditions = ("clean", *RGB_NAMES, "clean depth", *(n for n in FRAMES if n not in RGB_NAMES))
+    conditions = tuple(next(iter(scores.values())))
+    seen = [n for n in conditions if not n.startswith("clean")]
+    rgb, depth = ([n for n in seen if modality(n) == sensor] for sensor in (RGB, DEPTH))
     lines = [["", *scores], ["---", *["---:"] * len(scores)]]
-    for name in conditions:
+    for name in ("clean", *rgb, "clean depth", *depth):
         cells = [found[name] for found in scores.values()]
         title = {"clean": "Clean RGB", "clean depth": "Clean depth"}.get(name) or label(name)
         lines.append(
             [title, *(f"{100 * v:.1f} [{100 * a:.1f}, {100 * b:.1f}]" for v, a, b in cells)]
         )
-    means = [np.mean([found[n][0] for n in RGB_NAMES]) for found in scores.values()]
-    lines.insert(3 + len(RGB_NAMES), ["**Mean of RGB**", *(f"{100 * m:.1f}" for m in means)])
+    for place, sensor, names in ((3 + len(rgb), "RGB", rgb), (len(lines) + 1, "depth", depth)):
+        means = [np.mean([found[n][0] for n in names]) for found in scores.values()]
+        lines.insert(place, [f"**Mean of {sensor}**", *(f"{100 * m:.1f}" for m in means)])
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
@@ -125,6 +130,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     )
     parser.add_argument("agents", nargs="+", help="weights: folders or .safetensors files")
     parser.add_argument("--split", default="val_seen", choices=("val_seen", "val_unseen"))
+    parser.add_argument(
+        "--suite", default="full", choices=list(SUITES), help="the twelve, or a half of the unseen"
+    )
     parser.add_argument("--poses", type=int, default=60, help="random ones (default 60)")
     parser.add_argument("--severity", type=float, default=0.6)
     parser.add_argument("--seed", type=int, default=0)
@@ -136,7 +144,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         agents[_column(weights, agents)] = load(_agent_node(), weights)
     poses = Poses(options.split, options.poses, options.seed)
     scores = {
-        name: measure(agent, poses, options.severity)
+        name: measure(agent, poses, SUITES[options.suite], options.severity)
         for name, agent in tqdm(agents.items(), desc="agents", disable=None)
     }
     print(

@@ -5,7 +5,8 @@ as PEFT does for attention: the backbone's own weights keep their names and valu
 changes until ``up`` has learned. Behind a module that gives maps it is convolutional, behind one
 that gives tokens (``tokens.py``) it is linear. A *ring* adapter (``ring.py``) also sees the
 neighbours of each view of a panorama, so that what one view has lost can come from the views that
-overlap it.
+overlap it. A *gate* (``gate.py``) lets the adapters of an encoder correct only the frames that it
+takes for corrupted.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.agents.conv import ConvAdapter
+from mitigate.agents.gate import FrameGate
 from mitigate.agents.ring import RingAdapter
 from mitigate.agents.sites import MAP, Run, Site, channels_of, first, listed, look, named
 from mitigate.agents.tokens import TokenAdapter
@@ -34,7 +36,7 @@ _HOOK = "_adapter_hook"
 _STATISTICS = "_statistics_before_adapters"
 
 
-ADAPTERS = (ConvAdapter, RingAdapter, TokenAdapter)
+ADAPTERS = (ConvAdapter, RingAdapter, TokenAdapter, FrameGate)
 
 
 def insert_adapters(
@@ -45,6 +47,7 @@ def insert_adapters(
     kernel: int = 3,
     ring: Iterable[str] = (),
     ring_reduction: int = 4,
+    gates: Iterable[str] = (),
     views: int = VIEWS,
     hfov: float = HFOV_DEGREES,
     run: Run | None = None,
@@ -65,7 +68,8 @@ def insert_adapters(
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
             ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
             views), with ``ring_reduction`` as reduction; of 1 view, a plain one. A module found
-            by both gets this one.
+            by both gets this one. gates: targets that get a :class:`FrameGate` in place of an
+            adapter; it counts for all adapters behind it in the module that holds its target.
     Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
     trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.
@@ -76,13 +80,16 @@ def insert_adapters(
     """
     _refuse_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
+    gated = named(model, listed("gates", gates))
     if not target_modules + ring:
         raise ValueError("target_modules names no module: give at least one, such as 'layer[1-4]'.")
     plain, ringed = named(model, target_modules), named(model, ring)
     sites = None if run is None else look(model, run)
     made: dict[str, nn.Module] = {}
     for name, module in model.named_modules():
-        if name in ringed and views == 1:  # no neighbours
+        if name in gated:
+            made[name] = FrameGate(channels_of(name, module))
+        elif name in ringed and views == 1:  # no neighbours
             made[name] = ConvAdapter(channels_of(name, module), ring_reduction, kernel)
         elif name in ringed:
             made[name] = RingAdapter(channels_of(name, module), ring_reduction, kernel, views, hfov)
@@ -215,8 +222,8 @@ def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> nn.Module:
     """Return the adapter of ``settings`` with the weights ``tensors``. Raises TypeError or
     RuntimeError if they do not fit; no memory is taken for what does not."""
     settings = dict(settings)
-    tokens = settings.pop("kind", None) == "tokens"
-    kind = TokenAdapter if tokens else RingAdapter if "views" in settings else ConvAdapter
+    shape = RingAdapter if "views" in settings else ConvAdapter
+    kind = {"tokens": TokenAdapter, "gate": FrameGate}.get(settings.pop("kind", None), shape)
     with torch.device("meta"):
         wanted = {name: value.shape for name, value in kind(**settings).state_dict().items()}
     if wanted != {name: value.shape for name, value in tensors.items()}:
@@ -257,7 +264,17 @@ def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
     like = next(model.parameters(), torch.zeros(()))
     for name, adapter in made.items():
         _attach(model.get_submodule(name), adapter, like)
+    _follow(made)
     setattr(model, _STATISTICS, _statistics(model))
+
+
+def _follow(made: dict[str, nn.Module]) -> None:
+    """Tell each adapter of the gate in front of it: the one in the same encoder."""
+    gates = {n.rpartition(".")[0]: m for n, m in made.items() if isinstance(m, FrameGate)}
+    for name, adapter in made.items():
+        if not isinstance(adapter, (FrameGate, TokenAdapter)):
+            inside = [holder for holder in gates if not holder or name.startswith(f"{holder}.")]
+            adapter.gates = [gates[holder] for holder in inside[-1:]]
 
 
 def _statistics(model: nn.Module) -> dict[str, Tensor]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mitigate.agents.gate import FrameGate, through
 from mitigate.agents.tokens import Gate, further
 
 
@@ -40,6 +41,7 @@ class ConvAdapter(nn.Module):
         self.down = nn.Conv2d(channels, middle, kernel, padding=kernel // 2)
         self.up = nn.Conv2d(middle, channels, 1)
         self.gate = Gate(middle) if gate else None
+        self.gates: list[FrameGate] = []  # the encoder's own, if it has one (``adapters.py``)
         for parameter in self.up.parameters():
             nn.init.zeros_(parameter)
 
@@ -48,4 +50,4 @@ class ConvAdapter(nn.Module):
         z = self.up(y)
         if self.gate is not None:
             z = z * self.gate(y, (2, 3)).sigmoid()[:, None, None, None]
-        return x + z
+        return through(self.gates, x, x + z)

@@ -13,6 +13,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mitigate.agents.gate import FrameGate, through
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 
@@ -60,6 +61,7 @@ class RingAdapter(nn.Module):
             "hfov": hfov,
         }
         self.views, self.hfov = views, hfov
+        self.gates: list[FrameGate] = []  # the encoder's own, if it has one (``adapters.py``)
         self.down = nn.Conv2d(channels, middle, 1)
         self.score = nn.Conv2d(middle, 1, 1)
         self.mix = nn.Conv2d(2 * middle, middle, kernel, padding=kernel // 2)
@@ -81,7 +83,7 @@ class RingAdapter(nn.Module):
             fused = torch.addcmul(fused, each, weight)
         around, y_around, _ = fused.to(x.dtype).split([part.shape[1] for part in parts], 1)
         z = F.gelu(self.mix(torch.cat([y, y_around], 1)))
-        return x + self.share(z).tanh() * (around - x) + self.up(z)
+        return through(self.gates, x, x + self.share(z).tanh() * (around - x) + self.up(z))
 
     def aligned(self, maps: Tensor, grid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Each map ``[P * views, C, h, w]``, the one to its left and the one to its right, turned

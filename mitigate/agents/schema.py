@@ -97,6 +97,7 @@ PLANNER = {
 ADAPTERS = {
     "target_modules": TARGETS,
     "ring": TARGETS,
+    "gates": TARGETS,
     "reduction": whole(1, 1024),
     "ring_reduction": whole(1, 1024),
     "kernel": whole(1, 15),

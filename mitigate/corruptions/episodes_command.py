@@ -12,17 +12,17 @@ words. Instructions in other languages than English pass through and are counted
 
 from __future__ import annotations
 
-import argparse
 import json
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
 
+from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.core.files import atomic_text
 from mitigate.corruptions import INSTRUCTION, SUITE_VERSION, Key, corrupt_instruction
 from mitigate.corruptions.instruction import check_text, is_rewritten
@@ -223,20 +223,14 @@ def _rates(gate: Counter) -> dict[str, Any]:
     }
 
 
-def _options(given: Sequence[str]) -> dict[str, Any]:
-    """Return ``key=value`` arguments as options; ValueError names the choices."""
+def _options(given: Mapping[str, str]) -> dict[str, Any]:
+    """Options in their types; ValueError names the choices."""
     options: dict[str, Any] = {}
-    for text in given:
-        key, equals, value = text.partition("=")
-        if not equals or key not in OPTIONS:
-            raise ValueError(
-                f"Cannot read the option {text!r}: write key=value with one of "
-                f"{', '.join(OPTIONS)}, such as severity=0.5."
-            )
+    for key, value in given.items():
         try:
             options[key] = OPTIONS[key](value)
         except ValueError as error:
-            raise ValueError(f"{key} must be a number, but {text!r} was given.") from error
+            raise ValueError(f"{key} must be a number, but {value!r} was given.") from error
     for key, example in (("family", "black_box"), ("severity", "0.5")):
         if key not in options:
             raise ValueError(
@@ -268,17 +262,13 @@ def notices(summary: dict[str, Any]) -> list[str]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for a bad input)."""
-    parser = argparse.ArgumentParser(
-        prog="python -m mitigate.corrupt_episodes",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("source", metavar="IN", help="a VLN-CE episode file (.json or .json.gz)")
-    parser.add_argument("out", metavar="OUT", help="the file to write")
-    parser.add_argument("options", nargs="*", metavar="KEY=VALUE", help=", ".join(OPTIONS))
-    given = parser.parse_args(argv)
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if asks_help(arguments):
+        print(__doc__)
+        return 0 if arguments else 2
     try:
-        summary = run(given.source, given.out, **_options(given.options))
+        (source, out), given = paths_and_options(arguments, ("IN", "OUT"), OPTIONS)
+        summary = run(source, out, **_options(given))
     except (OSError, ValueError) as error:
         print(f"corrupt_episodes: {error}", file=sys.stderr)
         return 2

@@ -32,7 +32,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import MISSING, fields
 
-from mitigate.core.names import unknown
+from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.corruptions import folders, registry
 from mitigate.corruptions.folders import UNITS, Settings
 from mitigate.corruptions.plan import told
@@ -43,35 +43,17 @@ SHOWN = 5  # files left out that are named on the screen; all are in the summary
 
 def parse(arguments: Sequence[str]) -> tuple[str, str, Settings]:
     """IN, OUT and the settings. Raises ValueError in one paragraph for what cannot be read."""
-    options: dict[str, str] = {}
-    paths: list[str] = []
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if equals and name.isidentifier():
-            options[name] = value
-        elif argument.startswith("-"):
-            raise ValueError(f"There is no option {argument}: write key=value, --list or --help.")
-        else:
-            paths.append(argument)
-    if len(paths) != 2:
-        raise ValueError(
-            f"Two folders are needed, IN and OUT, but there are {len(paths)}"
-            f"{': ' if paths else ''}{', '.join(paths)}. See --help. (A folder whose name holds "
-            "'=' is written ./a=b.)"
-        )
-    return paths[0], paths[1], _settings(options)
+    known = [option.name for option in fields(Settings)]
+    (source, out), options = paths_and_options(arguments, ("IN", "OUT"), known)
+    return source, out, _settings(options)
 
 
 def _settings(options: dict[str, str]) -> Settings:
-    known = {option.name: option for option in fields(Settings)}
-    for name in options:
-        if name not in known:
-            raise ValueError(unknown("option", name, known))
-    for name, option in known.items():
-        if option.default is MISSING and name not in options:
+    for option in fields(Settings):
+        if option.default is MISSING and option.name not in options:
             raise ValueError(
-                f"{name}=... is missing, such as corruption=spatter severity=0.5. The corruptions "
-                "are listed by --list."
+                f"{option.name}=... is missing, such as corruption=spatter severity=0.5. The "
+                "corruptions are listed by --list."
             )
     check_name(options["corruption"])
     return Settings(**{name: _value(name, text) for name, text in options.items()})  # type: ignore[arg-type]
@@ -93,7 +75,7 @@ def _value(name: str, text: str) -> str | int | float:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if not arguments or "--help" in arguments or "-h" in arguments:
+    if asks_help(arguments):
         print(__doc__)
         return 0 if arguments else 2
     if "--list" in arguments:

@@ -12,6 +12,7 @@ rendered from an apartment. ``--page`` writes ``docs/corruptions.md`` and
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -39,6 +40,7 @@ SHEETS = {  # what a sheet shows, by the name of its suite
     "unseen": registry.unseen_names(*BOTH),
     "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),
     "unseen_test": registry.unseen_names(*BOTH, half=TEST),
+    "broad": tuple(name for name in registry.BROAD for _ in range(8)),  # draws of each
 }
 
 
@@ -82,7 +84,7 @@ def contact_sheet(
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
         depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same instant and size.
         path: where the picture goes (.png, .jpg, .jpeg); parent folders are made.
-        key: the random draw; one draw for the whole sheet.
+        key: the random draw; one draw for the whole sheet, but for a name that is there again.
         views: which views of a panorama each cell shows, left to right.
         names: the corruptions.
 
@@ -107,10 +109,11 @@ def contact_sheet(
     for column, severity in enumerate(severities):
         _write(sheet, f"s = {severity:g}", LABEL + column * wide, TITLE - 8)
     for row, name in enumerate(names):
-        top = TITLE + row * high
+        top, again = TITLE + row * high, names[:row].count(name)
         _write(sheet, name, 6, top + high // 2)
+        drawn = replace(key, episode=f"{key.episode} {again}") if again else key
         for column, severity in enumerate(severities):
-            cell = _cell(rgb, depth, name, severity, key, views)
+            cell = _cell(rgb, depth, name, severity, drawn, views)
             left = LABEL + column * wide
             sheet[top : top + cell.shape[0], left : left + cell.shape[1]] = cell
     png = path.suffix.lower() == ".png"

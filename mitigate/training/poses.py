@@ -26,6 +26,7 @@ class Poses:
     world: makes a world that can look from anywhere (``worlds/world.py``). sensor: "rgb" or
     "depth". label: the entry of its truth that is learned. panoramas: a batch. every: of the views
     of a panorama, only every second one is learned from (2), since neighbours overlap, or all (1).
+    own: draw corruptions of this sensor alone; else those of the other leave its frames clean.
 
     Raises ValueError for an unknown sensor and for a world that cannot look from anywhere.
     """
@@ -43,10 +44,12 @@ class Poses:
         every: int,
         seed: int,
         refresh_episodes: int = 8,
+        own: bool = False,
     ) -> None:
         if sensor not in ("rgb", "depth"):
             raise ValueError(f"modality={sensor!r} is unknown; choose 'rgb' or 'depth'.")
-        self.agent, self.make_world, self.training, self.schedule = agent, world, training, schedule
+        self.agent, self.make_world, self.training = agent, world, training
+        self.schedule = schedule.only(sensor) if own else schedule
         self.sensor, self.label, self.panoramas, self.every = sensor, label, panoramas, every
         self.seed, self.refresh_episodes = seed, refresh_episodes
         self._world: Placeable | None = None

@@ -54,14 +54,16 @@ def train_stage(
 
 
 def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
-    """Why a stage has nothing to train in this kind of agent, or None: it sees no such sensor, or
-    is nothing but encoders. So one recipe serves agents of all kinds."""
-    sensor, parts = (
-        OmegaConf.select(stage, f"recipe.{key}") for key in ("modality", "train_parts")
+    """Why a stage has nothing to train in this kind of agent, or None: it sees no such sensor,
+    stores no features, or is nothing but encoders. So one recipe serves agents of all kinds."""
+    sensor, parts, variants = (
+        OmegaConf.select(stage, f"recipe.{key}") for key in ("modality", "train_parts", "variants")
     )
     kind, encoders = type(agent).__name__, getattr(agent, "encoders", None)
     if sensor and encoders and sensor not in encoders:
         return f"{kind} has no {sensor} encoder"
+    if variants and not hasattr(agent, "store"):
+        return f"{kind} stores no features"
     if parts == POLICY and encoders and not policy_parts(agent):
         return f"nothing but encoders is learned in {kind}"
     return None

@@ -173,7 +173,7 @@ def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
         (["family=mask", "severity=high"], "must be a number"),
         (["family=maks", "severity=0.5"], "Did you mean mask"),
         (["family=white_box", "severity=0.5"], "not applicable to a file"),
-        (["family=mask", "severity=0.5", "tokeniser=x"], "'tokeniser=x'"),
+        (["family=mask", "severity=0.5", "tokeniser=x"], "Did you mean tokenizer"),
         (["family=mask", "severity=0.5", "tokenizer=/none/such"], "no tokenizer '/none/such'"),
         (["family=mask", "severity=0.5", "tagger=best"], "own, spacy"),
     ):

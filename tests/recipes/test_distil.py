@@ -12,8 +12,8 @@ import mitigate.training.train  # noqa: F401  (the schema of its config)
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import checkpoints, weights_sha
-from mitigate.corruptions import Schedule
-from mitigate.recipes.adapt import AdaptViews
+from mitigate.corruptions import DEPTH, Schedule
+from mitigate.recipes.adapt import AdaptViews, differ
 from mitigate.recipes.distil import Distil, DistilViews, policy_kl
 from mitigate.recipes.imitate import Imitate
 from mitigate.training.trainer import Trainer
@@ -153,6 +153,32 @@ def test_adapters_train_alone(tmp_path):
     start = weights_sha(agent)
     Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
     assert made.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
+
+
+def test_a_gate_learns_which_views_are_corrupted(tmp_path):
+    agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
+    made = AdaptViews(agent, modality="rgb", **VIEWS, own=True)
+    values = made(made.batch(0))
+    assert values["gate"] > 0 and {"opened_corrupted", "opened_clean"} <= set(values)
+    start = agent.rgb_encoder.stem.adapter.judge.weight.clone()
+    Trainer(made, steps=2, folder=tmp_path, seed=0, lr=1e-2, warmup=0).fit()
+    assert not torch.equal(agent.rgb_encoder.stem.adapter.judge.weight, start)
+
+
+def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
+    clean = torch.ones(2, 2, 4, 4, 1)
+    clean[0, 0, 0] = torch.nan
+    frames = clean.clone()
+    frames[1, 0, 2, 2] = 0.5
+    assert differ(frames, clean).tolist() == [False, False, True, False]
+
+
+def test_a_stage_may_draw_the_corruptions_of_its_sensor_alone():
+    teacher = {"teacher": "start", "modality": "depth"}
+    both, own = (DistilViews(small(), **VIEWS, **teacher, own=own) for own in (False, True))
+    assert set(own.poses.schedule.names) == set(DEPTH) < set(both.poses.schedule.names)
+    with pytest.raises(ValueError, match="draws no depth corruption"):
+        Schedule("per_episode", 0.6, names=("spatter",)).only("depth")
 
 
 def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):

@@ -10,6 +10,7 @@ import torch
 
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import seeding
+from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate_stored import ImitateStored
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -61,3 +62,28 @@ def test_a_batch_trains_the_planner_alone(folder):
     losses["loss"].backward()
     moved = {n.partition(".")[0] for n, p in made.agent.named_parameters() if p.grad is not None}
     assert moved == {"planner"} and torch.isfinite(losses["loss"])
+
+
+def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
+    """Each is stored once, under its own corruption; walks see the clean scene as often as the
+    schedule says."""
+    seeding.seed_everything(0, "agent")
+    agent = TopologicalAgent(16, SMALL)
+    schedule = Schedule("per_episode", 0.9, names=("low_light", "missing_data"), clean_share=0.5)
+    stores = [
+        agent.store(partial(ApartmentsWorld, 64, 1), str(tmp_path), **variants)
+        for variants in ({}, {"schedule": schedule, "variants": 2, "seed": 3})
+    ]
+    for store in stores:
+        store.build()
+    clean, again = (store.features(SCENE).views for store in stores)
+    assert np.array_equal(clean, again)
+    variants = [stores[1].features(SCENE, v) for v in (1, 2)]
+    assert all(not np.array_equal(v.views, clean) for v in variants)
+    assert not np.array_equal(variants[0].views, variants[1].views)
+    assert all(np.array_equal(v.seen, stores[0].features(SCENE).seen) for v in variants)
+    rng = np.random.default_rng(0)
+    drawn = [stores[1].drawn(rng) for _ in range(400)]
+    assert set(drawn) == {0, 1, 2} and abs(drawn.count(0) / 400 - 0.5) < 0.1
+    with pytest.raises(ValueError, match="need a schedule that corrupts"):
+        agent.store(partial(ApartmentsWorld, 64, 1), str(tmp_path), variants=2)

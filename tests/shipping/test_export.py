@@ -31,7 +31,11 @@ ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/deployment.md"
 SIZE = 64
 TINY = {"width": 16, "planner": {"heads": 2, "text_layers": 1, "layers": 1}}
-ADAPTERS = {"target_modules": [r"depth_encoder\.stages\.0"], "ring": [r"rgb_encoder\.stages\.2"]}
+ADAPTERS = {
+    "target_modules": [r"depth_encoder\.stages\.0"],
+    "ring": [r"rgb_encoder\.stages\.2"],
+    "gates": [r"rgb_encoder\.stem"],
+}
 
 
 def finished_run(folder: Path, agent: TopologicalAgent, settings: dict, **others) -> Path:

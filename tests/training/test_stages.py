@@ -14,9 +14,14 @@ from mitigate.training.parts import policy_parts, train_only
 from mitigate.training.stages import nothing_to_do
 from tests.tiny import TinyAgent
 
-RGB, DEPTH, POLICY = (
+RGB, DEPTH, POLICY, STORED = (
     OmegaConf.create({"recipe": recipe})
-    for recipe in ({"modality": "rgb"}, {"modality": "depth"}, {"train_parts": "policy"})
+    for recipe in (
+        {"modality": "rgb"},
+        {"modality": "depth"},
+        {"train_parts": "policy"},
+        {"variants": 3},
+    )
 )
 KINDS = ["topological", "recurrent", "recurrent_rgb", "frontier"]
 
@@ -25,15 +30,15 @@ KINDS = ["topological", "recurrent", "recurrent_rgb", "frontier"]
     ("agent", "left"),
     [
         (TopologicalAgent(16), []),
-        (RecurrentAgent(), []),
-        (RecurrentAgent(["rgb"]), [DEPTH]),
-        (FrontierAgent(), [DEPTH, POLICY]),
-        (TinyAgent(), []),
+        (RecurrentAgent(), [STORED]),
+        (RecurrentAgent(["rgb"]), [DEPTH, STORED]),
+        (FrontierAgent(), [DEPTH, POLICY, STORED]),
+        (TinyAgent(), [STORED]),
     ],
     ids=lambda x: type(x).__name__,
 )
 def test_a_stage_that_has_nothing_to_train_says_why(agent, left):
-    said = [stage for stage in (RGB, DEPTH, POLICY) if nothing_to_do(stage, agent)]
+    said = [stage for stage in (RGB, DEPTH, POLICY, STORED) if nothing_to_do(stage, agent)]
     assert said == left
     if left:
         assert type(agent).__name__ in nothing_to_do(left[0], agent)

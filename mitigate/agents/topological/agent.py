@@ -126,16 +126,16 @@ class TopologicalAgent(nn.Module):
 
     def encode(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """As :meth:`perceive`, whatever the agent is blind to."""
-        features, concepts = self._encode_rgb(rgb)
-        depth_features, waypoints = self._encode_depth(depth)
+        features, concepts = self.encode_rgb(rgb)
+        depth_features, waypoints = self.encode_depth(depth)
         return torch.cat([features, concepts.sigmoid(), depth_features], -1), concepts, waypoints
 
-    def _encode_rgb(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
+    def encode_rgb(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
         """Features [P, 12, width] and concept logits [P, 12, C]."""
         features, concepts = self.rgb_encoder(rgb.flatten(0, 1))
         return features.unflatten(0, (-1, VIEWS)), concepts.unflatten(0, (-1, VIEWS))
 
-    def _encode_depth(self, depth: Tensor) -> tuple[Tensor, Tensor]:
+    def encode_depth(self, depth: Tensor) -> tuple[Tensor, Tensor]:
         """Features [P, 12, width] and waypoint logits [P, 120, 12]."""
         features = self.depth_encoder(depth.flatten(0, 1)).unflatten(0, (-1, VIEWS))
         return features, self.waypoint_head(features)
@@ -154,9 +154,9 @@ class TopologicalAgent(nn.Module):
 
     stored_parts = ("planner",)  # what trains on stored features
 
-    def store(self, world: Callable[[], Any], folder: str) -> Store:
+    def store(self, world: Callable[[], Any], folder: str, **variants: Any) -> Store:
         """Features of all scenes of a world, to train on without rendering (``stored.py``)."""
-        return Store(self, world, folder)
+        return Store(self, world, folder, **variants)
 
     def parts(self) -> dict[str, nn.Module]:
         """Its four modules by name."""
@@ -270,11 +270,11 @@ class TopologicalAgent(nn.Module):
         """View features [1, 12, ...] and waypoints [n, 2] of one panorama, as :meth:`perceive`."""
 
         def encode_rgb(frames: Tensor) -> tuple[Tensor, Tensor]:
-            features, concepts = self._encode_rgb(frames)
+            features, concepts = self.encode_rgb(frames)
             return features, concepts.sigmoid()
 
         def encode_depth(frames: Tensor) -> tuple[Tensor, np.ndarray]:
-            features, waypoints = self._encode_depth(frames)
+            features, waypoints = self.encode_depth(frames)
             return features, select(waypoints[0].float().cpu().numpy())
 
         features, concepts = self._once("rgb", rgb, encode_rgb)

@@ -3,31 +3,35 @@
 Poses lie about ``SPACING`` metres apart and look along heading 0. Headings are multiples of 30
 degrees, where a panorama is the heading-0 one with its views rolled. Built once, in order,
 resumable: each scene is a folder of memory-mapped arrays that is there whole or not at all, and
-that worker processes share.
+that worker processes share. Beside the clean scene there may be *variants* of it, in each of which
+one corruption is kept.
 """
 
 from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
-from scipy.spatial import cKDTree
-from tensordict import tensorclass
 from torch import Tensor
 
 from mitigate.agents.topological.decisions import Piece
 from mitigate.agents.topological.rollout import roll_out
+from mitigate.agents.topological.stored_walk import Features, ScenePoses, StoredWalk, look
 from mitigate.agents.topological.waypoints import COUNT, select
 from mitigate.core import precision
 from mitigate.core.checkpoint import weights_sha
-from mitigate.core.observation import DEPTH, RGB, VIEW_STEP_DEGREES, VIEWS
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import Progress
-from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
+from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.world import depth_sensor
 
 if TYPE_CHECKING:
     from mitigate.agents.topological.agent import TopologicalAgent
@@ -36,50 +40,29 @@ SPACING = 0.5  # metres
 _BATCH = 16  # panoramas encoded at once
 
 
-@tensorclass
-class ScenePoses:
-    """The poses of one scene as they are stored: the entries of :class:`Features`, tensors."""
-
-    xy: Tensor
-    views: Tensor
-    waypoints: Tensor
-    seen: Tensor
-
-
-class Features:
-    """Arrays of one scene: xy [n, 2], views float16 [n, 12, F], waypoints [n, 6, 2] (metres 0 =
-    none), seen uint64 [n, 12] (bit i: thing i shows in the middle of the view)."""
-
-    def __init__(self, poses: ScenePoses) -> None:
-        self.xy, self.views = poses.xy.numpy(), poses.views.numpy()
-        self.waypoints, self.seen = poses.waypoints.numpy(), poses.seen.numpy().view(np.uint64)
-        self.tree = cKDTree(self.xy)
-
-    @torch.no_grad()
-    def blank(self, agent: TopologicalAgent, size: int) -> None:
-        """Replace what a blind agent cannot see by what it gets from blanked frames."""
-        rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
-        views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
-        blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
-        self.views, self.waypoints = self.views.copy(), self.waypoints.copy()
-        if "rgb" in agent.blind:
-            self.views[..., :-depth] = blanked[:, :-depth]
-        if "depth" in agent.blind:
-            self.views[..., -depth:] = blanked[:, -depth:]
-            found = select(logits[0].float().cpu().numpy())
-            self.waypoints[:] = 0
-            self.waypoints[:, : len(found)] = found
-
-
 class Store:
     """Features of an agent's encoders in all scenes of a world.
 
     Args: world: makes a world that can look from anywhere, names the goal's landmarks among what
     its truth calls "seen", and has an expert. root: of the folders, one a kind of encoders.
+    variants: corrupted ones of each scene; ``schedule`` draws the corruption of each by ``seed``,
+    and its clean share is that of the walks that see the clean scene. Raises ValueError for
+    variants that no schedule corrupts.
     """
 
-    def __init__(self, agent: TopologicalAgent, world: Callable[[], Any], root: Path | str) -> None:
+    def __init__(
+        self,
+        agent: TopologicalAgent,
+        world: Callable[[], Any],
+        root: Path | str,
+        schedule: Schedule | None = None,
+        variants: int = 0,
+        seed: int = 0,
+    ) -> None:
+        if variants and (schedule is None or schedule.mode == "clean"):
+            raise ValueError(f"variants={variants} need a schedule that corrupts (per_episode).")
         self.agent, self.make_world = agent, world
+        self.schedule, self.variants, self.seed = schedule, variants, seed
         self.world = world()
         self.size = self.world.sensors[RGB].shape[1]
         encoders = torch.nn.ModuleList(
@@ -89,35 +72,49 @@ class Store:
         resized = "" if own == self.size else f"-to-{own}"
         kind = precision.current(agent.device)
         self.folder = Path(root) / f"{weights_sha(encoders)}-{self.size}{resized}-{kind}"
-        self._held: dict[str, Features] = {}
+        if schedule is not None and variants:
+            settings = repr((replace(schedule, success=None), seed)).encode()
+            self.corrupted = (
+                self.folder / f"corrupted-{blake2b(settings, digest_size=6).hexdigest()}"
+            )
+        self._held: dict[tuple[str, int], Features] = {}
 
     @torch.no_grad()
     def build(self) -> None:
         """Fill the store; what is there is kept. It holds what the encoders see, also those of a
         blind agent (:meth:`Features.blank`)."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        scenes = self.world.scenes
-        missing = [scene for scene in scenes if not self.path(scene).exists()]
+        (self.corrupted if self.variants else self.folder).mkdir(parents=True, exist_ok=True)
+        scenes, every = self.world.scenes, range(self.variants + 1)
+        missing = [s for s in scenes if not all(self.path(s, v).exists() for v in every)]
         if not missing:
             return
         done = len(scenes) - len(missing)
         self.agent.eval()
         with Progress("stored features", len(scenes), unit="scene", start=done) as progress:
             for scene in missing:
-                _save(self._poses(scene), self.path(scene))
+                for variant, poses in self._poses(scene):
+                    _save(poses, self.path(scene, variant))
                 progress.advance()
 
-    def path(self, scene: str) -> Path:
-        """The folder of a scene."""
-        return self.folder / scene.replace("/", "-")
+    def path(self, scene: str, variant: int = 0) -> Path:
+        """The folder of a scene; variant 0 is the clean one."""
+        name = scene.replace("/", "-")
+        return self.corrupted / f"{name}-{variant}" if variant else self.folder / name
 
-    def features(self, scene: str) -> Features:
+    def features(self, scene: str, variant: int = 0) -> Features:
         """The features of a scene, as the agent sees them."""
-        if scene not in self._held:
-            self._held[scene] = Features(ScenePoses.load_memmap(self.path(scene)))
+        key = (scene, variant)
+        if key not in self._held:
+            self._held[key] = Features(ScenePoses.load_memmap(self.path(*key)))
             if self.agent.blind:
-                self._held[scene].blank(self.agent, self.size)
-        return self._held[scene]
+                self._held[key].blank(self.agent, self.size)
+        return self._held[key]
+
+    def drawn(self, rng: np.random.Generator) -> int:
+        """The variant that a walk sees."""
+        if not self.variants or self.schedule is None or rng.random() < self.schedule.clean_share:
+            return 0
+        return 1 + int(rng.integers(self.variants))
 
     def collect(
         self,
@@ -127,7 +124,10 @@ class Store:
         rngs: Sequence[np.random.Generator],
     ) -> Piece:
         """As ``TopologicalAgent.collect``, by stored features."""
-        walks = [StoredWalk(e, self.features(e.scene_id), self.make_world()) for e in episodes]
+        walks = [
+            StoredWalk(e, self.features(e.scene_id, self.drawn(rng)), self.make_world())
+            for e, rng in zip(episodes, rngs, strict=True)
+        ]
         traces = roll_out(
             self.agent.planner,
             self.agent.tokens([e.instruction.text for e in episodes]),
@@ -144,60 +144,31 @@ class Store:
             },
         )
 
-    def _poses(self, scene: str) -> ScenePoses:
-        """What is stored of ``scene``."""
+    def _poses(self, scene: str) -> Iterator[tuple[int, ScenePoses]]:
+        """What is stored of ``scene``: each variant that is missing."""
         self.world.enter(scene)
         points = self.world.points()
         xy = points[lattice(points)]
-        made = _features(self.agent, [_frames(self.world, p) for p in xy])
-        tensors = {name: torch.from_numpy(array) for name, array in made.items()}
-        return ScenePoses(**tensors, xy=torch.from_numpy(xy), batch_size=[len(xy)])
+        clean = [_frames(self.world, p) for p in xy]
+        known = _features(self.agent, clean)
+        for variant in range(self.variants + 1):
+            if self.path(scene, variant).exists():
+                continue
+            frames = clean if not variant else self._corrupted(clean, f"{scene}-{variant}")
+            made = {**known, **_features(self.agent, frames, clean)}
+            tensors = {name: torch.from_numpy(array) for name, array in _stored(made).items()}
+            yield variant, ScenePoses(**tensors, xy=torch.from_numpy(xy), batch_size=[len(xy)])
 
-
-class StoredWalk:
-    """A rollout by stored features: every move ends on the lattice pose nearest to its target.
-
-    ``shown`` holds, for each look, which views show the goal's landmark: float32 [12].
-    """
-
-    def __init__(self, episode: Episode, features: Features, world: Any) -> None:
-        self.episode, self.features = episode, features
-        world.reset(episode)
-        self.expert = world.expert()
-        self.index = int(features.tree.query(from_vlnce(episode.start_position))[1])
-        self.turn = _turns(heading_of(episode.start_rotation))
-        self.landmarks = np.uint64(sum(1 << i for i in world.landmarks(episode)))
-        self.shown: list[np.ndarray] = []
-
-    def look(self) -> tuple[np.ndarray, np.ndarray]:
-        """Views and waypoints from here."""
-        held = self.features
-        waypoints = held.waypoints[self.index]
-        waypoints = waypoints[waypoints[:, 1] > 0].copy()
-        waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (
-            2 * np.pi
-        )
-        shows = (held.seen[self.index] & self.landmarks) > 0
-        self.shown.append(np.roll(shows.astype(np.float32), self.turn))
-        return np.roll(held.views[self.index].astype(np.float32), self.turn, 0), waypoints
-
-    def pose(self) -> np.ndarray:
-        turned = np.radians(VIEW_STEP_DEGREES) * self.turn
-        return np.array([*self.features.xy[self.index], turned])
-
-    def go(self, route: list[np.ndarray]) -> None:
-        before = route[-2] if len(route) > 1 else self.features.xy[self.index]
-        self.index = int(self.features.tree.query(route[-1])[1])
-        dx, dy = route[-1] - before
-        self.turn = _turns(float(np.arctan2(-dx, dy)))
-
-    def distance(self, xy: np.ndarray) -> float:
-        return self.expert.distance(xy)
-
-
-def look(walks: Sequence[StoredWalk]) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Stored views and waypoints of where each walk is."""
-    return [walk.look() for walk in walks]
+    def _corrupted(self, frames: list[tuple], name: str) -> list[tuple]:
+        """Frames of all poses under the corruption of the variant ``name``."""
+        assert self.schedule is not None
+        schedule, sensor = replace(self.schedule, clean_share=0.0), depth_sensor(self.world.sensors)
+        made = []
+        for number, (rgb, depth, seen) in enumerate(frames):
+            drawn = schedule.draw(self.seed, name, number)
+            found = corrupt_observation({RGB: rgb, DEPTH: depth}, *drawn, sensor)
+            made.append((found[RGB], found[DEPTH], seen))
+        return made
 
 
 def lattice(points: np.ndarray) -> np.ndarray:
@@ -232,26 +203,47 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
     return frames[RGB], frames[DEPTH], bits
 
 
-def _features(agent: TopologicalAgent, frames: list[tuple]) -> dict[str, np.ndarray]:
-    views, chosen = [], np.zeros((len(frames), COUNT, 2), np.float32)
+def _features(
+    agent: TopologicalAgent, frames: list[tuple], known: list[tuple] | None = None
+) -> dict[str, np.ndarray]:
+    """Features of frames by what made them; those of frames that ``known`` holds are left out."""
+    seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch maps no uint64
+    found = {"seen": seen}
+    rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
+    same_rgb, same_depth = (
+        known is not None and all(a[i] is b[i] for a, b in zip(frames, known, strict=True))
+        for i in (0, 1)
+    )
+    if not same_rgb:
+        found["rgb"] = np.concatenate([_rgb(agent, part) for part in _parts(agent, rgb)])
+    if not same_depth:
+        views, logits = zip(*(_depth(agent, part) for part in _parts(agent, depth)), strict=True)
+        found["depth"] = np.concatenate(views)
+        found["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
+        for row, grid in enumerate(np.concatenate(logits)):
+            chosen = select(grid)
+            found["waypoints"][row, : len(chosen)] = chosen
+    return found
+
+
+def _parts(agent: TopologicalAgent, frames: list[np.ndarray]) -> Iterator[Tensor]:
     for first in range(0, len(frames), _BATCH):
-        part = frames[first : first + _BATCH]
-        rgb, depth = (
-            torch.from_numpy(np.stack([frame[i] for frame in part])).to(agent.device)
-            for i in (0, 1)
-        )
-        features, _, logits = agent.encode(rgb, depth)
-        views.append(features.half().cpu().numpy())
-        for row, grid in enumerate(logits.float().cpu().numpy(), first):
-            found = select(grid)
-            chosen[row, : len(found)] = found
-    return {
-        "views": np.concatenate(views),
-        "waypoints": chosen,
-        "seen": np.stack([frame[2] for frame in frames]).view(np.int64),  # torch maps no uint64
-    }
+        yield torch.from_numpy(np.stack(frames[first : first + _BATCH])).to(agent.device)
 
 
-def _turns(heading: float) -> int:
-    """Heading in steps of 30 degrees, counter-clockwise."""
-    return int(np.round(np.degrees(heading) / VIEW_STEP_DEGREES)) % VIEWS
+def _rgb(agent: TopologicalAgent, frames: Tensor) -> np.ndarray:
+    """float16 [n, 12, rgb + concepts]."""
+    features, concepts = agent.encode_rgb(frames)
+    return torch.cat([features, concepts.sigmoid()], -1).half().cpu().numpy()
+
+
+def _depth(agent: TopologicalAgent, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
+    """float16 [n, 12, depth] and waypoint logits."""
+    features, logits = agent.encode_depth(frames)
+    return features.half().cpu().numpy(), logits.float().cpu().numpy()
+
+
+def _stored(made: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The entries of ``ScenePoses`` but xy."""
+    views = np.concatenate([made["rgb"], made["depth"]], -1)
+    return {"views": views, "waypoints": made["waypoints"], "seen": made["seen"]}

@@ -24,6 +24,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.core.files import atomic_text, write_bytes
 from mitigate.core.names import unknown
 from mitigate.worlds.apartments.apartment import apartment_of
@@ -178,19 +179,8 @@ def _goals(episode: Episode) -> list[dict[str, Any]]:
 
 def parse(arguments: Sequence[str]) -> tuple[Path, str, int | None, tuple[str, ...]]:
     """OUT, split, scenes and tasks. Raises ValueError in one paragraph for what cannot be read."""
-    options, paths = dict(DEFAULTS), []
-    for argument in arguments:
-        name, equals, value = argument.partition("=")
-        if equals and name.isidentifier():
-            if name not in DEFAULTS:
-                raise ValueError(unknown("option", name, DEFAULTS))
-            options[name] = value
-        elif argument.startswith("-"):
-            raise ValueError(f"There is no option {argument}: write key=value, or --help.")
-        else:
-            paths.append(argument)
-    if len(paths) != 1:
-        raise ValueError(f"One folder is needed, OUT, but there are {len(paths)}. See --help.")
+    (out,), given = paths_and_options(arguments, ("OUT",), DEFAULTS)
+    options = {**DEFAULTS, **given}
     for name, allowed in ALLOWED.items():
         if options[name] not in allowed:
             raise ValueError(unknown(name, options[name], allowed))
@@ -198,13 +188,13 @@ def parse(arguments: Sequence[str]) -> tuple[Path, str, int | None, tuple[str, .
         raise ValueError(f"scenes={options['scenes']} must be a whole number, or null for all.")
     scenes = None if options["scenes"] == "null" else max(1, int(options["scenes"]))
     tasks = ("vln", "ogn") if options["task"] == "both" else (options["task"],)
-    return Path(paths[0]), options["split"], scenes, tasks
+    return Path(out), options["split"], scenes, tasks
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if not arguments or "--help" in arguments or "-h" in arguments:
+    if asks_help(arguments):
         print(__doc__)
         return 0 if arguments else 2
     try:

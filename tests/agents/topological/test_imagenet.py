@@ -29,7 +29,7 @@ def agent(**settings) -> TopologicalAgent:
 def features(made: TopologicalAgent) -> torch.Tensor:
     frames = torch.arange(12 * 32 * 32 * 3).reshape(1, 12, 32, 32, 3) % 251
     with torch.no_grad():
-        return made.eval()._encode_rgb(frames.to(torch.uint8))[0]
+        return made.eval().encode_rgb(frames.to(torch.uint8))[0]
 
 
 def test_a_checkpoint_holds_what_differs_from_the_public_weights(tmp_path):
@@ -75,7 +75,7 @@ def test_the_borrowed_part_stays_frozen_and_its_statistics_too():
     train_only(made, [ADAPTERS])
     assert all(p.requires_grad for p in adapter_parameters(made))
     assert sum(p.requires_grad for p in made.parameters()) == len(list(adapter_parameters(made)))
-    made._encode_rgb(torch.zeros(1, 12, 32, 32, 3, dtype=torch.uint8))
+    made.encode_rgb(torch.zeros(1, 12, 32, 32, 3, dtype=torch.uint8))
     assert torch.equal(made.rgb_encoder.stem[1].running_mean, before)
 
 

@@ -97,8 +97,8 @@ def test_object_goals_have_view_points(exported):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ([], "One folder is needed"),
-        (["a", "b"], "One folder is needed"),
+        ([], "takes 1 path, OUT"),
+        (["a", "b"], "takes 1 path, OUT"),
         (["a", "splitt=train"], "There is no option 'splitt'"),
         (["a", "split=test"], "There is no split 'test'"),
         (["a", "scenes=-1"], "must be a whole number"),

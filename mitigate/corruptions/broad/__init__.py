@@ -1,0 +1,64 @@
+"""Broad augmentation: random compositions of primitive transforms, for training alone.
+
+A schedule with ``broad_share`` draws them beside the named corruptions, so that what an agent
+learns is not the list. They are never part of a suite. The primitives are those of PRIME (Modas et
+al., ECCV 2022: tone, filter, warp) and of AugMix's kin, and what sensors share: noise, covers, lost
+parts. They use OpenCV, which is imported when a first frame is corrupted: who only loads an agent
+needs none.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.record import Record
+
+STATE = "primitives, maps"  # kept through an episode
+
+
+def broad_rgb(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """One to three primitives of ``rgb.py``, of random strength up to ``severity``."""
+    from mitigate.corruptions.broad import rgb
+
+    return rgb.compose(views, severity, key)
+
+
+def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """One to three primitives of ``depth.py``, of random strength up to ``severity``."""
+    from mitigate.corruptions.broad import depth
+
+    return depth.compose(views, severity, key, sensor)
+
+
+RECORDS = (
+    Record(
+        name="broad_rgb",
+        modality="rgb",
+        apply=broad_rgb,
+        version="1",
+        label="Broad RGB",
+        severity="strongest primitive",
+        fails="anything: it is drawn to train on",
+        formula="one to three of the primitives in docs/broad-augmentation.md",
+        sources="PRIME (Modas et al. 2022), AugMix (Hendrycks et al. 2020); strengths are ours",
+        source="PRIME, AugMix",
+        episode=STATE,
+        frame="noise, lost views",
+    ),
+    Record(
+        name="broad_depth",
+        modality="depth",
+        apply=broad_depth,
+        version="1",
+        label="Broad depth",
+        severity="strongest primitive",
+        fails="anything: it is drawn to train on",
+        formula="one to three of the primitives in docs/broad-augmentation.md",
+        sources="after PRIME (Modas et al. 2022); primitives and strengths are ours",
+        source="ours, after PRIME",
+        episode=STATE,
+        frame="noise, pixels, views",
+    ),
+)

@@ -1,0 +1,110 @@
+"""A gate in an encoder: what it takes for clean passes its adapters as it is, bit for bit."""
+
+from __future__ import annotations
+
+import copy
+
+import pytest
+import torch
+from torch import nn
+
+from mitigate.agents import adapters
+from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
+from mitigate.agents.encoders import RGBEncoder
+from mitigate.agents.gate import FrameGate
+
+PLACES = {"target_modules": ["stages.0"], "ring": ["stages.[12]"], "gates": ["stem"]}
+
+
+@pytest.fixture
+def encoder():
+    torch.manual_seed(0)
+    return RGBEncoder(16, (16, 24, 32), 16, size=16).eval()
+
+
+@pytest.fixture
+def frames():
+    return torch.randint(0, 256, (24, 16, 16, 3), dtype=torch.uint8)
+
+
+def trained(model: nn.Module) -> nn.Module:
+    """With adapters that correct a great deal, and a gate that opens for about half the frames."""
+    for parameter in adapters.adapter_parameters(model):
+        nn.init.normal_(parameter, std=0.3)
+    return model.eval()
+
+
+def gate_of(model: nn.Module) -> FrameGate:
+    return next(module for module in model.modules() if isinstance(module, FrameGate))
+
+
+def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
+    """Move the gate's threshold to the median of ``frames``; returns for which it is open."""
+    model(frames)
+    gate = gate_of(model)
+    with torch.no_grad():
+        gate.judge.bias -= gate.judged.logits.median()
+    model(frames)
+    return gate.judged.logits > 0
+
+
+def test_frames_for_which_it_is_shut_get_the_features_without_adapters(encoder, frames):
+    plain = encoder(frames)[0]
+    insert_adapters(encoder, **PLACES)
+    opened = centred(trained(encoder), frames)
+    made = encoder(frames)[0]
+    same = (made == plain).all(1)
+    assert 0 < opened.sum() < len(frames)
+    assert torch.equal(same, ~opened)
+
+
+def test_it_comes_in_without_changing_anything_and_goes_without_a_trace(encoder, frames):
+    plain = encoder(frames)[0]
+    names = insert_adapters(encoder, **PLACES)
+    assert names == ["stem", "stages.0", "stages.1", "stages.2"]
+    assert torch.equal(encoder(frames)[0], plain)
+    trained(encoder)
+    remove_adapters(encoder)
+    assert torch.equal(encoder(frames)[0], plain)
+
+
+def test_it_learns_with_the_adapters(encoder, frames):
+    insert_adapters(encoder, **PLACES)
+    trained(encoder).train()
+    encoder(frames)[0].sum().backward()
+    assert all(p.grad is not None for p in adapters.adapter_parameters(encoder))
+    assert all(p.grad is None for p in encoder.stages[0].first.parameters())
+
+
+def test_a_folder_and_a_copy_keep_it(encoder, frames, tmp_path):
+    insert_adapters(encoder, **PLACES)
+    centred(trained(encoder), frames)
+    wanted = encoder(frames)[0]
+    copied = copy.deepcopy(encoder)
+    save_adapters(encoder, tmp_path)
+    remove_adapters(encoder)
+    assert load_adapters(encoder, tmp_path) == ["stem", "stages.0", "stages.1", "stages.2"]
+    assert torch.equal(encoder.eval()(frames)[0], wanted)
+    with torch.no_grad():
+        gate_of(encoder).judge.bias += 100  # the copy has a gate of its own
+    assert torch.equal(copied(frames)[0], wanted)
+
+
+def test_each_encoder_has_its_own(frames):
+    torch.manual_seed(0)
+    both = nn.ModuleDict({n: RGBEncoder(16, (16, 24, 32), 16, size=16) for n in ("one", "two")})
+    insert_adapters(both, ["stages.[012]"], gates=["stem"])
+    followed = {
+        name: module.adapter.gates
+        for name, module in both.named_modules()
+        if name.endswith(("stages.0", "stages.2"))
+    }
+    for name, gates in followed.items():
+        assert gates == [both[name.split(".")[0]].stem.adapter]
+
+
+def test_without_adapters_behind_it_and_of_no_channels_it_is_refused(encoder):
+    with pytest.raises(ValueError, match="target_modules names no module"):
+        insert_adapters(encoder, [], gates=["stem"])
+    with pytest.raises(ValueError, match="A gate needs channels"):
+        FrameGate(0)
