@@ -18,7 +18,8 @@ from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
-from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, entry_of, sensors_of
+from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
+from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.scale.launcher import count
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World

@@ -17,12 +17,8 @@ from typing import Any
 
 from mitigate.core.files import find
 from mitigate.evaluation import rows as result_rows
-from mitigate.evaluation.leaderboard.entry import (
-    LeaderboardEntry,
-    entry_of,
-    load,
-    sensors_of,
-)
+from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
+from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.command import told

@@ -6,10 +6,8 @@ and every figure can be computed again from the rows that it names.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from importlib.metadata import version
 from pathlib import Path
@@ -17,15 +15,8 @@ from typing import Any
 
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
-from mitigate.core.names import unknown
-from mitigate.core.observation import Sensor
-from mitigate.corruptions.registry import UNSEEN
-from mitigate.evaluation import bootstrap
-from mitigate.evaluation.grid import METRICS, SUITE
 from mitigate.evaluation.leaderboard.checks import problem
-from mitigate.evaluation.page.model import CLEAN, Numbers, numbers
-from mitigate.evaluation.rows import Row, identity
-from mitigate.evaluation.sections import Section, sections
+from mitigate.evaluation.page.model import Numbers
 
 FORMAT = 1
 LARGEST = 1 << 18  # bytes of an entry's file; one of 34 corruptions has 5,000 (ours)
@@ -41,7 +32,7 @@ class LeaderboardEntry:
     seed of its rows. sensors: a line each. training_data, link: in words of who submits. scores:
     clean, mean and PRS, [value, low, high] with 95 % intervals, None where it is undefined. SR,
     SPL: the same of each condition. episodes: how many each condition has. rows: "file" (relative,
-    or empty), "sha256" (:func:`rows_sha`) and "count" of those that it was computed from.
+    or empty), "sha256" (``from_rows.rows_sha``) and "count" of those that it was computed from.
     """
 
     name: str
@@ -98,135 +89,6 @@ def load(path: Path | str) -> LeaderboardEntry:
         if wrong:
             raise ValueError(f"{path}: {name} {wrong}. {_AGAIN}")
     return LeaderboardEntry(**held | {n: tuple(held[n]) for n in ("agents", "sensors")})
-
-
-def entry_of(
-    rows: Iterable[Row],
-    name: str,
-    *,
-    severity: float,
-    split: str | None = None,
-    sensors: Sequence[str] = (),
-    training_data: str = "",
-    link: str = "",
-    file: str = "",
-    agents: Iterable[str] = (),
-) -> LeaderboardEntry:
-    """Return the entry of the rows whose column is ``name``, at one severity.
-
-    ``split`` and ``agents`` (hashes) may be left out where the rows are of one column. ``file``:
-    where they are, as the entry says. Raises ValueError if there are none, if they are of several
-    splits, suites or rules, or of agents that are no training seeds of one another, and if a
-    condition lacks episodes that others have.
-    """
-    own = chosen(rows, name, severity, split, agents)
-    found = [part for part in sections(own) if part.blocks] or sections(own)
-    grids = {(part.grid.split, part.grid.suite, part.grid.rule) for part in found}
-    if len(grids) > 1 or any(len(part.columns) > 1 for part in found):
-        raise ValueError(
-            f"The rows of {name} are of several splits, suites, rules or agents: "
-            f"{'; '.join(', '.join(grid) for grid in sorted(grids))}. Name a split, or a file of "
-            "one."
-        )
-    for gap in [gap for part in found for gap in part.gaps][:1]:
-        raise ValueError(
-            f"The rows of {name} hold {gap.have} of {gap.want} episodes under {gap.corruption}: an "
-            "entry needs all of them under each. The evaluation's own command goes on from there."
-        )
-    scores, rates = _figures(found)
-    ((at_split, suite, rule),) = grids
-    return LeaderboardEntry(
-        name=name,
-        agents=tuple(_agents(own)),
-        sensors=tuple(sensors),
-        training_data=training_data,
-        split=at_split,
-        suite=suite,
-        rule=rule,
-        severity=severity,
-        episodes=len(found[0].grid.episodes),
-        scores=scores,
-        SR=rates["SR"],
-        SPL=rates["SPL"],
-        rows={"file": file, "sha256": rows_sha(own), "count": len(own)},
-        link=link,
-    )
-
-
-def chosen(
-    rows: Iterable[Row],
-    name: str,
-    severity: float,
-    split: str | None = None,
-    agents: Iterable[str] = (),
-) -> list[Row]:
-    """Return the rows of an entry: of the column ``name``, clean or at ``severity``; of ``agents``
-    alone, if any are given. Raises ValueError if there are none."""
-    held, own_agents = list(rows), set(agents)
-    names = {row["name"] for row in held}
-    if name not in names:
-        raise ValueError(unknown("agent in these rows", name, names))
-    own = [row for row in held if row["name"] == name and split in (None, row["split"])]
-    own = [row for row in own if not own_agents or row["agent"] in own_agents]
-    own = [row for row in own if row["severity"] in (0, severity)]
-    if not any(row["severity"] == severity for row in own):
-        raise ValueError(f"The rows of {name} hold no corruption at severity {severity:g}.")
-    return own
-
-
-def rows_sha(rows: Iterable[Row]) -> str:
-    """Return the sha256 of rows in whatever order and file: their JSON with sorted keys, one a
-    line, in the order of their identities."""
-    ordered = sorted(rows, key=lambda row: tuple(map(str, identity(row))))
-    digest = hashlib.sha256()
-    for row in ordered:
-        digest.update(json.dumps(row, sort_keys=True).encode() + b"\n")
-    return digest.hexdigest()
-
-
-def sensors_of(sensors: Mapping[str, Sensor]) -> tuple[str, ...]:
-    """Return a line for each sensor of a world."""
-    lines = []
-    for name, sensor in sensors.items():
-        several = len(sensor.yaws) > 1
-        views = f"{len(sensor.yaws)} views of " if several else ""
-        seen = f", {sensor.hfov:g} degrees wide" if sensor.hfov else ""
-        unit = f", {sensor.unit}" if sensor.unit else ""
-        shape = " x ".join(map(str, sensor.shape[several:]))
-        lines.append(f"{name}: {views}{shape} {sensor.dtype}{unit}{seen}")
-    return tuple(lines)
-
-
-def _figures(found: Sequence[Section]) -> tuple[dict[str, Numbers], dict[str, dict[str, Numbers]]]:
-    """Return the scores by title, and SR and SPL of each condition by metric."""
-    scores: dict[str, Numbers] = {}
-    rates: dict[str, dict[str, Numbers]] = {metric: {} for metric in METRICS}
-    for part in found:
-        (column,) = part.columns
-        for metric in METRICS:
-            scores.setdefault(f"Clean {metric}", numbers(part.clean.get((column, metric))))
-        if part.kind == SUITE and column in part.corrupted:
-            scores["Mean SR"] = numbers(part.corrupted[column].estimate)
-        for (_, block, metric), held in part.retained.items():
-            title = f"PRS-{metric} ({_heading(block, held.corruptions)})"
-            scores[title] = numbers(held.estimate)
-        names = [CLEAN, *(name for block in part.blocks.values() for name in block)]
-        for metric, key in METRICS.items():
-            table = [part.grid.cell(column, name, part.severity, key) for name in names]
-            for name, estimate in zip(names, bootstrap.means(table, shares=True), strict=True):
-                rates[metric].setdefault(name, numbers(estimate))
-    return scores, rates
-
-
-def _heading(block: str, names: Iterable[str]) -> str:
-    """Return what a PRS over ``names`` is of: a block, or the one half of it that was measured."""
-    own = {UNSEEN[name].half for name in names if name in UNSEEN}
-    return f"{block}, {own.pop()}" if len(own) == 1 and "," not in block else block
-
-
-def _agents(rows: Iterable[Row]) -> list[dict[str, Any]]:
-    held = sorted({(row["seed"], row["agent"]) for row in rows})
-    return [{"agent": agent, "seed": seed} for seed, agent in held]
 
 
 def _words(found: Numbers) -> str:

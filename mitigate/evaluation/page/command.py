@@ -39,10 +39,11 @@ def run(
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document
+    from mitigate.evaluation.page.report import report
 
     held = rows.gather(paths)
     drawn = list(_walks(held, walk, walks, seed, options)) if walk else []
-    return document.write(document.report(held, title=title, walks=drawn), out)
+    return document.write(report(held, title=title, walks=drawn), out)
 
 
 def _walks(

@@ -10,63 +10,16 @@ import base64
 import hashlib
 import html
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from mitigate.core.files import atomic_text
 from mitigate.corruptions import SUITE_VERSION
-from mitigate.evaluation.page.curves import curves
-from mitigate.evaluation.page.episodes import MOST, Packed
-from mitigate.evaluation.page.model import section_data
-from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import sections
 
 ASSETS = Path(__file__).parent / "assets"
 SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
-WALKS = (
-    "Walked again for this page with the keys of the rows, by weights that were at hand. Episodes "
-    "are taken by turns of outcomes and corruptions, to look at; how often each outcome comes is "
-    "in the tables. Circles mark the ends (filled: won), the black square the start, the star the "
-    "goal, the grey dots the reference path."
-)
-
-
-def report(
-    rows: Iterable[Row],
-    *,
-    title: str = "Results",
-    walks: Sequence[dict[str, Any]] = (),
-    most: int = MOST,
-) -> str:
-    """Return the HTML page of ``rows``.
-
-    ``walks`` as ``walks.walk_again`` yields them; ``most``: how many episodes of cells it may hold.
-    Raises ValueError if there are no rows.
-    """
-    held = list(rows)
-    parts, packed = sections(held), Packed(most)
-    shown = [{**section_data(part), "grid": packed.add(part, held)} for part in parts]
-    largest = max(range(len(shown)), key=lambda n: _size(shown[n]))
-    notes = []
-    if packed.left_out:
-        notes.append(
-            f"The episodes of {packed.left_out:,} cells (one a seed) are not in this file, which "
-            f"holds {most:,} episodes at most: their numbers stand, but such cells do not open. "
-            "Name fewer rows to see them."
-        )
-    return page(
-        title,
-        f"{len(held):,} rows: {_listed({row['name'] for row in held})}.",
-        shown,
-        curves=curves(parts),
-        grids=packed.grids,
-        packed=packed.text(),
-        walks=walks,
-        notes=notes,
-        first=largest,
-    )
 
 
 def page(
@@ -93,7 +46,6 @@ def page(
         "curves": list(curves),
         "grids": list(grids),
         "walks": list(walks),
-        "walksAbout": WALKS,
         "notes": list(notes),
         "first": first,
         "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
@@ -135,13 +87,3 @@ def _embedded(data: Any) -> str:
 
 def _hash(text: str) -> str:
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
-
-
-def _size(shown: dict[str, Any]) -> int:
-    return sum(cell[2] for line in shown["cells"] for cell in line)
-
-
-def _listed(names: set[str], most: int = 8) -> str:
-    held = sorted(names)
-    more = f" and {len(held) - most} more agents" if len(held) > most else ""
-    return ", ".join(held[:most]) + more

@@ -15,7 +15,8 @@ from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.grid import BLOCKS
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.checks import titles
-from mitigate.evaluation.leaderboard.entry import entry_of, load, rows_sha
+from mitigate.evaluation.leaderboard.entry import load
+from mitigate.evaluation.leaderboard.from_rows import entry_of, rows_sha
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.sections import sections
 from tests.evaluation.made_rows import column

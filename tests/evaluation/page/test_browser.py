@@ -7,6 +7,7 @@ import json
 import pytest
 
 from mitigate.evaluation.page import document
+from mitigate.evaluation.page.report import report as report_of
 from tests.evaluation.made_rows import column
 from tests.evaluation.page.chromium import PROGRAM, Page
 
@@ -44,7 +45,7 @@ def report(tmp_path_factory):
     one = {"agent": "base", "clean": True, "won": True, "left": 0.5, "steps": 9, "agrees": True}
     walk["walks"] = [one | {"points": [[0, 0], [1, 1]]}, one | {"clean": False, "points": [[0, 0]]}]
     out = tmp_path_factory.mktemp("report") / "report.html"
-    return document.write(document.report(rows, walks=[walk]), out)
+    return document.write(report_of(rows, walks=[walk]), out)
 
 
 def agents(page: Page) -> list[str]:
@@ -115,7 +116,7 @@ def test_walks_are_drawn_and_filtered(page, report):
 def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):
     rows = column(5, {"spatter": 3}, name=EVIL)
     rows = [row | {"episode_id": f"{EVIL}{row['episode_id']}", "split": EVIL} for row in rows]
-    out = document.write(document.report(rows, title=EVIL), tmp_path / "evil.html")
+    out = document.write(report_of(rows, title=EVIL), tmp_path / "evil.html")
     page.open(out, "#agent=0&corruption=spatter")
     assert page.errors == [] and page.ask("document.title") == EVIL
     assert page.ask("document.querySelectorAll('img, script[src]').length") == 0

@@ -12,9 +12,11 @@ import pytest
 from mitigate.core.observation import FORWARD, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import run_episode
-from mitigate.evaluation.page import command, document
+from mitigate.evaluation.page import command
+from mitigate.evaluation.page.choosing import KINDS, choose
 from mitigate.evaluation.page.curves import curves
-from mitigate.evaluation.page.walks import KINDS, choose, walk_again
+from mitigate.evaluation.page.report import report
+from mitigate.evaluation.page.walks import walk_again
 from mitigate.evaluation.rows import write
 from mitigate.evaluation.sections import sections
 from mitigate.worlds.apartments.tasks import load_episodes
@@ -38,7 +40,7 @@ def rows() -> list[dict]:
 
 def test_values_and_differences_are_those_of_the_table(rows):
     (part,) = sections(rows)
-    data, _ = held(document.report(rows))
+    data, _ = held(report(rows))
     (shown,) = data["sections"]
     titles = [measure["title"] for measure in shown["measures"]]
     clean = part.clean["hard", "SR"]
@@ -56,7 +58,7 @@ def test_values_and_differences_are_those_of_the_table(rows):
 
 
 def test_the_episodes_of_a_cell_come_back_as_they_were(rows):
-    data, packed = held(document.report(rows))
+    data, packed = held(report(rows))
     (grid,) = data["grids"]
     begin = grid["cells"]["0|spatter|0.6|0"]
     success, spl, steps = packed[3 * begin : 3 * (begin + 10)].reshape(3, 10)
@@ -67,7 +69,7 @@ def test_the_episodes_of_a_cell_come_back_as_they_were(rows):
 
 def test_rows_that_are_missing_are_missing_in_the_page(rows):
     fewer = [r for r in rows if (r["episode_id"], r["corruption"]) != ("3", "spatter")]
-    data, packed = held(document.report(fewer))
+    data, packed = held(report(fewer))
     begin = data["grids"][0]["cells"]["0|spatter|0.6|0"]
     assert packed[3 * begin + 3] == 65535
     assert data["sections"][0]["cells"][0][1][2] == 9
@@ -75,14 +77,14 @@ def test_rows_that_are_missing_are_missing_in_the_page(rows):
 
 
 def test_a_page_is_bounded_and_says_what_it_leaves_out(rows):
-    data, packed = held(document.report(rows, most=25))
+    data, packed = held(report(rows, most=25))
     assert len(packed) == 3 * 20 and len(data["grids"][0]["cells"]) == 2
     assert "4 cells (one a seed) are not in this file" in data["notes"][0]
 
 
 def test_several_seeds_and_kinds_of_corruption_have_their_own_cells(rows):
     more = rows + column(5, {"spatter": 4, "haze": 3}, seed=1, agent="aaaaaaaaaaaa")
-    data, _ = held(document.report(more))
+    data, _ = held(report(more))
     seeds = {key.rpartition("|")[2] for grid in data["grids"] for key in grid["cells"]}
     assert seeds >= {"0", "1"} and len(data["sections"]) == 2
 
@@ -103,7 +105,7 @@ def test_one_severity_makes_no_curve(rows):
 def test_text_of_rows_ends_no_element_and_the_page_names_no_address(rows):
     evil = "</script><script>alert(1)</script><!-- <script>"
     named = [r | {"name": evil, "episode_id": f"{evil}{r['episode_id']}"} for r in rows[:30]]
-    text = document.report(named, title=evil)
+    text = report(named, title=evil)
     assert len(re.findall(r"<script", text)) == 3 and len(re.findall(r"</script", text)) == 3
     assert "<!--" not in text and held(text)[0]["sections"][0]["columns"][0]["label"] == evil
     addresses = set(re.findall(r"https?://[^\"'\s)]+", text))

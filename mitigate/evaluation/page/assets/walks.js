@@ -1,5 +1,8 @@
 // Walks from above: the first agent clean and corrupted, the others corrupted, over the plan.
 
+const WALKS_ABOUT = "Walked again for this page with the keys of the rows, by weights that were at hand. Episodes are taken by turns of "
+  + "outcomes and corruptions, to look at; how often each outcome comes is in the tables. Circles mark the ends (filled: "
+  + "won), the black square the start, the star the goal, the grey dots the reference path.";
 const walkView = { kind: "all", corruption: "all", layers: new Set() };
 
 const walkOf = (one, id, k) => {
@@ -14,7 +17,7 @@ function walksPart() {
   const show = () => redraw(place, () => [walkControls(show), walkCards()]);
   show();
   return el("section", { class: "card", id: "walks", "aria-label": "Walks" }, el("h2", {}, "Walks"),
-    el("p", { class: "facts" }, DATA.walksAbout), place);
+    el("p", { class: "facts" }, WALKS_ABOUT), place);
 }
 
 function walkControls(show) {
