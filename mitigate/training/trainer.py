@@ -145,32 +145,44 @@ class Trainer:
             self.recipe, self.workers, self.steps, self.precision, self.device, self.ranks
         )
         for step in range(start, self.steps):
+            done = step + 1
             with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
                 found = self._step(step, batches)
                 if ending.number is not None:
-                    self._stop(step + 1, ending.number)
-            for name, value in found.items():
-                sums[name] += value
-            counted, done = counted + 1, step + 1
-            journal.advance()
-            if self._due(self.log_every, done):
-                means = {name: total / counted for name, total in sums.items()}
-                pace = counted / max(1e-9, time.monotonic() - since)
-                journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
-                sums.clear()
-                counted, since = 0, time.monotonic()
-            if self._due(self.eval_every, done):
-                self._evaluate(done, journal)
-            if self._due(self.figure_every, done):
-                journal.figures(done, self.recipe.figures(done))
+                    self._stop(done, ending.number)
+            try:
+                for name, value in found.items():
+                    sums[name] += value
+                counted += 1
+                journal.advance()
+                if self._due(self.log_every, done):
+                    means = {name: total / counted for name, total in sums.items()}
+                    pace = counted / max(1e-9, time.monotonic() - since)
+                    journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
+                    sums.clear()
+                    counted, since = 0, time.monotonic()
+                if self._due(self.eval_every, done):
+                    self._evaluate(done, journal)
+                if self._due(self.figure_every, done):
+                    journal.figures(done, self.recipe.figures(done))
+            except KeyboardInterrupt as ended:  # between two steps: nothing is lost
+                if self.ranks.count == 1:
+                    self._stop(done, getattr(ended, "status", 130) - 128)
+                raise
             if done == self.steps or (self.save_every and done % self.save_every == 0):
-                if self.ranks.first:
-                    self._save(done)
-                self.ranks.wait()
+                with held(self.ranks.count == 1) as ending:
+                    if self.ranks.first:
+                        self._save(done)
+                    self.ranks.wait()
+                if ending.number is not None:
+                    self._saved(done, ending.number)
 
     def _stop(self, done: int, number: int) -> NoReturn:
         """Save after a signal that ends the training, and end it."""
         self._save(done)
+        self._saved(done, number)
+
+    def _saved(self, done: int, number: int) -> NoReturn:
         say(f"{self.name}: saved at step {done} in {self.folder}")
         raise Ended(number)
 

@@ -16,13 +16,13 @@ from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
 from mitigate.replay import export_drive, replay
 from mitigate.safeguard import guard
-from mitigate.training import table1, table2, train
+from mitigate.training import sweep, table1, table2, train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 
 YAMLS = sorted(path.relative_to(conf.CONF) for path in conf.CONF.rglob("*.yaml"))
 PRIMARY = tuple(
     module.__name__.split(".")[-1]
-    for module in (train, evaluate, table1, table2, bridge_run, replay, export_drive)
+    for module in (train, evaluate, table1, table2, sweep, bridge_run, replay, export_drive)
 )
 GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
