@@ -60,10 +60,10 @@ class Running:
 
     def _next(self) -> None:
         self.what, words = self.left.pop(0)
-        chain, parent = self.chain, str(os.getpid())
+        chain = self.chain
         with open(chain.log, "a", encoding="utf-8") as log:
             self.process = subprocess.Popen(
-                [sys.executable, "-S", "-E", str(tied.__file__), parent, *words],
+                tied.words(list(words)),
                 cwd=chain.folder,
                 env={**os.environ, **chain.environment},
                 start_new_session=True,  # Ctrl-C reaches it once, through us

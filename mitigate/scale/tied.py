@@ -6,11 +6,21 @@ run, in a bare Python, before it becomes the program.
 """
 
 import ctypes
+import errno
 import os
+import shutil
 import signal
 import sys
 
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
+
+
+def words(program):
+    """The words of ``program`` (a list of them), tied to this process. Raises OSError if there is
+    no such program."""
+    if shutil.which(program[0]) is None:
+        raise FileNotFoundError(errno.ENOENT, "there is no such program", program[0])
+    return [sys.executable, "-S", "-E", __file__, str(os.getpid()), *program]
 
 
 def main() -> None:
