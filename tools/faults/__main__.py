@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import signal
 import sys
 import time
 from collections.abc import Sequence
@@ -68,6 +69,7 @@ def broken(name: str, chosen: argparse.Namespace) -> dict[str, str]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run from the command line."""
     chosen = options(arguments)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # what ignores it, has it ignored
     notes = chosen.out / "faults.json"
     with ThreadPoolExecutor(max(1, chosen.jobs)) as pool:
         made = pool.map(lambda name: broken(name, chosen), chosen.recipes)

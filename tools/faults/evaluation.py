@@ -12,7 +12,7 @@ from pathlib import Path
 
 from tools.faults.disk import filled, small_disk
 from tools.faults.processes import Command, workers
-from tools.faults.training import NOTICED, STATUS
+from tools.faults.training import NOTICED, STATUS, TRIES, one_refused
 
 OPTIONS = ("checkpoint=checkpoints/base", "episodes=8", "suite=quick", "workers=2")
 ROWS = "rows.jsonl"
@@ -50,7 +50,8 @@ def signalled(evaluation: Evaluation, number: int) -> str:
     if not command.runs():
         return LATE
     command.process.send_signal(number)
-    return command.problem(STATUS[signal.Signals(number)])
+    problem = command.problem(STATUS[signal.Signals(number)], 0)
+    return LATE if not problem and command.process.returncode == 0 else problem
 
 
 def worker_killed(evaluation: Evaluation) -> str:
@@ -80,13 +81,7 @@ def jumping_clock(evaluation: Evaluation) -> str:
 
 
 def second(evaluation: Evaluation) -> str:
-    first = evaluation.under_way()
-    if not first.runs():
-        return LATE
-    other = evaluation.start()
-    problem = other.problem(1)
-    refused = "is in use" in other.said()
-    return problem or ("" if refused else f"the second was let in: {other.end()}")
+    return one_refused([evaluation.start(), evaluation.start()])
 
 
 def cut(evaluation: Evaluation) -> str:
@@ -139,8 +134,11 @@ def break_evaluation(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
         return {"unbroken": problem}
     wanted, found = unbroken.rows(), {}
     for name in faults:
-        evaluation = Evaluation(out / name.replace(" ", "-"), rng)
-        problem = FAULTS[name](evaluation)
+        for again in range(TRIES):
+            evaluation = Evaluation(out / f"{name.replace(' ', '-')}-{again}", rng)
+            problem = FAULTS[name](evaluation)
+            if problem != LATE:
+                break
         if name == "full disk" and not problem:
             evaluation.folder = evaluation.folder.with_name("kept")
         elif not problem:

@@ -18,7 +18,7 @@ from pathlib import Path
 
 from mitigate.core import checkpoint, checksums
 from tools.faults.disk import filled, small_disk
-from tools.faults.processes import Command, workers
+from tools.faults.processes import LATE, Command, workers
 
 SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
 OWN = {  # what a recipe needs to be small, or to run at all
@@ -162,13 +162,22 @@ def forgotten(training: Training) -> str:
 
 
 def second(training: Training) -> str:
-    """Another training is started in the same folder; it must be refused, and change nothing."""
-    first = training.under_way()
-    other = training.start()
-    problem = other.problem(1)
-    if not problem and "is in use" not in other.said():
-        problem = f"the second was let in: {other.end()}"
-    return training.ended_by(first, signal.SIGTERM) or problem
+    """Two trainings are started in one folder at once: one must be refused, and change nothing."""
+    both = [training.start(), training.start()]
+    problem = one_refused(both)
+    left = next((command for command in both if command.runs()), both[0])
+    return problem or training.ended_by(left, signal.SIGTERM)
+
+
+def one_refused(both: list[Command]) -> str:
+    """Wait until one of two commands is refused; return what is wrong with that."""
+    for _ in range(int(LATE / 0.1)):
+        over = [command for command in both if not command.runs()]
+        if over:
+            told = "is in use" in over[0].said()
+            return over[0].problem(1) or ("" if told else f"let in: {over[0].end()}")
+        time.sleep(0.1)
+    return "neither of the two was refused"
 
 
 def worker_killed(training: Training) -> str:
