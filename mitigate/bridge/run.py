@@ -214,10 +214,6 @@ _command: list[str] = []  # behind --
 def main() -> None:
     """Run from the command line."""
     options, command = split_command(sys.argv[1:])
-    if {"--help", "-h"} & set(options):
-        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
-        print(conf.options_text("run"))
-        return
     _command[:] = command
     for ended in (signal.SIGTERM, signal.SIGHUP):  # of timeout, SLURM, a terminal: as Ctrl-C
         signal.signal(ended, _interrupt)

@@ -130,14 +130,10 @@ def chain(cfg: DictConfig, options: Sequence[str]) -> programs.Chain:
 def main() -> None:
     """Run from the command line."""
     given = sys.argv[1:]
-    if {"--help", "-h"} & set(given):
-        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
-        print(conf.options_text("sweep", suites=False))
-        return
     own = [option for option in given if OWN.match(option)]
     options = [option for option in given if not OWN.match(option)]
-    conf.main(
-        lambda: run(conf.load_config("sweep", own), options),
-        "sweep",
-        lambda: check_arguments(options),
-    )
+
+    def program() -> None:
+        run(conf.load_config("sweep", own), options)
+
+    conf.main(program, "sweep", lambda: check_arguments(options))

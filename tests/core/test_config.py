@@ -253,3 +253,30 @@ def test_a_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, optio
     text = complaint(monkeypatch, capsys, option)
     for word in words:
         assert word in text
+
+
+@pytest.mark.parametrize("primary", PRIMARY)
+def test_help_says_what_every_option_and_group_means(primary):
+    shown, cfg = conf.options_text(primary), conf.load_config(primary)
+    for name in cfg:
+        told = [line for line in shown.splitlines() if line.startswith(f"{name}:")]
+        assert told and "# " in told[0] or name in ("name", "init", "rollouts", "stages"), name
+    for group in ("suite", "launcher"):
+        if group in cfg:
+            assert f"{group}: " in shown and ", " in shown.partition(f"{group}: ")[2]
+
+
+def test_help_needs_no_config_to_compose(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["mitigate train", "--help", "sevrity=1"])
+    train.main()
+    shown = capsys.readouterr().out
+    assert "Train an agent by a recipe" in shown and "severity: 0.6  # of the training" in shown
+
+
+def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path):
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    monkeypatch.setattr(sys, "argv", ["evaluate", "split=nowhere", f"runs={tmp_path}"])
+    with pytest.raises(SystemExit) as stop:
+        evaluate.main()
+    assert "There is no split" in str(stop.value.code)
+    assert "Error executing job" not in capsys.readouterr().err

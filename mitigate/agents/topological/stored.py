@@ -27,6 +27,7 @@ from mitigate.core import precision
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.observation import DEPTH, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.progress import Progress
+from mitigate.core.signals import unbroken
 from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
 
 if TYPE_CHECKING:
@@ -104,7 +105,8 @@ class Store:
         self.agent.eval()
         with Progress("stored features", len(scenes), unit="scene", start=done) as progress:
             for scene in missing:
-                _save(self._poses(scene), self.path(scene))
+                with unbroken():  # as far as it is worth keeping
+                    _save(self._poses(scene), self.path(scene))
                 progress.advance()
 
     def path(self, scene: str) -> Path:
