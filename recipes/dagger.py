@@ -110,7 +110,7 @@ def _read(file: Path) -> Any:
         return _floats(torch.load(file, weights_only=True), torch.float32)
     except Exception as error:  # of any kind, where the file is damaged
         raise ValueError(
-            f"The kept walk {file} is missing or damaged. A training by DAgger learns from the walks "
+            f"The kept walk {file} is missing or damaged. A training by DAgger learns from walks "
             "that it kept, and cannot go on without them: copy them back, or delete the run's "
             "folder to begin anew."
         ) from error
