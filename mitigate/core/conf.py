@@ -169,7 +169,7 @@ def options_text(primary: str) -> str:
     """Every option of ``conf/<primary>.yaml`` with its comment; those that choose a file of
     ``conf/`` come first, with what there is."""
     own, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
-    kept = [line for line in own.splitlines() if re.match(r" *\w+:.*#", line)]
+    kept = [line for line in own.splitlines() if re.match(r" *\w+:.*#|\w+: \S", line)]
     groups = []
     for name, chosen in _chosen(primary).items():
         there = ", ".join(sorted(path.stem for path in (CONF / name).glob("*.yaml")))
