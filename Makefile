@@ -36,9 +36,8 @@ train: $(VENV)/.stamp $(if $(filter encoder swap_encoder,$(RECIPE)),$(VENV)/.sta
 evaluate: $(VENV)/.stamp ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"
 	$(BIN)/python -m mitigate.evaluate $(ARGS)
 
-sweep: $(VENV)/.stamp-sweep ## many runs, one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
-	$(BIN)/python -m mitigate.train --multirun runs=sweeps/$(SWEEP) $(ARGS); status=$$?; \
-	$(BIN)/python -m mitigate.table sweeps/$(SWEEP) --out sweeps/$(SWEEP) && exit $$status
+sweep: $(VENV)/.stamp ## many runs, one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
+	$(BIN)/python -m mitigate.sweep runs=sweeps/$(SWEEP) $(ARGS)
 
 table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --out report"
 	$(BIN)/python -m mitigate.table $(ARGS)
@@ -59,7 +58,7 @@ test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadgroup $(ARGS)
 
 test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
-	$(BIN)/python tools/faults.py $(ARGS)
+	$(BIN)/python -m tools.faults $(ARGS)
 
 lint: $(VENV)/.stamp ## check style and formatting
 	$(BIN)/ruff check .

@@ -60,6 +60,11 @@ COMMANDS = {
         "train and evaluate every method of the paper's Table II",
         "seeds=[0] jobs=2",
     ),
+    "sweep": Command(
+        "mitigate.training.sweep",
+        "train or evaluate with every combination of options, here or on a cluster; one table",
+        "recipe=da_per_frame,da_per_episode seed=0,1 jobs=2",
+    ),
     "run": Command(
         "mitigate.bridge.run",
         "run an agent of another project, unchanged, under every corruption",

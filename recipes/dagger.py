@@ -86,8 +86,7 @@ class Dagger(Imitate):
         rng = generator(self.rollouts.seed, "kept walks", step)
         count = max(0, min(count, len(known)))
         chosen = rng.choice(len(known), count, replace=False) if count else []
-        files = [self._file(*known[i]) for i in chosen]
-        return [_floats(torch.load(f, weights_only=True), torch.float32) for f in files]
+        return [_read(self._file(*known[i])) for i in chosen]
 
     def _file(self, step: int, number: int) -> Path:
         return self.folder / f"{step:06d}-{number}.pt"
@@ -103,6 +102,18 @@ class Dagger(Imitate):
         written = io.BytesIO()
         torch.save(_floats(piece, torch.float16), written)
         write_bytes(self._file(step, number), written.getvalue())
+
+
+def _read(file: Path) -> Any:
+    """A kept piece. Raises ValueError if it is gone or damaged: nothing can make it again."""
+    try:
+        return _floats(torch.load(file, weights_only=True), torch.float32)
+    except Exception as error:  # of any kind, where the file is damaged
+        raise ValueError(
+            f"The kept walk {file} is missing or damaged. A training by DAgger learns from walks "
+            "that it kept, and cannot go on without them: copy them back, or delete the run's "
+            "folder to begin anew."
+        ) from error
 
 
 def _is_plain(data: Any) -> bool:

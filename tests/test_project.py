@@ -45,7 +45,7 @@ def test_make_help_lists_every_target_and_comes_first():
 def test_doctor_names_versions_cores_and_the_renderer(capsys):
     doctor.main()
     out = capsys.readouterr().out
-    for word in ("python", "cores", "torch ", "renderer", "extra sweep"):
+    for word in ("python", "cores", "torch ", "renderer", "extra cluster"):
         assert re.search(rf"^{word}", out, re.MULTILINE)
 
 

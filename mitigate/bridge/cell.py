@@ -21,6 +21,7 @@ from mitigate.bridge.server import Listener
 from mitigate.core.files import atomic_text
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
+from mitigate.scale import tied
 
 DONE, LOG = "done.json", "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats
@@ -29,7 +30,8 @@ TAIL = 12  # lines of the command's output that an error repeats
 @dataclass
 class Cell:
     """The command under one condition. ``name`` is the condition's; settings: what its result
-    depends on, by which a finished one is known again."""
+    depends on, by which a finished one is known again; tied: whether the command ends when this
+    process is killed."""
 
     name: str
     corruption: Corruption
@@ -42,6 +44,7 @@ class Cell:
     settings: dict[str, Any]
     patience: float = 25.0
     environment: dict[str, str] = field(default_factory=dict)
+    tied: bool = False
     listener: Listener | None = None
     lock: TextIO | None = None
     process: subprocess.Popen | None = None
@@ -89,7 +92,7 @@ class Cell:
         with open(self.log, "w", encoding="utf-8") as log:
             try:
                 self.process = subprocess.Popen(
-                    filled,
+                    tied.words(filled) if self.tied else filled,
                     stdin=subprocess.DEVNULL,
                     stdout=log,
                     stderr=subprocess.STDOUT,

@@ -23,6 +23,7 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import conf
 from mitigate.core.names import unknown
 from mitigate.safeguard.addresses import check_arguments, check_choice
+from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
 
 EVERY = 15.0  # seconds between two lines of progress (ours)
 
@@ -42,6 +43,7 @@ class RunConfig:
     episodes: int | None = None
     repeats: int = 1
     jobs: int = 1
+    launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
     safeguard: str = "none"
@@ -86,7 +88,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
         f"run: {len(made)} conditions at severity {cfg.severity:g}, rows in {out}",
         flush=True,
     )
-    problems = _run_all([clean], 1)
+    problems = _run_all(cfg, command, out, name, [clean])
     if problems:
         raise ValueError(" ".join(problems))
     fitting: list[Cell] = []
@@ -96,7 +98,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
             print(f"{cell.name}: not applicable, {reason}", flush=True)
         else:
             fitting.append(cell)
-    problems = _run_all(fitting, cfg.jobs)
+    problems = _run_all(cfg, command, out, name, fitting)
     write_report([clean, *fitting], out)
     if problems:
         raise ValueError("Some conditions failed; run again to go on. " + " ".join(problems))
@@ -131,8 +133,18 @@ def name_of(command: Sequence[str]) -> str:
     return scripts[0].stem if scripts else Path(command[0]).stem
 
 
-def _run_all(waiting: Sequence[Any], jobs: int) -> list[str]:
-    """Run cells, ``jobs`` at a time; return what went wrong."""
+def _run_all(
+    cfg: DictConfig, command: Sequence[str], out: Path, name: str, waiting: Sequence[Any]
+) -> list[str]:
+    """Run cells, ``cfg.jobs`` at a time, where the launcher says; return what went wrong."""
+    if cfg.launcher.name == "local":
+        return _run_here(waiting, cfg.jobs)
+    from mitigate.bridge.spread import run_there
+
+    return run_there(cfg, command, out, name, waiting)
+
+
+def _run_here(waiting: Sequence[Any], jobs: int) -> list[str]:
     left, running, problems = list(waiting), [], []
     spoke = time.monotonic()
     try:
@@ -202,10 +214,6 @@ _command: list[str] = []  # behind --
 def main() -> None:
     """Run from the command line."""
     options, command = split_command(sys.argv[1:])
-    if {"--help", "-h"} & set(options):
-        print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
-        print(conf.options_text("run"))
-        return
     _command[:] = command
     for ended in (signal.SIGTERM, signal.SIGHUP):  # of timeout, SLURM, a terminal: as Ctrl-C
         signal.signal(ended, _interrupt)

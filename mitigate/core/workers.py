@@ -21,6 +21,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, ClassVar, Protocol
 
 from mitigate.core.progress import Progress, duration
+from mitigate.core.signals import Ended, held
 
 SECOND = 1.0  # between two looks at workers that say nothing
 STUCK = 60.0  # seconds with one job after which a worker is reported, and again after as many
@@ -88,7 +89,12 @@ def results(
         with task.ready():
             for group in numbered:
                 found = task.work([job for _, job in group])
-                yield from zip((number for number, _ in group), found, strict=True)
+                for number, _ in group:
+                    with held() as ending:  # a job that was begun is finished
+                        result = next(found)
+                    yield number, result
+                    if ending.number is not None:
+                        raise Ended(ending.number)
 
 
 class _Worker:

@@ -195,7 +195,7 @@ def main() -> None:
     arguments = sys.argv[1:]
     if not arguments or {"--help", "-h"} & set(arguments):
         print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
-        print(conf.options_text("export_drive", suites=False))
+        print(conf.options_text("export_drive"))
         sys.exit(0 if arguments else 2)
     _out[:], sys.argv[1:] = conf.paths_and_options(arguments)
     conf.main(hydra_main, "export_drive")

@@ -20,6 +20,7 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.safeguard import gate, masks, rules
+from mitigate.safeguard.addresses import check_choice
 from mitigate.safeguard.text import MASK, passages, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
@@ -126,12 +127,11 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
         return None
     if choice == "rules":
         return Safeguard(log=log)
-    if choice.startswith(("http://", "https://")):
+    check_choice(choice)  # before anything repeats it
+    if choice.lower().startswith(("http://", "https://")):
         from mitigate.safeguard.endpoint import ChatEndpoint
 
         url, _, model = choice.rpartition("@")
-        if not url:
-            raise ValueError(f"Which model of {model}? Write safeguard={model}@name-of-the-model.")
         return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
     from mitigate.safeguard.model import LanguageModel, open_adapter
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import pickle
 import signal
+import time
 from collections import deque
 from contextlib import suppress
 from multiprocessing.connection import Connection
@@ -17,7 +18,7 @@ from typing import Any
 import torch
 
 from mitigate.core import precision
-from mitigate.core.progress import say
+from mitigate.core.progress import duration, say
 from mitigate.core.workers import WorkersDied, context, portable
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe, do
@@ -25,6 +26,7 @@ from mitigate.training.recipe import Recipe, do
 MOST = 4  # workers worth starting: the recipes make 2 to 4 pieces of a step
 AHEAD = 3  # steps whose pieces are ordered before they are needed (ours)
 PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
+STUCK = 60.0  # seconds without a word after which an awaited worker is reported (ours)
 DEATHS = 1  # times that a worker is started anew before the training stops
 
 
@@ -165,6 +167,10 @@ class _Worker:
 
     def receive(self) -> Any:
         try:
+            waited = time.monotonic()
+            while not self.connection.poll(STUCK):
+                for_long = duration(time.monotonic() - waited)
+                say(f"worker {self.number} ({self.process.pid}) says nothing for {for_long}")
             kind, value = self.connection.recv()
         except (EOFError, ConnectionResetError):
             self._replace()

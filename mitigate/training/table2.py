@@ -2,31 +2,28 @@
 
 Table II is all methods with our reference agent, Table I all kinds of agent (``mitigate.table1``).
 Trains and evaluates every column for every seed, several cells at a time, each in processes of its
-own. The same command again goes on where the last one stopped: trainings resume, evaluations go on,
-finished cells are kept. Then the report is written from the rows of all cells.
+own, on this machine or on those of ``launcher``. The same command again goes on where the last one
+stopped: trainings resume, evaluations go on, finished cells are kept. Then the report is written
+from the rows of all cells.
 """
 
 from __future__ import annotations
 
 import json
-import os
-import subprocess
-import sys
-import threading
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
-from omegaconf import DictConfig
-from tqdm import tqdm
+from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
+from mitigate.core.progress import Progress
 from mitigate.evaluation.evaluate import ROWS, episodes, load
+from mitigate.scale import programs
 
 COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"
 
@@ -35,6 +32,7 @@ COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"
 class Table2Config:
     """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, where each entry's meaning is."""
 
+    runs: str = "runs"
     out: str = "runs/table2"
     rows: list[str] = field(default_factory=list)
     columns: dict[str, Any] = field(default_factory=dict)
@@ -45,6 +43,7 @@ class Table2Config:
     severity: float = 0.6
     train: list[str] = field(default_factory=list)
     jobs: int = 2
+    launcher: Any = MISSING
     walks: list[str] = field(default_factory=list)
     paper: dict[str, Any] = field(default_factory=dict)
 
@@ -116,6 +115,16 @@ class Cell:
         )
         return found
 
+    def chain(self, cfg: DictConfig) -> programs.Chain:
+        """The programs that make the cell, on one core."""
+        return programs.Chain(
+            f"{self.column}, seed {self.seed}",
+            tuple((kind, programs.python(*words)) for kind, words in self.commands(cfg)),
+            (self.folder / LOG).resolve(),
+            Path.cwd(),
+            {"OMP_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"},
+        )
+
 
 def run(cfg: DictConfig) -> Path:
     """Make all cells and the report; return the report's path.
@@ -128,11 +137,7 @@ def run(cfg: DictConfig) -> Path:
     if cfg.rows:
         return write_report(cfg, out, list(cfg.rows))
     made = cells(cfg)
-    with ThreadPoolExecutor(cfg.jobs) as pool, tqdm(total=len(made), desc="cells") as bar:
-        failed = []
-        for cell, problem in zip(made, pool.map(lambda c: make(c, cfg, bar), made), strict=True):
-            if problem:
-                failed.append(f"{cell.column}, seed {cell.seed}: {problem}")
+    failed = make(made, cfg)
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
     problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
@@ -165,38 +170,30 @@ def cells(cfg: DictConfig) -> list[Cell]:
     ]
 
 
-def make(cell: Cell, cfg: DictConfig, bar: tqdm) -> str | None:
-    """Train and evaluate one cell; return what went wrong, if anything did."""
-    cell.folder.mkdir(parents=True, exist_ok=True)
-    environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"}
-    with open(cell.folder / LOG, "a", encoding="utf-8") as log:
-        for kind, arguments in cell.commands(cfg):
-            process = subprocess.Popen(
-                [sys.executable, "-m", *arguments],
-                stdout=log,
-                stderr=subprocess.STDOUT,
-                env=environment,
-            )
-            _, status, used = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-            _add_cost(cell.folder / COST, kind, used.ru_utime + used.ru_stime)
-            if process.returncode:
-                end = (cell.folder / LOG).read_text(encoding="utf-8").strip().splitlines()[-1:]
-                return f"{kind} ended with {process.returncode} ({' '.join(end)})"
-    bar.update()
-    return None
+def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
+    """Train and evaluate all cells, ``cfg.jobs`` at a time; return what went wrong with which."""
+    chains, problems = [cell.chain(cfg) for cell in made], []
+    with Progress("cells", len(made), unit="cell") as progress:
+
+        def told(number: int, outcome: programs.Outcome) -> None:
+            cell = made[number]
+            _add_cost(cell.folder / COST, outcome.seconds)
+            if outcome.problem:
+                problems.append(f"{cell.column}, seed {cell.seed}: {outcome.problem}")
+            progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
+            progress.advance()
+
+        programs.run(chains, cfg.jobs, OmegaConf.to_object(cfg.launcher), progress, told)
+    return problems
 
 
-_LOCK = threading.Lock()
-
-
-def _add_cost(path: Path, kind: str, seconds: float) -> None:
+def _add_cost(path: Path, spent: dict[str, float]) -> None:
     """Add CPU seconds to a cell's account, which counts all its runs."""
-    with _LOCK:
-        cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    for kind, seconds in spent.items():
         cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
-        with atomic_text(path) as file:
-            json.dump(cost, file)
+    with atomic_text(path) as file:
+        json.dump(cost, file)
 
 
 def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:

@@ -11,7 +11,7 @@ import math
 import time
 from collections import defaultdict
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -144,35 +144,34 @@ class Trainer:
         batches = Batches(
             self.recipe, self.workers, self.steps, self.precision, self.device, self.ranks
         )
-        for step in range(start, self.steps):
-            with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
-                found = self._step(step, batches)
-                if ending.number is not None:
-                    self._stop(step + 1, ending.number)
-            for name, value in found.items():
-                sums[name] += value
-            counted, done = counted + 1, step + 1
-            journal.advance()
-            if self._due(self.log_every, done):
-                means = {name: total / counted for name, total in sums.items()}
-                pace = counted / max(1e-9, time.monotonic() - since)
-                journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
-                sums.clear()
-                counted, since = 0, time.monotonic()
-            if self._due(self.eval_every, done):
-                self._evaluate(done, journal)
-            if self._due(self.figure_every, done):
-                journal.figures(done, self.recipe.figures(done))
-            if done == self.steps or (self.save_every and done % self.save_every == 0):
-                if self.ranks.first:
+        done = start
+        with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
+            for step in range(start, self.steps):
+                done = step + 1
+                save = done == self.steps or bool(self.save_every and done % self.save_every == 0)
+                for name, value in self._step(step, batches).items():
+                    sums[name] += value
+                counted += 1
+                journal.advance()
+                if self._due(self.log_every, done):
+                    means = {name: total / counted for name, total in sums.items()}
+                    pace = counted / max(1e-9, time.monotonic() - since)
+                    journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
+                    sums.clear()
+                    counted, since = 0, time.monotonic()
+                if ending.number is None and self._due(self.eval_every, done):
+                    self._evaluate(done, journal)
+                if ending.number is None and self._due(self.figure_every, done):
+                    journal.figures(done, self.recipe.figures(done))
+                if self.ranks.first and (save or ending.number is not None):
                     self._save(done)
-                self.ranks.wait()
-
-    def _stop(self, done: int, number: int) -> NoReturn:
-        """Save after a signal that ends the training, and end it."""
-        self._save(done)
-        say(f"{self.name}: saved at step {done} in {self.folder}")
-        raise Ended(number)
+                if save:
+                    self.ranks.wait()
+                if ending.number is not None:
+                    break
+        if ending.number is not None:
+            say(f"{self.name}: saved at step {done} in {self.folder}")
+            raise Ended(ending.number)
 
     def _due(self, every: int, done: int) -> bool:
         return bool(every) and (done % every == 0 or done == self.steps)

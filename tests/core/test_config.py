@@ -16,13 +16,13 @@ from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
 from mitigate.replay import export_drive, replay
 from mitigate.safeguard import guard
-from mitigate.training import table1, table2, train
+from mitigate.training import sweep, table1, table2, train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 
 YAMLS = sorted(path.relative_to(conf.CONF) for path in conf.CONF.rglob("*.yaml"))
 PRIMARY = tuple(
     module.__name__.split(".")[-1]
-    for module in (train, evaluate, table1, table2, bridge_run, replay, export_drive)
+    for module in (train, evaluate, table1, table2, sweep, bridge_run, replay, export_drive)
 )
 GROUPS = [path for path in YAMLS if len(path.parts) > 1]
 
@@ -253,3 +253,30 @@ def test_a_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, optio
     text = complaint(monkeypatch, capsys, option)
     for word in words:
         assert word in text
+
+
+@pytest.mark.parametrize("primary", PRIMARY)
+def test_help_says_what_every_option_and_group_means(primary):
+    shown, cfg = conf.options_text(primary), conf.load_config(primary)
+    own = {"name", "report", "init", "init_parts", "rollouts"} if primary == "train" else set()
+    plain = {name for name in cfg if not isinstance(cfg[name], DictConfig)}  # the recipe sets own
+    assert plain - own <= {line.partition(":")[0] for line in shown.splitlines()}
+    for group in ("suite", "launcher"):
+        if group in cfg:
+            assert f"{group}: " in shown and ", " in shown.partition(f"{group}: ")[2]
+
+
+def test_help_needs_no_config_to_compose(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["mitigate train", "--help", "sevrity=1"])
+    train.main()
+    shown = capsys.readouterr().out
+    assert "Train an agent by a recipe" in shown and "severity: 0.6  # of the training" in shown
+
+
+def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path):
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    monkeypatch.setattr(sys, "argv", ["evaluate", "split=nowhere", f"runs={tmp_path}"])
+    with pytest.raises(SystemExit) as stop:
+        evaluate.main()
+    assert "There is no split" in str(stop.value.code)
+    assert "Error executing job" not in capsys.readouterr().err

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from mitigate.core import workers
+from mitigate.core.signals import Ended
 from mitigate.core.workers import WorkersDied, results
 
 
@@ -152,3 +153,18 @@ def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
     assert workers.count(3, 1, 10) == 3
     with pytest.raises(ValueError, match="workers=0: give 1 or more"):
         workers.count(0, 100, 10)
+
+
+def test_alone_a_job_that_was_begun_is_finished_before_a_signal_ends_it(tmp_path):
+    class Ending(Squares):
+        def work(self, jobs):
+            for job in jobs:
+                os.kill(os.getpid(), signal.SIGTERM)
+                time.sleep(0.01)
+                yield job
+
+    found = []
+    with pytest.raises(Ended) as ended:
+        for item in results(Ending(tmp_path), [["one", "two"]], 1, Lines()):
+            found.append(item)
+    assert found == [(0, "one")] and ended.value.status == 143

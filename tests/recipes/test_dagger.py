@@ -51,6 +51,14 @@ def test_a_resumed_run_draws_the_same_walks(tmp_path):
     assert torch.equal(again["decisions"].moves, batches[3]["decisions"].moves)
 
 
+def test_without_a_kept_walk_a_run_says_that_it_cannot_go_on(tmp_path):
+    recipe(tmp_path).batch(0)
+    for file in tmp_path.glob("*.pt"):
+        file.write_bytes(file.read_bytes()[:100])
+    with pytest.raises(ValueError, match="000000-.*missing or damaged.*begin anew"):
+        recipe(tmp_path).batch(1)
+
+
 def test_kept_walks_are_read_as_data_and_half_as_large(tmp_path):
     made = recipe(tmp_path)
     made.batch(0)

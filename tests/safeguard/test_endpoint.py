@@ -14,7 +14,7 @@ import pytest
 from mitigate.evaluation import evaluate
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.safeguard.endpoint import ChatEndpoint
-from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.guard import Safeguard, open_safeguard
 from mitigate.safeguard.posting import LARGEST
 
 
@@ -212,6 +212,8 @@ SECRETS = [
     "http://hush:hush:hush@m",
     "http:///hush@m",
     "http:hush@m",
+    "http://hush-without-a-model/v1",
+    "https://user:hush@host/",
 ]
 
 
@@ -219,6 +221,9 @@ SECRETS = [
 def test_a_url_with_a_secret_is_refused_and_not_repeated(tmp_path, monkeypatch, capfd, choice):
     with pytest.raises(ValueError, match="endpoint") as error:
         check_choice(choice)
+    assert "hush" not in str(error.value)
+    with pytest.raises(ValueError, match="endpoint") as error:
+        open_safeguard(choice)
     assert "hush" not in str(error.value)
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
     monkeypatch.setattr(sys, "argv", ["evaluate", f"safeguard='{choice}'", f"runs={tmp_path}"])

@@ -14,7 +14,7 @@ import pytest
 
 from mitigate.core.progress import Progress
 from mitigate.core.workers import WorkersDied
-from mitigate.scale.launcher import LauncherConfig, RayConfig, SlurmConfig, count, results
+from mitigate.scale.launcher import LauncherConfig, SlurmConfig, count, results
 
 GROUPS = [[(g, i) for i in range(3)] for g in range(6)]
 
@@ -65,33 +65,6 @@ def run(launcher, task, workers=2):
 EXPECTED = {3 * g + i: 10 * g + i for g in range(6) for i in range(3)}
 
 
-@pytest.fixture(scope="module")
-def cluster():
-    """Ray's own cluster for tests: three nodes on this machine, one CPU each."""
-    ray = pytest.importorskip("ray", reason="ray is not installed (mitigate[cluster])")
-    from ray.cluster_utils import Cluster
-
-    path = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(Path(__file__).parents[2]), path or ""])
-    made = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
-    made.nodes = [made.add_node(num_cpus=1) for _ in range(2)]
-    ray.init(address=made.address, log_to_driver=False)
-    yield made
-    ray.shutdown()
-    made.shutdown()
-
-
-@pytest.fixture
-def ray_launcher(cluster):
-    return RayConfig(cpus=1)
-
-
-def slurm_launcher(tmp_path, **settings):
-    pytest.importorskip("submitit", reason="submitit is not installed (mitigate[cluster])")
-    settings = {"processes": 1, "minutes": 2, **settings}
-    return SlurmConfig(cluster="local", folder=str(tmp_path / "slurm"), **settings)
-
-
 def test_ray_gives_every_result_once_from_processes_of_its_own(ray_launcher, tmp_path):
     values, processes = run(ray_launcher, Squares(tmp_path, seconds=0.05))
     assert values == EXPECTED
@@ -132,20 +105,20 @@ def test_ray_is_asked_how_many_workers_it_has_room_for(ray_launcher):
     assert count(ray_launcher, 5, 1000, 40) == 5
 
 
-def test_slurm_jobs_give_every_result_once(tmp_path):
-    values, processes = run(slurm_launcher(tmp_path), Squares(tmp_path))
+def test_slurm_jobs_give_every_result_once(slurm_launcher, tmp_path):
+    values, processes = run(slurm_launcher(), Squares(tmp_path))
     assert values == EXPECTED
     assert len(processes) == 2
     assert not list((tmp_path / "slurm").iterdir())  # nothing is left behind
 
 
-def test_the_rest_of_a_killed_slurm_job_is_submitted_again(tmp_path):
-    values, _ = run(slurm_launcher(tmp_path), Squares(tmp_path, deadly=[(2, 1)]))
+def test_the_rest_of_a_killed_slurm_job_is_submitted_again(slurm_launcher, tmp_path):
+    values, _ = run(slurm_launcher(), Squares(tmp_path, deadly=[(2, 1)]))
     assert values == EXPECTED
 
 
-def test_a_slurm_job_that_always_fails_is_a_named_error(tmp_path):
-    launcher = slurm_launcher(tmp_path, attempts=2)
+def test_a_slurm_job_that_always_fails_is_a_named_error(slurm_launcher, tmp_path):
+    launcher = slurm_launcher(attempts=2)
     with pytest.raises(WorkersDied, match="makes no sense"):
         run(launcher, Squares(tmp_path, wrong=[(0, 1)]), workers=1)
 

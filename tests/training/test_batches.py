@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 
 import pytest
 import torch
@@ -11,6 +12,7 @@ import torch
 from mitigate.core import checkpoint, seeding
 from mitigate.core.seeding import torch_generator
 from mitigate.core.workers import WorkersDied
+from mitigate.training import batches
 from mitigate.training.batches import Workers
 from mitigate.training.trainer import Trainer
 from tests.tiny import TinyRecipe
@@ -95,3 +97,16 @@ def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
 
     with pytest.raises(ValueError, match="workers=0"):
         Trainer(Local(), steps=1, folder=tmp_path, workers=two).fit()
+
+
+def test_a_worker_that_stands_still_is_reported_until_it_goes_on(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(batches, "STUCK", 0.2)
+    with Workers(1) as workers:
+        wanted = trained(tmp_path / "whole", workers)
+        process = workers._all[0].process.pid
+        os.kill(process, signal.SIGSTOP)
+        going_on = threading.Timer(0.7, os.kill, (process, signal.SIGCONT))
+        going_on.start()
+        assert trained(tmp_path / "stopped", workers) == wanted
+        going_on.join()
+    assert f"worker 0 ({process}) says nothing for" in capsys.readouterr().out

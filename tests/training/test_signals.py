@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import torch
 
+from mitigate.core.signals import Ended, held
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe
 from mitigate.training.trainer import Trainer
@@ -85,9 +86,21 @@ def test_it_saves_after_the_step_says_how_to_go_on_and_ends_as_an_unbroken_run(
     assert torch.equal(found, train(tmp_path / "unbroken", 0))
 
 
-def test_a_second_signal_ends_it_at_once(tmp_path):
-    from mitigate.core.signals import Ended, held
+def test_a_signal_while_it_is_evaluated_loses_no_step(tmp_path):
+    class Evaluated(Slow):
+        def evaluate(self, step):
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(0.01)
+            return {}
 
+    folder = tmp_path / "run"
+    settings = {"steps": 6, "lr": 0.1, "save_every": 5, "precision": "fp32"}
+    with pytest.raises(Ended):
+        Trainer(Evaluated(tmp_path, 0), folder=folder, eval_every=2, **settings).fit()
+    assert [path.name for path in folder.glob("step-*.pt")] == ["step-00000002.pt"]
+
+
+def test_a_second_signal_ends_it_at_once(tmp_path):
     with pytest.raises(Ended) as ended, held() as first:
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)

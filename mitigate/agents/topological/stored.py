@@ -29,6 +29,7 @@ from mitigate.core import precision
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import Progress
+from mitigate.core.signals import unbroken
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import depth_sensor
@@ -92,8 +93,9 @@ class Store:
         self.agent.eval()
         with Progress("stored features", len(scenes), unit="scene", start=done) as progress:
             for scene in missing:
-                for variant, poses in self._poses(scene):
-                    _save(poses, self.path(scene, variant))
+                with unbroken():  # as far as it is worth keeping
+                    for variant, poses in self._poses(scene):
+                        _save(poses, self.path(scene, variant))
                 progress.advance()
 
     def path(self, scene: str, variant: int = 0) -> Path:

@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
+from mitigate.core.signals import unbroken
 from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.faces import Faces
 from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
@@ -31,7 +32,8 @@ _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in 
 
 
 def _panda(pipe: str) -> Any:
-    from panda3d import core
+    with unbroken():  # an error inside its first import ends the process (panda3d 1.10.16)
+        from panda3d import core
 
     settings = "\n".join(
         [

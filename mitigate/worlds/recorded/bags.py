@@ -21,8 +21,11 @@ from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.worlds.recorded.messages import image, lens, place, stamp
 from mitigate.worlds.recorded.source import LONGEST, SLOP, Lens, near, placed, words
 from mitigate.worlds.recorded.topics import Topics, chosen
+from mitigate.worlds.recorded.unpacking import bounded
 
 KINDS = (RGB, DEPTH)
+MOST_POSES = 16 * LONGEST  # of a drive (ours): 500 Hz beside images at 30 Hz
+LARGEST_HELD = 1 << 30  # bytes of images that wait for those of another topic (ours)
 
 
 class Bag:
@@ -58,11 +61,20 @@ class Bag:
                 counts[kind] += 1
                 if message is not None:
                     held[kind][counts[kind]] = image(message, kind, self.path)
+                    self._check_held(held)
                 while given < len(chosen) and all(wanted[k][given] in held[k] for k in self.kinds):
                     yield {k: held[k][wanted[k][given]] for k in self.kinds}
                     given += 1
                     for k in self.kinds:  # drop what no later instant shows
                         held[k] = {n: f for n, f in held[k].items() if last[k][n] >= given}
+
+    def _check_held(self, held: Mapping[str, dict[int, np.ndarray]]) -> None:
+        if sum(frame.nbytes for there in held.values() for frame in there.values()) > LARGEST_HELD:
+            raise ValueError(
+                f"{self.path}: images of one instant lie too far apart in the bag (over "
+                f"{LARGEST_HELD >> 30} GiB of others are between them). Write it anew in the order "
+                "of time, or leave one out (topics.depth=none)."
+            )
 
     # ----------------------------------------------------------------------------- reading
 
@@ -78,15 +90,19 @@ class Bag:
             ) from error
         try:
             usual = get_typestore(Stores.ROS2_HUMBLE)
-            with AnyReader([self.path], default_typestore=usual) as reader:
+            with (
+                bounded(self.path),
+                AnyReader([self.path], default_typestore=usual) as reader,
+            ):
                 yield reader
         except OSError:
             raise
         except Exception as error:
             if isinstance(error, ValueError) and str(self.path) in str(error):  # ours
                 raise
+            said = " ".join(str(error).split())[:300]
             raise ValueError(
-                f"{self.path} cannot be read as a bag: {error}. One whose end is missing is "
+                f"{self.path} cannot be read as a bag: {said}. One whose end is missing is "
                 "mended by `rosbag reindex` (ROS 1), `ros2 bag reindex` or `mcap recover`."
             ) from error
 
@@ -123,6 +139,8 @@ class Bag:
                     raise ValueError(f"{self.path} has more than {LONGEST} images: cut it.")
             elif name == POSE:
                 places.append((time, *place(message)))
+                if len(places) > MOST_POSES:
+                    raise ValueError(f"{self.path} has more than {MOST_POSES} poses: cut it.")
             else:
                 kind = name.removeprefix("info ")
                 unusable = kind not in lenses and hfov is not None and not message_focal(message)

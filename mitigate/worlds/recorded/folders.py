@@ -11,8 +11,6 @@ Beside each, ``instruction.txt`` may hold the words.
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,18 +19,20 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.files import RECORDING
-from mitigate.core.names import unknown
+from mitigate.core.json_files import parse_json, read_json
+from mitigate.core.names import short, unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.frame_files import SUFFIXES
 from mitigate.corruptions.plan import natural
 from mitigate.worlds.episodes import from_vlnce
 from mitigate.worlds.recorded import tum
-from mitigate.worlds.recorded.source import Lens, words
+from mitigate.worlds.recorded.source import LARGEST_WORDS, LONGEST, Lens, text, words
 from mitigate.worlds.recorded.tum import number
 
 CAMERAS, STEPS, EPISODE = "cameras.json", "steps.jsonl", "episode.json"
 POSES, WORDS = "poses.csv", "instruction.txt"
+MOST = 1e6  # of a number in a recording: metres, degrees (ours)
 MOST_TURNED = 50.0  # radians: eight turns, not degrees (ours)
 
 
@@ -127,8 +127,10 @@ def _recorded(
     poses = None
     if all(_is_place(step) for step in steps):
         poses = np.array([(*from_vlnce(s["position"]), s["heading"]) for s in steps], np.float64)
-    said = str(told.get("text") or told.get("category") or "")
-    unit = float(_json(top / RECORDING).get("unit") or 0.001)
+    said = str(told.get("text") or told.get("category") or "")[:LARGEST_WORDS]
+    unit = _told(_json(top / RECORDING), "unit", top / RECORDING) or 0.001
+    if not 0 < unit <= 1:
+        raise ValueError(f"{top / RECORDING} says that a count of depth is {unit:g} m.")
     times = np.arange(len(steps)) * 1.0
     return Frames(name, said, cameras, files, times, poses, True, 0, unit)
 
@@ -144,12 +146,22 @@ def _lens(name: str, first: Path, listed: Mapping[str, Any], hfov: float | None)
     own = listed.get(name)
     if not isinstance(own, dict) or own.get("kind") not in (RGB, DEPTH):
         return Lens(frame_files.modality(first), 90.0 if hfov is None else hfov)
-    wide = own.get("hfov")
+    wide, yaw = (_told(own, key, first.parent.parent / CAMERAS) for key in ("hfov", "yaw"))
     if wide is None and hfov is None:
         raise ValueError(f"{first.parent}: nobody said how wide the camera sees: give hfov=79.")
     if wide is not None and hfov is not None:
         raise ValueError(f"{first.parent} says how wide it sees ({wide:g}): leave hfov= out.")
-    return Lens(own["kind"], float(wide or hfov or 0), float(own.get("yaw") or 0.0))
+    return Lens(own["kind"], wide or hfov or 0.0, yaw or 0.0)
+
+
+def _told(held: Mapping[str, Any], key: str, file: Path) -> float | None:
+    """A number of a JSON object, None if it has none. Raises ValueError for anything else."""
+    value = held.get(key)
+    if value is None:
+        return None
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or abs(value) > MOST:
+        raise ValueError(f"{file}: {key} is {short(value)}, not a number up to {MOST:g}.")
+    return float(value)
 
 
 def _is_place(step: Any) -> bool:
@@ -158,7 +170,7 @@ def _is_place(step: Any) -> bool:
     if not isinstance(place, list) or len(place) != 3:
         return False
     numbers = (*place, step.get("heading"))
-    return all(isinstance(number, (int, float)) and math.isfinite(number) for number in numbers)
+    return all(isinstance(n, (int, float)) and abs(n) <= MOST for n in numbers)
 
 
 def _simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
@@ -183,9 +195,10 @@ def _simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
 
 def _poses(file: Path) -> np.ndarray:
     """float64 [N, 3] of lines "x,y,heading", with or without these names above them."""
-    text = file.read_text(encoding="utf-8", errors="replace")
     lines = [
-        [word.strip() for word in line.split(",")] for line in text.splitlines() if line.strip()
+        [word.strip() for word in line.split(",")]
+        for line in text(file).splitlines()
+        if line.strip()
     ]
     if lines and any(word.isalpha() and word.lower() != "nan" for word in lines[0]):
         if lines[0] != ["x", "y", "heading"]:
@@ -209,10 +222,7 @@ def _ordered(folder: Path) -> list[Path]:
 
 
 def _json(file: Path) -> dict[str, Any]:
-    try:
-        found = json.loads(file.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        raise ValueError(f"{file} cannot be read ({error}).") from error
+    found = read_json(file, "Copy it again, or leave this drive out.")
     if not isinstance(found, dict):
         raise ValueError(f"{file} is no JSON object.")
     return found
@@ -221,11 +231,14 @@ def _json(file: Path) -> dict[str, Any]:
 def _lines(file: Path) -> list[Any]:
     """The JSON lines of a file; a last one that was cut off is left out."""
     found = []
-    lines = file.read_text(encoding="utf-8", errors="replace").splitlines()
+    lines = text(file).splitlines()
+    if len(lines) > LONGEST:
+        raise ValueError(f"{file} has more than {LONGEST} steps: cut the recording.")
     for place, line in enumerate(lines, 1):
         try:
-            found.append(json.loads(line))
+            found.append(parse_json(line))
         except (ValueError, RecursionError) as error:
             if place < len(lines):
-                raise ValueError(f"{file}, line {place}, cannot be read ({error}).") from error
+                problem = f"{file}, line {place}, cannot be read ({error!s:.200})."
+                raise ValueError(problem) from error
     return found

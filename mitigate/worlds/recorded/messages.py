@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import struct
 from collections.abc import Mapping
 from pathlib import Path
@@ -9,6 +10,7 @@ from typing import Any
 
 import cv2
 import numpy as np
+from PIL import Image
 
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.worlds.recorded.source import Lens, plan_pose, rotated
@@ -86,7 +88,8 @@ def image(message: Any, kind: str, path: Path) -> np.ndarray:
     data, order = np.ascontiguousarray(message.data).view(np.uint8), "><"[not message.is_bigendian]
     item = np.dtype(order + _DEPTHS[encoding][0]) if kind == DEPTH else np.dtype(np.uint8)
     channels = 1 if kind == DEPTH else _COLOURS[encoding][0]
-    used, step = width * channels * item.itemsize, int(message.step)
+    used = width * channels * item.itemsize
+    step = int(message.step) if height > 1 else used
     if step < used or len(data) < (height - 1) * step + used:
         raise ValueError(f"{path}: an image of {height} x {width} has {len(data)} bytes only.")
     padded = np.zeros(height * step, np.uint8)
@@ -103,8 +106,8 @@ def _compressed(message: Any, kind: str, path: Path) -> np.ndarray:
     data, form = np.ascontiguousarray(message.data).view(np.uint8), str(message.format)
     deep = "compressedDepth" in form
     data = data[12:] if deep else data
-    found = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if len(data) else None
-    if found is None or max(found.shape) > LARGEST_SIDE:
+    found = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if _is_picture(data) else None
+    if found is None:
         raise ValueError(f"{path}: an image in the format {form[:40]!r} cannot be decoded.")
     if kind == DEPTH:
         if found.dtype != np.uint16 or found.ndim != 2 or form.startswith("32FC1"):
@@ -118,6 +121,15 @@ def _compressed(message: Any, kind: str, path: Path) -> np.ndarray:
     if found.ndim == 2:
         return cv2.cvtColor(found, cv2.COLOR_GRAY2RGB)
     return cv2.cvtColor(found[..., :3], cv2.COLOR_BGR2RGB)
+
+
+def _is_picture(data: np.ndarray) -> bool:
+    """Whether the bytes begin as a PNG or JPEG of sides that are read; nothing is decoded."""
+    try:
+        with Image.open(io.BytesIO(data.tobytes()), formats=("PNG", "JPEG")) as picture:
+            return max(picture.size) <= LARGEST_SIDE
+    except Exception:  # whatever is said of bytes from outside
+        return False
 
 
 def _metres(depth: np.ndarray) -> np.ndarray:

@@ -19,7 +19,9 @@ from mitigate.core.observation import VIEW_STEP_DEGREES
 SLOP = 0.1  # seconds between frames of one instant, at most (ours; a frame at 10 Hz)
 GAP = 2.0  # seconds between two poses, at most, for a place between them to be known (ours)
 LONGEST = 1 << 20  # instants of a drive (ours): 9 hours at 30 Hz
+LARGEST_TEXT, LARGEST_WORDS = 1 << 28, 1 << 16  # bytes of a list, of an instruction (ours)
 NARROW, WIDE = 10.0, 179.0  # degrees that a camera sees
+LOW, BESIDE = 1.0, 4.0  # degrees from top to bottom; pictures from the middle to the centre (ours)
 ASPECT = 0.02  # share by which a picture's aspect may differ from its CameraInfo's (ours)
 
 
@@ -45,6 +47,14 @@ class Lens:
             wide = math.degrees(2 * math.atan2(self.size[0] / 2, self.focal[0]))
         if not NARROW <= wide <= WIDE:
             raise ValueError(f"A camera that sees {wide:.3g} degrees is none (10 to 179).")
+        if self.focal is not None and self.size is not None and self.centre is not None:
+            tall = math.degrees(2 * math.atan2(self.size[1] / 2, self.focal[1]))
+            beside = max(abs(c - s / 2) / s for c, s in zip(self.centre, self.size, strict=True))
+            if not LOW <= tall <= WIDE or beside > BESIDE:
+                raise ValueError(
+                    f"A camera that sees {tall:.3g} degrees from top to bottom, its centre "
+                    f"{beside:.3g} pictures beside the middle, is none."
+                )
 
     def of(self, height: int, width: int) -> tuple[float, float, float, float]:
         """Focal lengths and centre (fx, fy, cx, cy) in pixels of pictures of this size. Raises
@@ -134,5 +144,14 @@ def placed(times: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def words(file: Path) -> str:
-    """The instruction in a text file; empty if there is none."""
-    return file.read_text(encoding="utf-8", errors="replace").strip() if file.is_file() else ""
+    """The instruction in a text file; empty if there is none. Raises ValueError for a long one."""
+    return text(file, LARGEST_WORDS).strip() if file.is_file() else ""
+
+
+def text(file: Path, most: int = LARGEST_TEXT) -> str:
+    """What a text file holds. Raises ValueError if it has more than ``most`` bytes."""
+    with open(file, "rb") as held:
+        raw = held.read(min(most, file.stat().st_size) + 1)  # as much memory is taken for it
+    if len(raw) > most:
+        raise ValueError(f"{file} has more than {most} bytes: cut the recording.")
+    return raw.decode("utf-8", errors="replace")

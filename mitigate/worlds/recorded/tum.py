@@ -3,6 +3,7 @@ files, and the camera's trajectory."""
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,9 +11,19 @@ from pathlib import Path
 import numpy as np
 
 from mitigate.core.observation import DEPTH, RGB
-from mitigate.worlds.recorded.source import LONGEST, SLOP, Lens, near, placed, plan_pose, rotated
+from mitigate.worlds.recorded.source import (
+    LONGEST,
+    SLOP,
+    Lens,
+    near,
+    placed,
+    plan_pose,
+    rotated,
+    text,
+)
 
 LISTS, TRAJECTORY = ("rgb.txt", "depth.txt"), "groundtruth.txt"
+MOST_LINES = LONGEST  # of a list or trajectory
 UNIT = 1 / 5000  # metres of a count; TUM RGB-D benchmark, file formats
 HFOV = math.degrees(2 * math.atan(320 / 525))  # its default calibration: 640 pixels, focal 525
 
@@ -63,7 +74,7 @@ def _listed(path: Path, name: str) -> list[tuple[float, Path]]:
     found = []
     for line, words in _table(path / name, least=2):
         file = path / words[1]
-        if path.resolve() not in file.resolve().parents:
+        if "\0" in words[1] or path.resolve() not in file.resolve().parents:
             raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
         found.append((number(words[0], path / name, line), file))
     return sorted(found)
@@ -85,14 +96,15 @@ def _table(file: Path, least: int) -> Iterator[tuple[int, list[str]]]:
     """The words of each line that is no comment, with its number."""
     if not file.is_file():
         return
-    with open(file, encoding="utf-8", errors="replace") as lines:
-        for number, line in enumerate(lines, 1):
-            words = line.split()
-            if not words or words[0].startswith("#"):
-                continue
-            if len(words) < least or number > LONGEST:
-                raise ValueError(f"{file}, line {number}, has {len(words)} words, not {least}.")
-            yield number, words
+    for number, line in enumerate(io.StringIO(text(file)), 1):
+        words = line.split()
+        if not words or words[0].startswith("#"):
+            continue
+        if len(words) < least:
+            raise ValueError(f"{file}, line {number}, has {len(words)} words, not {least}.")
+        if number > MOST_LINES:
+            raise ValueError(f"{file} has more than {MOST_LINES} lines: cut the recording.")
+        yield number, words
 
 
 def number(word: str, file: Path, line: int) -> float:

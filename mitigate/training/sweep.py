@@ -1,0 +1,139 @@
+"""Many trainings or evaluations: ``python -m mitigate.sweep recipe=imitation,stacked seed=0,1``.
+
+Each combination of values is a run in a folder of its own, on this machine or on those of
+``launcher``. A failed one does not stop the others; the same command again goes on with what is
+missing. All end in one table.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from hydra.core.config_store import ConfigStore
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.errors import HydraException
+from omegaconf import MISSING, DictConfig, OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+
+from mitigate.core import conf, seeding
+from mitigate.core.names import unknown
+from mitigate.core.progress import Progress
+from mitigate.core.workers import cores
+from mitigate.evaluation.evaluate import write_table
+from mitigate.safeguard.addresses import check_arguments
+from mitigate.scale import programs
+
+COMMANDS = ("train", "evaluate")
+LOGS = "logs"
+LONGEST = 100  # characters of a log's name (ours)
+
+
+@dataclass
+class SweepConfig:
+    """Types of ``conf/sweep.yaml``; the meaning of each entry is written there."""
+
+    command: str = "train"
+    runs: str = "sweeps/default"
+    jobs: int = 1
+    launcher: Any = MISSING
+
+
+ConfigStore.instance().store(name="sweep_schema", node=SweepConfig)
+OWN = re.compile(r"(command|runs|jobs|launcher(\.[\w.]+)?)=")
+
+
+def run(cfg: DictConfig, options: Sequence[str]) -> None:
+    """Run every combination of ``options``, then write and print the table of ``cfg.runs``.
+
+    Raises ValueError for options that the command does not have, before anything runs, and for
+    runs that failed, after the others are done and the table is written.
+    """
+    if cfg.command not in COMMANDS:
+        raise ValueError(unknown("command", cfg.command, COMMANDS))
+    if cfg.jobs < 1:
+        raise ValueError(f"jobs={cfg.jobs} is none: give 1 or more runs at a time.")
+    made = combinations(options)
+    for chosen in made:
+        check(cfg.command, chosen)
+    chains, problems = [chain(cfg, chosen) for chosen in made], []
+    with Progress("sweep", len(chains), unit="run") as progress:
+
+        def told(number: int, outcome: programs.Outcome) -> None:
+            if outcome.problem:
+                problems.append(f"{chains[number].name}: {outcome.problem}")
+            progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
+            progress.advance()
+
+        programs.run(chains, cfg.jobs, OmegaConf.to_object(cfg.launcher), progress, told)
+    if len(problems) < len(chains):
+        write_table([Path(cfg.runs)], Path(cfg.runs))
+    if problems:
+        again = "Run again to go on with them; their output is in"
+        raise ValueError(
+            f"{len(problems)} of {len(chains)} runs failed. {again} {cfg.runs}/{LOGS}. "
+            + " ".join(problems)
+        )
+
+
+def combinations(options: Sequence[str]) -> list[list[str]]:
+    """Each combination of the options' values, by Hydra's grammar: ``seed=0,1``, ``range(3)``.
+
+    Raises ValueError for what cannot be read.
+    """
+    try:
+        found = OverridesParser.create().parse_overrides(list(options))
+    except HydraException as error:
+        raise ValueError(conf.explain(error, "train")) from error
+    values = [
+        [f"{option.get_key_element()}={value}" for value in option.sweep_string_iterator()]
+        if option.is_sweep_override()
+        else [given]
+        for given, option in zip(options, found, strict=True)
+    ]
+    return [list(chosen) for chosen in product(*values)]
+
+
+def check(command: str, options: Sequence[str]) -> None:
+    """Raise ValueError for options that ``command`` does not have."""
+    try:
+        conf.load_config(command, options)
+    except (HydraException, OmegaConfBaseException) as error:
+        raise ValueError(conf.explain(error, command)) from error
+
+
+def chain(cfg: DictConfig, options: Sequence[str]) -> programs.Chain:
+    """The run of one combination."""
+    name = re.sub(r"[^A-Za-z0-9._+-]+", "_", ",".join(options).replace("=", "-")) or "default"
+    if len(name) > LONGEST:
+        name = f"{name[:LONGEST]}-{seeding.digest(*options):032x}"[: LONGEST + 9]
+    words = [f"mitigate.{cfg.command}", *options, f"runs={cfg.runs}"]
+    if cfg.command == "evaluate":  # which would put two seeds into one folder
+        words.append(f"out={Path(cfg.runs) / name}")
+    share = cfg.jobs > 1 or cfg.launcher.name != "local"
+    count = max(1, cores() // cfg.jobs) if cfg.launcher.name == "local" else 1
+    count = max(count, int(cfg.launcher.get("cpus", 1)))
+    return programs.Chain(
+        " ".join(options) or "as it is",
+        ((cfg.command, programs.python(*words)),),
+        (Path(cfg.runs) / LOGS / f"{name}.txt").resolve(),
+        Path.cwd(),
+        {"OMP_NUM_THREADS": f"{count}", "PYTHON_CPU_COUNT": f"{count}"} if share else {},
+    )
+
+
+def main() -> None:
+    """Run from the command line."""
+    given = sys.argv[1:]
+    own = [option for option in given if OWN.match(option)]
+    options = [option for option in given if not OWN.match(option)]
+
+    def program() -> None:
+        run(conf.load_config("sweep", own), options)
+
+    conf.main(program, "sweep", lambda: check_arguments(options))

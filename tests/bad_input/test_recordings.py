@@ -1,0 +1,357 @@
+"""Recorded drives of anybody: read, or refused by name, within bounded memory and time."""
+
+from __future__ import annotations
+
+import bz2
+import json
+import sqlite3
+import struct
+import time
+import tracemalloc
+import zlib
+from pathlib import Path
+
+import lz4.frame
+import numpy as np
+import pytest
+from rosbags.rosbag2 import storage_mcap
+
+from mitigate.core.files import FREE
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.replay.export_drive import write_bag, write_frames
+from mitigate.worlds.recorded import Step, load, open_recording, unpacking
+from mitigate.worlds.recorded import messages as ros
+from mitigate.worlds.recorded.source import Lens
+
+SIZE = 16
+SLOWEST = 20.0  # seconds for a refusal (on a busy machine)
+MOST = 64 << 20  # bytes of Python's and NumPy's memory for a refusal
+
+
+def steps(count: int = 3) -> list[dict[str, np.ndarray]]:
+    return [
+        {
+            RGB: np.full((SIZE, SIZE, 3), 40 * n, np.uint8),
+            DEPTH: np.full((SIZE, SIZE, 1), 1.0 + n, np.float32),
+            POSE: np.array([0, 0.25 * n, 0], np.float32),
+        }
+        for n in range(count)
+    ]
+
+
+def read(path: Path) -> list:
+    return [load(one, views=1, size=SIZE, step=Step()) for one in open_recording(path)]
+
+
+def refused(path: Path, said: str | None = None) -> None:
+    """``path`` is refused in one short paragraph that names it, soon and in little memory."""
+    began = time.monotonic()
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match=said) as error:
+            read(path)
+        assert tracemalloc.get_traced_memory()[1] < MOST
+    finally:
+        tracemalloc.stop()
+    assert time.monotonic() - began < SLOWEST
+    assert len(str(error.value)) < 1500 and "\n" not in str(error.value)
+
+
+# ----------------------------------------------------------------------------------- folders
+
+
+@pytest.fixture
+def plain(tmp_path):
+    write_frames(tmp_path / "drive", steps(), "walk on")
+    return tmp_path / "drive"
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("poses.csv", "x,y,heading\n0,0\n"),
+        ("poses.csv", "0,0,0\n" * 2 + "1e999,0,0\n"),
+        ("poses.csv", "0,0,0\n" * 2 + f"{'9' * 100_000},0,0\n"),
+        ("poses.csv", "\0" * 1000),
+        ("instruction.txt", "go " * 40_000),
+    ],
+)
+def test_a_plain_folder_with_lies_is_refused(plain, name, text):
+    assert len(read(plain)) == 1
+    (plain / name).write_text(text)
+    refused(plain)
+
+
+def test_a_frame_of_absurd_size_is_refused_before_it_is_decoded(plain):
+    first = sorted((plain / "rgb").iterdir())[0]
+    raw = bytearray(first.read_bytes())
+    raw[16:24] = struct.pack(">II", 1 << 16, 1 << 16)
+    raw[29:33] = struct.pack(">I", zlib.crc32(raw[12:29]))
+    first.write_bytes(bytes(raw))
+    refused(plain, "65536 x 65536|exceeds limit")
+
+
+def tum(folder: Path) -> Path:
+    write_frames(folder, steps(), "walk on")
+    for kind in (RGB, DEPTH):
+        files = sorted((folder / kind).iterdir())
+        lines = [f"{n}.0 {kind}/{file.name}" for n, file in enumerate(files)]
+        (folder / f"{kind}.txt").write_text("\n".join(lines) + "\n")
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("rgb.txt", "0 ../../outside.png\n", "outside"),
+        ("rgb.txt", "0 /etc/hostname\n", "outside"),
+        ("rgb.txt", "0 rgb/a\0b.png\n", "outside"),
+        ("rgb.txt", f"{'1' * 5000} rgb/0.png\n", "no finite number"),
+        ("rgb.txt", "0\n", "words"),
+        ("depth.txt", "nan depth/0.png\n", "no finite number"),
+        ("groundtruth.txt", "0 0 0 0 0 0 0 inf\n", "no finite number"),
+        ("groundtruth.txt", "# nothing\n", "no pose"),
+    ],
+)
+def test_a_tum_folder_with_lies_is_refused(tmp_path, name, text, said):
+    folder = tum(tmp_path / "drive")
+    assert len(read(folder)) == 1
+    (folder / name).write_text(text)
+    refused(folder, said)
+
+
+def test_a_list_that_is_too_long_is_refused_before_it_is_read_whole(tmp_path, monkeypatch):
+    folder = tum(tmp_path / "drive")
+    with open(folder / "rgb.txt", "wb") as file:
+        file.truncate(1 << 30)  # sparse: one line without an end
+    monkeypatch.setattr("mitigate.worlds.recorded.tum.text.__defaults__", (1 << 20,))
+    refused(folder, "more than 1048576 bytes")
+
+
+def recording(folder: Path) -> Path:
+    """What ``mitigate run record=`` writes, of one episode of one camera."""
+    write_frames(folder / "made", steps(), "")
+    episode = folder / "drive" / "scene" / "1"
+    episode.mkdir(parents=True)
+    (folder / "made" / "rgb").rename(episode / "rgb")
+    told = {"rgb": {"kind": "rgb", "hfov": 90, "yaw": 0}}
+    for name, held in (("episode.json", {"text": "go"}), ("cameras.json", told)):
+        (episode / name).write_text(json.dumps(held))
+    lines = [json.dumps({"position": [0, 0, n], "heading": 0}) for n in range(3)]
+    (episode / "steps.jsonl").write_text("\n".join(lines))
+    (folder / "drive" / "recording.json").write_text(json.dumps({"unit": 0.001}))
+    return folder / "drive"
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("recording.json", '{"unit": {"a": 1}}'),
+        ("recording.json", '{"unit": 1e300}'),
+        ("recording.json", '{"unit": -1}'),
+        ("recording.json", "[" * 100_000),
+        ("recording.json", "[]"),
+        ("scene/1/cameras.json", '{"rgb": {"kind": "rgb", "hfov": "wide"}}'),
+        ("scene/1/cameras.json", '{"rgb": {"kind": "rgb", "hfov": 1e9}}'),
+        ("scene/1/cameras.json", '{"rgb": {"kind": "rgb", "hfov": 90, "yaw": [1]}}'),
+        ("scene/1/cameras.json", '{"rgb": {"kind": "rgb", "hfov": NaN}}'),
+        ("scene/1/episode.json", '{"text": '),
+        ("scene/1/steps.jsonl", '{"position": \n{}\n{}\n'),
+    ],
+)
+def test_a_recording_with_lies_is_refused(tmp_path, name, text):
+    folder = recording(tmp_path)
+    assert len(read(folder)) == 1
+    (folder / name).write_text(text)
+    refused(folder)
+
+
+@pytest.mark.parametrize("position", ["[1e400, 0, 0]", f"[{'9' * 400}, 0, 0]", "[[], 0, 0]", '"x"'])
+def test_a_place_that_is_none_leaves_a_recording_without_poses_or_is_refused(tmp_path, position):
+    folder = recording(tmp_path)
+    lines = [f'{{"position": {position}, "heading": 0}}'] * 3
+    (folder / "scene/1/steps.jsonl").write_text("\n".join(lines))
+    try:
+        assert read(folder)[0].poses is None
+    except ValueError as error:
+        assert "steps.jsonl" in str(error)
+
+
+# -------------------------------------------------------------------------------------- bags
+
+BOMB = 1 << 28  # bytes of zeros
+
+
+def mcap(bag: Path) -> Path:
+    return next(bag.glob("*.mcap"))
+
+
+def chunk(kind: str, packed: bytes, size: int) -> bytes:
+    """An MCAP file of one chunk (mcap.dev/spec: opcode, length, content)."""
+
+    def record(opcode: int, content: bytes) -> bytes:
+        return bytes([opcode]) + struct.pack("<Q", len(content)) + content
+
+    def text(value: str) -> bytes:
+        return struct.pack("<I", len(value)) + value.encode()
+
+    held = struct.pack("<QQQI", 0, 1, size, 0) + text(kind) + struct.pack("<Q", len(packed))
+    magic = b"\x89MCAP0\r\n"
+    end = record(2, struct.pack("<QQI", 0, 0, 0))
+    return magic + record(1, text("ros2") + text("")) + record(6, held + packed) + end + magic
+
+
+@pytest.fixture(scope="module")
+def bombs():
+    zstd = storage_mcap.zstd.ZstdCompressor()
+    packed, zeros = b"", bytes(1 << 22)
+    for _ in range(BOMB >> 22):
+        packed += zstd.compress(zeros)
+    packed += zstd.flush()
+    with lz4.frame.LZ4FrameCompressor() as maker:
+        small = maker.begin() + b"".join(maker.compress(zeros) for _ in range(BOMB >> 22))
+        small += maker.flush()
+    return {"zstd": packed, "lz4": small}
+
+
+@pytest.mark.parametrize("kind", ["zstd", "lz4"])
+def test_a_bomb_in_a_chunk_is_refused(tmp_path, bombs, kind):
+    (tmp_path / "robot.mcap").write_bytes(chunk(kind, bombs[kind], BOMB))
+    if kind == "zstd":
+        refused(tmp_path / "robot.mcap", "robot.*unpacks to more than")
+    else:  # lz4 packs 255 times at most: it is stopped half way
+        with pytest.raises(ValueError, match="unpacks to more than"):
+            read(tmp_path / "robot.mcap")
+
+
+def test_a_file_that_is_packed_whole_is_counted_before_it_is_unpacked_to_the_disk(tmp_path, bombs):
+    bag = write_bag(tmp_path / "robot", steps(), "mcap")
+    note, file = bag / "metadata.yaml", mcap(bag)
+    (bag / f"{file.name}.zstd").write_bytes(bombs["zstd"])
+    text = note.read_text().replace(file.name, f"{file.name}.zstd")
+    text = text.replace("compression_mode: ''", "compression_mode: file")
+    note.write_text(text.replace("compression_format: ''", "compression_format: zstd"))
+    file.unlink()
+    refused(bag, "unpacks to more than")
+
+
+def test_what_is_unpacked_in_all_is_bounded_and_streams_are_joined():
+    for make, pack in (
+        (bz2.BZ2Decompressor, bz2.compress),
+        (lz4.frame.LZ4FrameDecompressor, lz4.frame.compress),
+        (storage_mcap.zstd.ZstdDecompressor, storage_mcap.zstd.compress),
+    ):
+        assert unpacking.whole(make, pack(b"one") + pack(b"two")) == b"onetwo"
+        with pytest.raises((EOFError, ValueError)):
+            unpacking.whole(make, pack(b"x" * 1000)[:-6])
+    budget = unpacking.Budget(0)
+    for _ in range(FREE >> 20):
+        budget.spend(1 << 20)
+    with pytest.raises(unpacking.Bomb):
+        budget.spend(1)
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        "CREATE VIEW schema AS WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i FROM n) "
+        "SELECT i AS schema_version FROM n",
+        "CREATE TABLE topics2(id, name AS (zeroblob(1000000000)))",
+        "CREATE TABLE t(a); CREATE TRIGGER x AFTER INSERT ON t BEGIN DELETE FROM t; END",
+    ],
+)
+def test_a_data_base_that_computes_is_refused(tmp_path, script):
+    file = tmp_path / "robot.db3"
+    base = sqlite3.connect(file)
+    base.executescript("CREATE TABLE messages(id); CREATE TABLE topics(id);" + script)
+    base.close()
+    refused(file, "robot.*views, triggers or computed")
+
+
+@pytest.mark.parametrize("raw", [b"", b"SQLite format 3\0" + bytes(50), b"\0" * 5000])
+def test_what_is_no_data_base_is_refused(tmp_path, raw):
+    (tmp_path / "robot.db3").write_bytes(raw)
+    refused(tmp_path / "robot.db3", "robot")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        "a: &a [*a]",
+        "rosbag2_bagfile_information: 5",
+        "x" * (1 << 21),
+        "!!python/name:os",
+    ],
+)
+def test_metadata_with_lies_are_refused(tmp_path, text):
+    bag = write_bag(tmp_path / "robot", steps(), "mcap")
+    (bag / "metadata.yaml").write_text(text)
+    refused(bag, "robot")
+
+
+def test_metadata_name_no_file_outside_of_the_bag(tmp_path):
+    bag = write_bag(tmp_path / "robot", steps(), "mcap")
+    mcap(bag).rename(tmp_path / "outside.mcap")
+    note = bag / "metadata.yaml"
+    note.write_text(note.read_text().replace("robot.mcap", "../outside.mcap"))
+    refused(bag, "missing|outside")
+
+
+class Message:
+    """A ROS message of these fields."""
+
+    def __init__(self, **fields) -> None:
+        self.__dict__.update(fields)
+
+
+def picture(**changes) -> Message:
+    held = {"height": 4, "width": 4, "encoding": "rgb8", "step": 12, "is_bigendian": 0}
+    return Message(**{**held, "data": np.zeros(48, np.uint8), **changes})
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"height": 1 << 31, "width": 1 << 31},
+        {"height": 0},
+        {"height": 8192, "width": 8192},
+        {"step": 1 << 31},
+        {"step": 3},
+        {"encoding": "32FC1"},
+        {"encoding": "x" * 10_000},
+    ],
+)
+def test_an_image_whose_header_lies_is_refused(changes):
+    with pytest.raises(ValueError, match="bag"):
+        ros.image(picture(**changes), RGB, Path("bag"))
+
+
+def test_a_row_whose_step_lies_takes_no_memory():
+    row = ros.image(picture(height=1, step=1 << 31), RGB, Path("bag"))
+    assert row.shape == (1, 4, 3)
+
+
+@pytest.mark.parametrize("size", [(1 << 15, 1 << 15), (1 << 20, 1)])
+def test_a_compressed_image_of_absurd_size_is_not_decoded(monkeypatch, size):
+    def record(kind: bytes, data: bytes) -> bytes:
+        return (
+            struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+        )
+
+    head = record(b"IHDR", struct.pack(">IIBBBBB", *size, 8, 2, 0, 0, 0))
+    raw = b"\x89PNG\r\n\x1a\n" + head + record(b"IDAT", zlib.compress(b"")) + record(b"IEND", b"")
+    monkeypatch.setattr(ros.cv2, "imdecode", lambda *_: pytest.fail("it was decoded"))
+    for data in (raw, b"II*\0" + raw, b"GIF89a", b""):
+        with pytest.raises(ValueError, match="cannot be decoded"):
+            ros.image(Message(format="png", data=np.frombuffer(data, np.uint8)), RGB, Path("bag"))
+
+
+@pytest.mark.parametrize(
+    ("focal", "centre"), [((8, 1e-300), (8, 8)), ((8, 1e300), (8, 8)), ((8, 8), (1e300, 8))]
+)
+def test_a_lens_that_sees_nothing_is_refused(focal, centre):
+    assert Lens(RGB, focal=(8, 8), centre=(8, 8), size=(16, 16))
+    with pytest.raises(ValueError, match="is none"):
+        Lens(RGB, focal=focal, centre=centre, size=(16, 16))

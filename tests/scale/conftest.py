@@ -1,0 +1,43 @@
+"""One Ray cluster for all tests of a process, and SLURM's jobs as processes of this machine."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from mitigate.scale.launcher import RayConfig, SlurmConfig
+
+
+@pytest.fixture(scope="session")
+def cluster():
+    """Ray's own cluster for tests: three nodes on this machine, one CPU each."""
+    ray = pytest.importorskip("ray", reason="ray is not installed (mitigate[cluster])")
+    from ray.cluster_utils import Cluster
+
+    path = os.environ.get("PYTHONPATH")
+    os.environ["PYTHONPATH"] = os.pathsep.join([str(Path(__file__).parents[2]), path or ""])
+    made = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
+    made.nodes = [made.add_node(num_cpus=1) for _ in range(2)]
+    ray.init(address=made.address, log_to_driver=False)
+    yield made
+    ray.shutdown()
+    made.shutdown()
+
+
+@pytest.fixture
+def ray_launcher(cluster):
+    return RayConfig(cpus=1)
+
+
+@pytest.fixture
+def slurm_launcher(tmp_path):
+    """Makes a launcher of jobs that are processes here."""
+    pytest.importorskip("submitit", reason="submitit is not installed (mitigate[cluster])")
+
+    def make(**settings):
+        settings = {"processes": 1, "minutes": 2, **settings}
+        return SlurmConfig(cluster="local", folder=str(tmp_path / "slurm"), **settings)
+
+    return make

@@ -1,0 +1,85 @@
+"""A sweep runs every combination of options in a folder of its own and ends in one table."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.core import conf
+from mitigate.evaluation import rows
+from mitigate.scale import programs
+from mitigate.training import sweep
+from tests.evaluation.made_rows import column
+
+
+def config(runs, *options):
+    return conf.load_config("sweep", [f"runs={runs}", *options])
+
+
+@pytest.fixture
+def fake(monkeypatch):
+    """Runs that take no time: each leaves rows, but those with ``seed=1``, which fail."""
+    ran = []
+
+    def run(chains, jobs, launcher, progress, told):
+        ran.append((chains, jobs, launcher.name))
+        for number, chain in enumerate(chains):
+            failed = "seed=1" in chain.name
+            if not failed:
+                made = column(5, {"flare": 4}, name=chain.name.split()[0])
+                rows.write(chain.log.parent.parent / f"{number}" / "rows.jsonl", made)
+            told(number, programs.Outcome("train ended with 1 (so)" if failed else ""))
+
+    monkeypatch.setattr(programs, "run", run)
+    return ran
+
+
+def test_every_combination_is_run_by_hydras_grammar():
+    made = sweep.combinations(["recipe=da_per_frame,stacked", "seed=range(2)", "severity=0.3"])
+    assert made == [
+        [f"recipe={recipe}", f"seed={seed}", "severity=0.3"]
+        for recipe in ("da_per_frame", "stacked")
+        for seed in (0, 1)
+    ]
+    assert sweep.combinations([]) == [[]]
+
+
+def test_a_list_is_one_value_and_not_a_sweep():
+    assert len(sweep.combinations(["agent.blind=[rgb,depth]", "seed=3"])) == 1
+
+
+def test_runs_have_a_log_each_share_the_cores_and_evaluations_a_folder_each(tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTHON_CPU_COUNT", "8")
+    cfg = config(tmp_path, "command=evaluate", "jobs=4")
+    chains = [sweep.chain(cfg, made) for made in sweep.combinations(["seed=0,1"])]
+    folders = {word for c in chains for word in c.programs[0][1] if word.startswith("out=")}
+    assert folders == {f"out={tmp_path}/seed-0", f"out={tmp_path}/seed-1"}
+    assert len({chain.log for chain in chains}) == 2
+    assert chains[0].environment["PYTHON_CPU_COUNT"] == "2"
+    alone = sweep.chain(config(tmp_path), ["seed=0"])
+    assert alone.environment == {}
+    there = sweep.chain(config(tmp_path, "launcher=ray", "launcher.cpus=4"), ["seed=0"])
+    assert there.environment["PYTHON_CPU_COUNT"] == "4"
+
+
+def test_a_failed_run_stops_no_other_and_the_table_is_written(tmp_path, fake):
+    options = ["severity=0.3,0.6", "seed=0,1"]
+    with pytest.raises(ValueError, match="2 of 4 runs failed.*Run again"):
+        sweep.run(config(tmp_path, "jobs=2", "launcher=ray"), options)
+    assert len(fake[0][0]) == 4 and fake[0][1:] == (2, "ray")
+    assert "severity=0.6" in (tmp_path / "table.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("own", "options", "said"),
+    [
+        (["command=trian"], [], "Did you mean train"),
+        (["jobs=0"], [], "jobs=0"),
+        ([], ["recipe=stacked,da_per_fram"], "Did you mean da_per_frame"),
+        ([], ["sevrity=0.1"], "Did you mean severity"),
+        ([], ["severity=high"], "must be a number"),
+    ],
+)
+def test_what_no_run_could_have_is_said_before_any_starts(tmp_path, fake, own, options, said):
+    with pytest.raises(ValueError, match=said):
+        sweep.run(config(tmp_path, *own), options)
+    assert not fake

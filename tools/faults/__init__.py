@@ -1,0 +1,1 @@
+"""Faults: ``python -m tools.faults``."""
