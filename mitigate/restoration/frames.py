@@ -52,7 +52,7 @@ class SensorRestorer(nn.Module):
         channels = CHANNELS[sensor]
         inputs = channels + (sensor == DEPTH)
         self.net = UNet(inputs, 2 * channels + 1, width)
-        self.refine = UNet(channels + 2, channels, max(8, width // 3 * 2))
+        self.refine = UNet(channels + 2, channels, width)
         self.gate = Gate(width)
         self.register_buffer("threshold", torch.zeros(()))
 

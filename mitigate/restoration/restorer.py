@@ -35,7 +35,7 @@ class Restorer(nn.Module):
     def __init__(
         self,
         sensors: Sequence[str] = SENSORS,
-        width: int = 24,
+        width: int = 16,
         depth_width: int = 16,
         size: int = 64,
         far: float = Z_MAX,
