@@ -12,7 +12,7 @@ from functools import lru_cache
 from importlib.metadata import entry_points
 
 from mitigate.core.names import unknown
-from mitigate.corruptions import depth, eld, rgb, unseen
+from mitigate.corruptions import broad, depth, eld, rgb, unseen
 from mitigate.corruptions.language import families
 from mitigate.corruptions.record import MODALITIES, TEST, VALIDATION, Record
 
@@ -30,6 +30,7 @@ UNSEEN = {
         unseen.RECORDS, key=lambda r: (MODALITIES.index(r.modality), HALVES.index(r.half))
     )
 }
+BROAD = {record.name: record for record in broad.RECORDS}  # to train on, by modality
 AND = "+"  # between the names of a pair
 HEAD = (
     "name",
@@ -50,7 +51,7 @@ def further() -> dict[str, Record]:
     for point in entry_points(group=GROUP):
         try:
             record = point.load()
-            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *found})
+            problem = _problem(record, {"clean", *SUITE, *UNSEEN, *BROAD, *found})
         except Exception as error:  # of any kind: it is another package's code
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
@@ -94,14 +95,20 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
 
 
 def known(*modalities: str) -> tuple[str, ...]:
-    """As :func:`names`, with the unseen and the further ones behind."""
+    """As :func:`names`, with the unseen, the broad and the further ones behind."""
+    others = {**BROAD, **further()}.items()
     own = names(*modalities) + unseen_names(*modalities)
-    return own + tuple(n for n, r in further().items() if r.modality in modalities)
+    return own + tuple(n for n, r in others if r.modality in modalities)
+
+
+def broad_name(modality: str) -> str:
+    """The broad augmentation of a modality."""
+    return next(name for name, record in BROAD.items() if record.modality == modality)
 
 
 def record(name: str) -> Record:
     """The record of a known corruption; KeyError for another."""
-    return SUITE.get(name) or UNSEEN.get(name) or further()[name]
+    return SUITE.get(name) or UNSEEN.get(name) or BROAD.get(name) or further()[name]
 
 
 def parts(name: str) -> tuple[str, ...]:
@@ -113,7 +120,7 @@ def title(name: str) -> str:
     """The name of a corruption in tables; of one that is not installed here, in words."""
     if AND in name:
         return f" {AND} ".join(map(title, parts(name)))
-    if name in SUITE or name in UNSEEN or name in further():
+    if name in {**SUITE, **UNSEEN, **BROAD} or name in further():
         return record(name).title
     return name.replace("_", " ").capitalize()
 

@@ -10,7 +10,7 @@ from itertools import accumulate
 from typing import Any
 
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.corruptions.registry import modality
+from mitigate.corruptions.registry import broad_name, modality
 from mitigate.corruptions.suite import CLEAN, NAMES, Corruption, check_name, check_severity
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
@@ -34,6 +34,8 @@ class Schedule:
             (low, high), from which each frame (per frame) or episode draws its own, uniformly.
         clean_share: share of frames (per frame) or episodes that stay clean, in [0, 1].
         names: the corruptions to draw from.
+        broad_share: share of the draws that are not clean, in [0, 1], in which a random composition
+            (``broad``) of the drawn corruption's modality takes its place.
         alpha, floor: of the success-distributed weights; both >= 0, floor > 0 keeps all alive.
         success: SR_k in [0, 1] by name; None means uniform weights until ``refresh``.
 
@@ -45,6 +47,7 @@ class Schedule:
     severity_depth: Severity | None = None
     clean_share: float = 0.25
     names: tuple[str, ...] = NAMES
+    broad_share: float = 0.0
     alpha: float = 1.0
     floor: float = 0.05
     success: dict[str, float] | None = None
@@ -70,8 +73,9 @@ class Schedule:
                 f"A schedule needs at least one corruption and each only once, but names = "
                 f"{self.names}. Leave it out to draw from all of {', '.join(NAMES)}."
             )
-        if not 0.0 <= self.clean_share <= 1.0:
-            raise ValueError(f"clean_share must be in [0, 1], but it is {self.clean_share!r}.")
+        for name in ("clean_share", "broad_share"):
+            if not 0.0 <= getattr(self, name) <= 1.0:
+                raise ValueError(f"{name} must be in [0, 1], but it is {getattr(self, name)!r}.")
         if not (0.0 <= self.alpha < math.inf and 0.0 <= self.floor < math.inf):
             raise ValueError(
                 f"alpha and floor must be finite and >= 0, but alpha = {self.alpha!r} and floor = "
@@ -128,6 +132,8 @@ class Schedule:
             return CLEAN, key
         place = bisect_right(list(accumulate(self._weights)), uniform(value, 1))
         name = self.names[min(place, len(self.names) - 1)]
+        if uniform(value, 3) < self.broad_share:
+            name = broad_name(modality(name))
         return self.corruption(name, uniform(value, 2)), key
 
     def corruption(self, name: str, place: float = 0.5) -> Corruption:

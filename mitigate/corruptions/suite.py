@@ -218,7 +218,7 @@ def corrupt(
         return frame.copy()
     assert record.apply is not None, "names of frames have a function"
     given = (severity, key, heading if rgb else sensor)
-    if name in registry.SUITE or name in registry.UNSEEN:
+    if name not in registry.further():
         return record.apply(views, *given).reshape(frame.shape)
     made = record.apply(views.copy(), *given)
     if getattr(made, "dtype", None) != views.dtype or made.shape != views.shape:

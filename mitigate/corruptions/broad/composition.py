@@ -1,0 +1,93 @@
+"""Which primitives a composition has, how strong each is, and the random maps that they share.
+
+A primitive is a function of (views, strength in (0, 1], ``rng`` of the episode, ``now`` of the
+frame) that returns views of the same shape. Constants without a source were chosen by this project,
+before any agent trained with them had met an unseen corruption.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import cv2
+import numpy as np
+
+from mitigate.corruptions.keying import Key, digest
+
+COUNTS = (0.4, 0.35, 0.25)  # probability of one, two, three primitives
+LEAST_STRENGTH = 0.35  # of the severity: each primitive draws its share from here to 1
+
+Primitive = Callable[..., np.ndarray]
+
+
+def composed(
+    views: np.ndarray,
+    severity: float,
+    key: Key,
+    name: str,
+    primitives: Sequence[Primitive],
+) -> np.ndarray:
+    """``views`` through one to three of ``primitives``, drawn for the key's episode."""
+    rng = stream(digest(key, name))
+    chosen = rng.permutation(len(primitives))[: 1 + rng.choice(len(COUNTS), p=COUNTS)]
+    now = stream(digest(key, name, frame=True))
+    for place in chosen:
+        strength = severity * rng.uniform(LEAST_STRENGTH, 1.0)
+        views = primitives[place](views, strength, rng, now)
+    return views
+
+
+def stream(value: int) -> np.random.Generator:
+    """Random numbers of a 64-bit digest."""
+    return np.random.Generator(np.random.Philox(value))
+
+
+def field(rng: np.random.Generator, height: int, width: int, cell: float) -> np.ndarray:
+    """float32 [H, W]: a smooth random map of mean 0 and standard deviation about 1, whose cells
+    have ``cell`` of the shorter side."""
+    size = max(1.0, cell * min(height, width))
+    rows, columns = (2 + round(length / size) for length in (height, width))
+    cells = rng.standard_normal((rows, columns)).astype(np.float32)
+    smooth = cv2.resize(cells, (width, height), interpolation=cv2.INTER_CUBIC)
+    return smooth / max(float(smooth.std()), 0.3)
+
+
+def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    """A number whose logarithm is uniform."""
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def shapes(rng: np.random.Generator, height: int, width: int, area: float) -> np.ndarray:
+    """bool [H, W]: one to eight ellipses, polygons and bars over about ``area`` of the map."""
+    mask = np.zeros((height, width), np.uint8)
+    count = int(rng.integers(1, 9))
+    for _ in range(count):
+        centre = rng.uniform(0, 1, 2) * (width, height)
+        radius = np.sqrt(area * height * width / (np.pi * count)) * rng.uniform(0.7, 1.3)
+        long, angle = rng.uniform(1.0, 4.0) ** 0.5, rng.uniform(0, np.pi)
+        corners = rng.choice((3, 4, 5, 24))
+        turns = np.sort(rng.uniform(0, 2 * np.pi, corners)) if corners < 24 else _CIRCLE
+        points = np.stack([np.cos(turns) * long, np.sin(turns) / long], -1) * radius
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        cv2.fillPoly(mask, [np.rint(points @ turn.T + centre).astype(np.int32)], 1)
+    return mask.astype(bool)
+
+
+_CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+
+
+def displaced(rng: np.random.Generator, height: int, width: int, reach: float) -> tuple:
+    """Where each pixel is read, float32 maps x and y [H, W]: moved by a smooth random map of cells
+    from 0.06 to 0.6 of the side and turned, scaled and shifted as a whole; ``reach``, as a share of
+    the side, is about the largest move."""
+    side, cell = min(height, width), log_uniform(rng, 0.06, 0.6)
+    y, x = np.mgrid[:height, :width].astype(np.float32)
+    local = rng.uniform(0.0, 1.0)
+    slope = reach * side * local * min(1.0, 3.0 * cell)  # small cells fold if they move far
+    turn, scale = (1.0 - local) * reach * rng.uniform(-1.5, 1.5, 2)
+    shift = (1.0 - local) * reach * side * rng.uniform(-1.0, 1.0, 2)
+    right, down = x - (width - 1) / 2, y - (height - 1) / 2
+    bent = 0.4 * slope * np.stack([field(rng, height, width, cell) for _ in range(2)])
+    map_x = x + scale * right - turn * down + shift[0] + bent[0]
+    map_y = y + turn * right + scale * down + shift[1] + bent[1]
+    return map_x.astype(np.float32), map_y.astype(np.float32)

@@ -1,0 +1,158 @@
+"""Primitive transforms of depth views, and their random composition ``broad_depth``.
+
+Each primitive takes and gives float32 views [V, H, W] in shares of the sensor's range; what reads
+nothing is NaN. An invalid pixel comes back as it was, as everywhere.
+"""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+
+from mitigate.corruptions.broad.composition import composed, displaced, field, log_uniform, shapes
+from mitigate.corruptions.depth import NEAREST, DepthSensor
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.record import Record
+
+NAME = "broad_depth"
+
+
+def curve(views, strength, rng, now):
+    """Another scale and offset, and waves along the range."""
+    scale, offset = 1.0 + 0.5 * strength * rng.uniform(-1, 1), 0.1 * strength * rng.uniform(-1, 1)
+    waves, phase = rng.uniform(1.0, 8.0), rng.uniform(0, 2 * np.pi)
+    wave = 0.04 * strength * rng.random() * np.sin(2 * np.pi * waves * views + phase)
+    return views * np.float32(scale) + np.float32(offset) * (rng.random() < 0.5) + wave
+
+
+def uneven(views, strength, rng, now):
+    """Errors that go together over a patch, added, or growing with z or its square."""
+    power, amount = rng.choice((0, 1, 2)), strength * rng.uniform(0.02, 0.25)
+    error = field(rng, *views.shape[1:], log_uniform(rng, 0.02, 0.6))
+    moving = rng.random() < 0.5
+    out = np.empty_like(views)
+    for place, view in enumerate(views):
+        turned = np.roll(error, int((now if moving else rng).integers(view.shape[1])), 1)
+        out[place] = view + amount * turned * view**power * (1.0 if power else 0.3)
+    return out
+
+
+def noisy(views, strength, rng, now):
+    """Noise of a random grain, of the same size everywhere or growing with the square of z."""
+    grain = rng.choice((1, 1, 2, 4)) * max(1, min(views.shape[1:]) // 128)
+    height, width = views.shape[1:]
+    shape = (len(views), -(-height // grain), -(-width // grain))
+    noise = now.standard_normal(shape).repeat(grain, 1).repeat(grain, 2)[:, :height, :width]
+    amount = strength * rng.uniform(0.01, 0.1)
+    growth = 1.0 + 6.0 * views**2 * (rng.random() < 0.5)
+    return views + (amount * noise * growth).astype(np.float32)
+
+
+def smooth(views, strength, rng, now):
+    """The median or the mean around a pixel."""
+    size = 1 + 2 * max(1, round(0.06 * strength * rng.uniform(0.3, 1.0) * min(views.shape[1:])))
+    if rng.random() < 0.4:
+        return _each(views, lambda view: cv2.medianBlur(view, min(5, size)))
+    return _each(views, lambda view: cv2.blur(view, (size, size)))
+
+
+def steps(views, strength, rng, now):
+    """Few levels, at even distances or at even disparities."""
+    if rng.random() < 0.5:
+        step = np.float32(strength * rng.uniform(0.02, 0.15))
+        return np.rint(views / step) * step
+    step = np.float32(strength * rng.uniform(0.1, 0.8))
+    return 1.0 / np.maximum(np.rint(1.0 / np.maximum(views, 0.01) / step) * step, 0.5)
+
+
+def warped(views, strength, rng, now):
+    """Pixels moved by smooth random maps, or as a whole."""
+    map_x, map_y = displaced(rng, *views.shape[1:], 0.12 * strength)
+    border = cv2.BORDER_REPLICATE
+    return _each(
+        views, lambda view: cv2.remap(view, map_x, map_y, cv2.INTER_NEAREST, borderMode=border)
+    )
+
+
+def swapped(views, strength, rng, now):
+    """Some pixels read what another one nearby should."""
+    reach = max(1, round(0.15 * rng.uniform(0.2, 1.0) * min(views.shape[1:])))
+    out, share = views.copy(), 0.6 * strength * rng.random()
+    for view, clean in zip(out, views, strict=True):
+        y, x = np.nonzero(now.random(view.shape) < share)
+        dy, dx = now.integers(-reach, reach + 1, (2, len(y)))
+        height, width = view.shape
+        view[y, x] = clean[np.clip(y + dy, 0, height - 1), np.clip(x + dx, 0, width - 1)]
+    return out
+
+
+def holes(views, strength, rng, now):
+    """The share up to 0.7 a of the pixels, chosen by a random mixture of a smooth map, chance,
+    distance and edges, reads nothing, or near or far."""
+    weights = rng.dirichlet(np.full(4, 0.5)) * (1, 1, rng.choice((-1, 1)), 1)
+    place = field(rng, *views.shape[1:], log_uniform(rng, 0.02, 0.5))
+    share, fill, out = 0.7 * strength * rng.random(), _fill(rng), views.copy()
+    for view in out:
+        edges = np.abs(cv2.Laplacian(np.nan_to_num(view), cv2.CV_32F, ksize=3))
+        chance = now.standard_normal(view.shape)
+        maps = (place, chance, 6.0 * (np.nan_to_num(view) - 0.3), np.minimum(8.0 * edges, 3.0))
+        score = sum(weight * each for weight, each in zip(weights, maps, strict=True))
+        view[score > np.quantile(score, 1.0 - share)] = fill
+    return out
+
+
+def hidden(views, strength, rng, now):
+    """Shapes, the same in all views or others in each, that read nothing, near or far."""
+    area, fill, alike = 0.5 * strength * rng.uniform(0.1, 1.0), _fill(rng), rng.random() < 0.6
+    mask, out = shapes(rng, *views.shape[1:], area), views.copy()
+    for view in out:
+        mask = mask if alike else shapes(now, *views.shape[1:], area)
+        view[mask] = fill
+    return out
+
+
+def lost(views, strength, rng, now):
+    """Each view reads nothing, or far, with probability 0.5 a."""
+    out = views.copy()
+    out[now.random(len(views)) < 0.5 * strength] = rng.choice((np.nan, np.nan, 1.0))
+    return out
+
+
+def _fill(rng: np.random.Generator) -> float:
+    """What is read in place of depth: mostly nothing, else any distance of the range."""
+    return float("nan") if rng.random() < 0.6 else float(rng.choice((1.0, rng.random())))
+
+
+def _each(views, change) -> np.ndarray:
+    """``change`` of each view, whose holes read far meanwhile and are holes after it."""
+    holes = np.isnan(views)
+    out = np.stack([change(view) for view in np.where(holes, np.float32(1.0), views)])
+    return np.where(holes, np.float32(np.nan), out)
+
+
+PRIMITIVES = (curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidden, lost)
+
+
+def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
+    """One to three primitives of random strength up to ``severity``, kept through the episode."""
+    valid = (views > 0) & np.isfinite(views)
+    shares = np.where(valid, views / np.float32(sensor.z_max), np.float32(np.nan))
+    made = composed(shares, severity, key, NAME, PRIMITIVES) * np.float32(sensor.z_max)
+    metres = np.clip(made, NEAREST, np.float32(sensor.z_max))
+    metres = np.where(np.isnan(made), np.float32(sensor.missing), metres).astype(np.float32)
+    return np.where(valid, metres, views)
+
+
+RECORD = Record(
+    name=NAME,
+    modality="depth",
+    apply=broad_depth,
+    version="1",
+    severity="largest strength of each primitive",
+    fails="anything: it is drawn to train on",
+    formula="one to three of " + ", ".join(p.__name__.replace("_", " ") for p in PRIMITIVES),
+    sources="after PRIME (Modas et al., ECCV 2022); primitives and strengths are ours",
+    source="ours, after PRIME",
+    episode="which primitives, how strong, their maps",
+    frame="noise, which pixels and views",
+)
