@@ -55,14 +55,14 @@ class Restore(Recipe):
         training: TrainingEpisodes | None,
         modality: str,
         schedule: Schedule,
-        panoramas: int = 6,
+        panoramas: int = 4,
         frames: int = 4800,
         single: float = 0.25,
         seed: int = 0,
         w_grad: float = 0.5,
         w_gate: float = 0.05,
         touched: float = 0.005,
-        held: int = 600,
+        held: int = 400,
     ) -> None:
         super().__init__()
         if not 0 <= single <= 1 or not 0 < touched < 1 or panoramas < 1 or held < 1:
