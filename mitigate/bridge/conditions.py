@@ -22,7 +22,8 @@ from mitigate.corruptions import Corruption
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
     """All conditions of a run, clean first, then repeated clean runs."""
-    from mitigate.evaluation.evaluate import conditions
+    from mitigate.evaluation.evaluate import conditions, name_of
+    from mitigate.restoration.restorer import restorer_of
 
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     if cfg.corruption is not None:
@@ -32,7 +33,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
         cfg.severity,
         cfg.severity_depth,
     )
-    words, environment = _words(cfg, out), _environment(cfg)
+    words, environment, restorer = _words(cfg, out), _environment(cfg), restorer_of(cfg.restore)
     keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
     text = shlex.join(command)
@@ -47,20 +48,30 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
             "episodes": cfg.episodes,
             "turn": cfg.turn,
             "safeguard": cfg.safeguard,
+            "restore": None if restorer is None else restorer.hash,
             "tokenizer": cfg.tokenizer,
             "missing": cfg.missing,
             "adapters": cfg.adapters,
             "token_length": cfg.token_length,
             "record": cfg.record,
         }
-        condition = Condition(corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep=keep)
+        condition = Condition(
+            corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep, restorer=restorer
+        )
         if cfg.record is not None:
             condition.observers.append(Recorder(Path(cfg.record) / own))
-        label = {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
+        label = {
+            "agent": sha if restorer is None else _behind(sha, restorer.hash),
+            "name": name,
+            "split": cfg.split,
+            "seed": cfg.seed,
+        }
         if cfg.safeguard != "none":
             from mitigate.safeguard.guard import label as front
 
             label["name"] += f"+{front(cfg.safeguard)}"
+        if restorer is not None:
+            label["name"] += f"+{name_of(cfg.restore)}"
         if cfg.adapters is not None:
             label["name"] += "+adapters"
         folder = out / "conditions" / own
@@ -80,6 +91,11 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
             )
         )
     return made
+
+
+def _behind(agent: str, restorer: str) -> str:
+    """The hash of an agent behind a restorer, of their hashes."""
+    return hashlib.sha256(f"{agent} {restorer}".encode()).hexdigest()[:12]
 
 
 def _words(cfg: DictConfig, out: Path) -> Words:

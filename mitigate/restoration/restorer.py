@@ -137,6 +137,11 @@ class Restorer(nn.Module):
         folders.fill(self, folder)
 
 
+def restorer_of(folder: str | None) -> Restorer | None:
+    """The restorer of an option ``restore=``: none for None; else as :func:`load_restorer`."""
+    return None if folder is None else load_restorer(folder)
+
+
 def load_restorer(folder: str | Path) -> Restorer:
     """The restorer in ``folder``, in eval mode: ``restorer(observation)`` restores.
 
