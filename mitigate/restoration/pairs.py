@@ -3,7 +3,7 @@ frames of a folder."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
@@ -140,10 +140,8 @@ def pairs_of(
     **how: Any,
 ) -> Pairs:
     """The pairs of an ``env`` config: of a folder of frames, if its ``world`` makes one, else of a
-    world. ``how``: sensor, panoramas, seed, and frames, which is for a folder alone."""
-    maker: Mapping[str, Any] | Any = getattr(world, "node", {})
+    world, which has training episodes. ``how``: sensor, panoramas, seed, and frames, of a folder."""
     frames = how.pop("frames")
-    if str(maker.get("_target_", "")).endswith("Frames") or hasattr(world, "shots"):
+    if training is None:
         return FramePairs(world, schedule, frames=frames, **how)
-    assert training is not None
     return PosePairs(agent, world, training, schedule, **how)

@@ -92,8 +92,8 @@ class Restorer(nn.Module):
         """A frame of one instant: uint8 [H, W, 3] or [V, H, W, 3], or float32 metres [H, W],
         [H, W, 1] or [V, H, W, 1]. What the gate takes for clean is returned as it came, else a new
         array of the same shape and dtype. Raises KeyError, TypeError and ValueError."""
-        views = self._views(sensor, np.asarray(frame))
-        changed, made = self._net(sensor).judged(torch.from_numpy(views))
+        net, views = self._net(sensor), self._views(sensor, np.asarray(frame))
+        changed, made = net.judged(torch.from_numpy(views))
         return made.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
 
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
