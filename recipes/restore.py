@@ -60,9 +60,9 @@ class Restore(Recipe):
         single: float = 0.25,
         seed: int = 0,
         w_grad: float = 0.5,
-        w_gate: float = 0.05,
+        w_gate: float = 0.2,
         touched: float = 0.005,
-        held: int = 400,
+        held: int = 300,
     ) -> None:
         super().__init__()
         if not 0 <= single <= 1 or not 0 < touched < 1 or panoramas < 1 or held < 1:
@@ -167,8 +167,7 @@ class Restore(Recipe):
             views = batch["frames"].shape[1] if pairs.ring else 1
             frames = batch["frames"].flatten(0, 1).to(self.net.threshold.device)
             x, valid = self.net.scaled(frames)
-            maps = self.net.net.encode(self.net.seen(*self.net.small(x, valid)), views)
-            logits.append(self.net.gate(maps.stats, views).float().cpu())
+            logits.append(self.net.judge(*self.net.small(x, valid), views)[1].float().cpu())
             same = (batch["frames"] == batch["clean"]).flatten(2).all(2)
             hits.append(~(same.all(1) if pairs.ring else same.flatten()))
             step += 1

@@ -19,10 +19,11 @@ from torch import Tensor, nn
 
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.restoration import ring
-from mitigate.restoration.network import FACTOR, Gate, UNet
+from mitigate.restoration.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
-LOST = -4.0  # logit of "lost" before anything is learned: 1.8 % (ours)
+LOST = -3.0  # logit of "lost" before anything is learned: 5 % (ours)
+SUREST = 6.0  # the greatest logit, either way: a pixel is never given up for good (ours)
 GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; low light leaves 0.03)
 
 
@@ -82,8 +83,13 @@ class SensorRestorer(nn.Module):
         """Frames [n, H, W, c] as they come, every ``views`` of them one instant, all restored."""
         x, valid = self.scaled(frames)
         less, read = self.small(x, valid)
-        maps = self.net.encode(self.seen(less, read), views)
-        return self._composed(x, valid, self.net.decode(maps), views, self.gate(maps.stats, views))
+        maps, gate = self.judge(less, read, views)
+        return self._composed(x, valid, self.net.decode(maps), views, gate)
+
+    def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor]:
+        """The U-Net's maps and the gate's logits [instants] of frames at the working size."""
+        maps = self.net.encode(self.seen(x, valid), views)
+        return maps, self.gate(maps.stats, texture(x, valid), views)
 
     def seen(self, x: Tensor, valid: Tensor) -> Tensor:
         """What goes into the U-Net."""
@@ -96,7 +102,7 @@ class SensorRestorer(nn.Module):
         channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
         maps = maps if full == small else _resized(maps, full)
         gain, bias, lost = maps.split([channels, channels, 1], 1)
-        trust = (-lost - LOST).sigmoid() * valid
+        trust = (-SUREST * ((lost + LOST) / SUREST).tanh()).sigmoid() * valid
         y = (x * gain.clamp(*GAINS).exp() + bias).clamp(0, 1)
         known, values, sure = trust, y, torch.zeros_like(trust)
         if ring.is_ring(views, *full):
@@ -119,8 +125,7 @@ class SensorRestorer(nn.Module):
         else as they are."""
         views = len(frames)
         x, valid = self.scaled(frames)
-        maps = self.net.encode(self.seen(*self.small(x, valid)), views)
-        gate = self.gate(maps.stats, views)
+        maps, gate = self.judge(*self.small(x, valid), views)
         if not bool(gate > self.threshold):
             return False, frames
         made = self._composed(x, valid, self.net.decode(maps), views, gate)

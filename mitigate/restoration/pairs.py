@@ -139,8 +139,8 @@ def pairs_of(
     schedule: Schedule,
     **how: Any,
 ) -> Pairs:
-    """The pairs of an ``env`` config: of a folder of frames, if its ``world`` makes one, else of a
-    world, which has training episodes. ``how``: sensor, panoramas, seed, and frames, of a folder."""
+    """The pairs of an ``env`` config: of a world, or of a folder of frames, which has no training
+    episodes. ``how``: sensor, panoramas, seed; and frames, for a folder alone."""
     frames = how.pop("frames")
     if training is None:
         return FramePairs(world, schedule, frames=frames, **how)

@@ -101,8 +101,7 @@ class Restorer(nn.Module):
         net, views = self._net(sensor), self._views(sensor, np.asarray(frame))
         with torch.inference_mode():
             x, valid = net.scaled(torch.from_numpy(views))
-            maps = net.net.encode(net.seen(*net.small(x, valid)), len(views))
-            return float(net.gate(maps.stats, len(views)) - net.threshold)
+            return float(net.judge(*net.small(x, valid), len(views))[1] - net.threshold)
 
     def _net(self, sensor: str) -> SensorRestorer:
         if sensor not in self.nets:
