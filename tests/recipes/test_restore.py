@@ -13,6 +13,7 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import Schedule
 from mitigate.encoders.sources import FolderFrames
 from mitigate.recipes.restore import Restore
+from mitigate.recipes.restore_gate import RestoreGate
 from mitigate.restoration.restorer import Restorer
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
@@ -22,7 +23,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **given) -> Restore:
     torch.manual_seed(0)
     restorer = Restorer(width=4, depth_width=4)
-    how = {"panoramas": 1, "held": 8, "touched": 0.2, **given}
+    how = {"panoramas": 1, **given}
     schedule = Schedule("per_episode", (0.4, 0.8), names=names, clean_share=0.3)
     world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
     return Restore(restorer, **world, modality=sensor, schedule=schedule, **how)
@@ -52,14 +53,23 @@ def test_a_batch_is_a_function_of_the_step_and_some_show_single_views():
     assert set(views) == {1, 12}
 
 
-def test_the_threshold_lets_the_share_of_clean_frames_through_that_is_asked_for():
-    recipe = recipe_of(held=20, touched=0.2)
-    recipe.start()
-    found = recipe.eval().evaluate(1)
-    logits, hit = recipe._gates(recipe.clean, 1_000_000)
-    assert not hit.any() and len(logits) == 20
-    assert (logits > recipe.net.threshold).float().mean() == pytest.approx(0.2)
-    assert found["threshold"] == recipe.net.threshold
+def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
+    given = recipe_of()
+    schedule = Schedule("per_episode", (0.4, 0.8), names=("low_light", "foreign_object"))
+    world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
+    recipe = RestoreGate(
+        given.agent, **world, modality=RGB, schedule=schedule,
+        instants=40, held=20, batch=16, touched=0.1,
+    )  # fmt: skip
+    before = {name: p.clone() for name, p in given.agent.named_parameters()}
+    Trainer(
+        recipe, steps=60, lr=5e-3, folder=tmp_path, precision="fp32", log_every=0, eval_every=60
+    ).fit()
+    found = recipe.evaluate(60)
+    assert found["threshold"] == recipe.net.threshold != 0
+    assert found["corrupted_found"] > 0.8 > 0.4 > found["clean_touched"]
+    changed = [n for n, p in given.agent.named_parameters() if not torch.equal(p, before[n])]
+    assert changed and all(name.startswith("nets.rgb.gate.") for name in changed)
 
 
 def test_a_folder_of_frames_will_do(tmp_path):
@@ -79,9 +89,7 @@ def test_a_folder_of_frames_will_do(tmp_path):
 def _of_folder(path) -> Restore:
     world = partial(FolderFrames, str(path))
     schedule = Schedule("per_episode", 0.6, clean_share=0.0)
-    return Restore(
-        Restorer([RGB], width=4), world, None, RGB, schedule, panoramas=1, frames=8, held=2
-    )
+    return Restore(Restorer([RGB], width=4), world, None, RGB, schedule, panoramas=1, frames=8)
 
 
 def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
