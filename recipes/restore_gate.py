@@ -1,11 +1,11 @@
-"""Train the gate of a restorer: which frames are corrupted, and from which doubt on it acts.
+"""Train the gate of a restorer: which frames come nearer to the clean ones by being restored.
 
-    L = BCE(gate, corrupted or not)
+    L = BCE(gate, error after < ``BETTER`` error before)
 
-The maps that the gate reads do not change here, so they are computed once, for ``instants`` random
-instants, and learned from many times. A frame that a corruption hardly changed counts for neither.
-Afterwards the threshold is set on clean frames of the training scenes that were held back:
-``touched`` of them lie above it.
+A frame that is neither clearly better afterwards nor clean or worse counts for neither. The maps
+that the gate reads do not change here, so they are computed once, for ``instants`` random instants,
+and learned from many times. Afterwards the threshold is set on clean frames of the training scenes
+that were held back: ``touched`` of them lie above it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
@@ -29,29 +28,33 @@ from mitigate.restoration.restorer import Restorer
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes
 
-CLEAN_SHARE = 0.4  # of the instants that are learned from (ours)
-HIT = {RGB: 0.5 / 255, DEPTH: 5e-4}  # mean change of a view, over the range, that counts (ours)
-    RGB: 0.5 / 255,
-    DEPTH: 5e-4,
-}  # mean change of a view, over the range, that must be seen (ours)
-OFFSETS = {"learned": 0, "held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000}  # of steps
+CLEAN_SHARE = 0.35  # of the instants that are learned from (ours)
+BETTER = 0.85  # of the error before: what restoring must get below to be worth it (ours)
+OFFSETS = {"learned": 0, "held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000}  # steps
 
 
 class Judged(NamedTuple):
     """Of N instants of V views: stats [N, V, s] and textures [N, V, t], which the gate reads;
-    change [N, V], mean, over the range."""
+    before, after [N]: mean error over the range as they are and as restored."""
 
     stats: Tensor
     textures: Tensor
-    change: Tensor
+    before: Tensor
+    after: Tensor
+
+    @property
+    def wanted(self) -> tuple[Tensor, Tensor]:
+        """Which should be restored, and which are to be counted: bool [N] each."""
+        hit = (self.before > 0) & (self.after < BETTER * self.before)
+        return hit, hit | (self.after >= self.before)
 
 
 class RestoreGate(Recipe):
     """Args:
     agent: the restorer; the gate of its network of ``modality`` is trained in place. world,
-    training, schedule, frames: as ``Restore``. instants: learned from. held: clean ones that set
-    the threshold. batch: instants a step; in a share ``single`` of the steps views count by
-    themselves. touched: share of clean instants above the threshold.
+    training, schedule, frames: as ``Restore``. instants: learned from, and as many single views.
+    held: clean instants that set the threshold. batch: of a step; a share ``single`` of the steps
+    learns from single views. touched: share of clean instants above the threshold.
     """
 
     here = True  # a step takes milliseconds
@@ -63,7 +66,7 @@ class RestoreGate(Recipe):
         training: TrainingEpisodes | None,
         modality: str,
         schedule: Schedule,
-        instants: int = 600,
+        instants: int = 400,
         held: int = 300,
         batch: int = 64,
         frames: int = 4800,
@@ -88,37 +91,31 @@ class RestoreGate(Recipe):
             pairs_of(agent, world, training, dataclasses.replace(own, clean_share=share), **how)
             for share in (CLEAN_SHARE, 1.0)
         )
-        self.learned: Judged | None = None
+        self.learned: list[Judged] = []  # of panoramas, if there are any, and of single views
 
     def start(self) -> None:
         self.pairs.start()
         self.clean.start()
-        self.learned = self._judged(self.pairs, self.instants, "learned")
+        kinds = [True, False] if self.pairs.ring else [False]
+        self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
 
     def batch(self, step: int) -> dict[str, Any]:
-        assert self.learned is not None, "start() collects the maps"
+        assert self.learned, "start() collects the maps"
         rng = generator(self.seed, "gate batch", step)
-        chosen = torch.from_numpy(rng.integers(len(self.learned.change), size=self.batch_size))
-        stats, textures, change = (part[chosen] for part in self.learned)
-        if not self.pairs.ring or rng.random() < self.single:
-            stats, textures, change = (
-                part.flatten(0, 1)[:, None] for part in (stats, textures, change)
-            )
-        return {"stats": stats, "textures": textures, "change": change}
-
-    def weight(self, batch: dict[str, Any]) -> float:
-        """Instants."""
-        return float(len(batch["change"]))
+        table = self.learned[-1 if rng.random() < self.single else 0]
+        chosen = rng.integers(len(table.before), size=self.batch_size)
+        return {"judged": Judged(*(part[torch.from_numpy(chosen)] for part in table))}
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        change = batch["change"]
-        logits = self._logits(Judged(**batch))
-        hit = (change > HIT[self.modality]).any(1)
-        sure = (hit | (change == 0).all(1)).float()
+        judged = Judged(*(part.to(self.net.threshold.device) for part in batch["judged"]))
+        logits, (hit, counted) = self._logits(judged), judged.wanted
         each = F.binary_cross_entropy_with_logits(logits, hit.float(), reduction="none")
-        right = ((logits > 0) == hit).float()
-        total = sure.sum().clamp(min=1)
-        return {"loss": (each * sure).sum() / total, "accuracy": (right * sure).sum() / total}
+        total, right = counted.sum().clamp(min=1), (logits > 0) == hit
+        return {
+            "loss": (each * counted).sum() / total,
+            "accuracy": (right & counted).sum() / total,
+            "wanted": (hit & counted).sum() / total,
+        }
 
     def _logits(self, judged: Judged) -> Tensor:
         """[N]: each of the N is one instant."""
@@ -126,38 +123,45 @@ class RestoreGate(Recipe):
         return self.net.gate(stats, textures, judged.stats.shape[1]).float()
 
     @torch.no_grad()
-    def _judged(self, pairs: Pairs, count: int, which: str) -> Judged:
-        """What the gate reads of about ``count`` instants."""
+    def _judged(self, pairs: Pairs, count: int, which: str, ring: bool) -> Judged:
+        """What the gate reads of ``count`` instants, and what restoring them comes to; ``ring``:
+        of panoramas, or each view by itself."""
         parts: list[tuple[Tensor, ...]] = []
         step, have, device = OFFSETS[which], 0, self.net.threshold.device
         with Progress(f"{self.modality}, {which}", count, unit="instant") as progress:
             while have < count:
                 batch = pairs.collate([pairs.work(job) for job in pairs.jobs(step)])
                 frames, clean = (batch[n].flatten(0, 1).to(device) for n in ("frames", "clean"))
-                x, valid = self.net.scaled(frames)
-                less = self.net.small(x, valid)
-                views = batch["frames"].shape[1] if pairs.ring else 1
-                stats = self.net.net.encode(self.net.seen(*less), views).stats
-                change = (x - self.net.scaled(clean)[0]).abs().mean((1, 2, 3))
-                found = (stats, texture(*less), change)
-                parts.append(tuple(part.unflatten(0, (-1, views)) for part in found))
-                have, step = have + len(parts[-1][0]), step + 1
-                progress.advance(min(len(parts[-1][0]), count - (have - len(parts[-1][0]))))
+                parts.append(self._part(frames, clean, batch["frames"].shape[1] if ring else 1))
+                found, step = min(len(parts[-1][0]), count - have), step + 1
+                have += found
+                progress.advance(found)
         return Judged(*(torch.cat(part)[:count] for part in zip(*parts, strict=True)))
+
+    def _part(self, frames: Tensor, clean: Tensor, views: int) -> tuple[Tensor, ...]:
+        """The entries of :class:`Judged` for frames [n, H, W, c]."""
+        made = self.net(frames, views)
+        less = self.net.small(*self.net.scaled(frames))
+        read = (self.net.net.encode(self.net.seen(*less), views).stats, texture(*less))
+        wanted, valid = self.net.scaled(clean)
+        seen, _ = self.net.scaled(frames)
+        errors = [((x - wanted).abs() * valid).mean((1, 2, 3)) for x in (seen, made.out)]
+        rings = [part.unflatten(0, (-1, views)) for part in (*read, *errors)]
+        return rings[0], rings[1], rings[2].mean(1), rings[3].mean(1)
 
     @torch.no_grad()
     def evaluate(self, step: int) -> dict[str, float]:
         """Set the threshold; return it, with the shares above it of other clean instants, and of
-        corrupted ones."""
-        logits = self._logits(self._judged(self.clean, self.held, "held"))
+        corrupted ones that restoring makes clearly better."""
+        ring = self.pairs.ring
+        logits = self._logits(self._judged(self.clean, self.held, "held", ring))
         self.net.threshold.fill_(float(logits.quantile(1 - self.touched)))
-        fresh = self._judged(self.clean, -(-self.held // 3), "fresh")
-        met = self._judged(self.pairs, -(-self.held // 2), "corrupted")
-        hit = (met.change > HIT[self.modality]).any(1)
+        fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)
+        met = self._judged(self.pairs, -(-self.held // 3), "corrupted", ring)
         return {
             "threshold": float(self.net.threshold),
             "clean_touched": self._above(self._logits(fresh)),
-            "corrupted_found": self._above(self._logits(met)[hit]),
+            "helped_found": self._above(self._logits(met)[met.wanted[0]]),
         }
 
     def _above(self, logits: Tensor) -> float:

@@ -54,7 +54,8 @@ def test_a_batch_is_a_function_of_the_step_and_some_show_single_views():
 
 
 def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
-    given = recipe_of()
+    given = recipe_of(single=0.0)
+    Trainer(given, steps=10, lr=5e-3, folder=tmp_path / "first", precision="fp32").fit()
     schedule = Schedule("per_episode", (0.4, 0.8), names=("low_light", "foreign_object"))
     world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
     recipe = RestoreGate(
@@ -63,11 +64,17 @@ def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
     )  # fmt: skip
     before = {name: p.clone() for name, p in given.agent.named_parameters()}
     Trainer(
-        recipe, steps=60, lr=5e-3, folder=tmp_path, precision="fp32", log_every=0, eval_every=60
+        recipe,
+        steps=60,
+        lr=5e-3,
+        folder=tmp_path / "gate",
+        precision="fp32",
+        log_every=0,
+        eval_every=60,
     ).fit()
     found = recipe.evaluate(60)
     assert found["threshold"] == recipe.net.threshold != 0
-    assert found["corrupted_found"] > 0.8 > 0.4 > found["clean_touched"]
+    assert found["helped_found"] > 0.7 > 0.4 > found["clean_touched"]
     changed = [n for n, p in given.agent.named_parameters() if not torch.equal(p, before[n])]
     assert changed and all(name.startswith("nets.rgb.gate.") for name in changed)
 
