@@ -60,7 +60,7 @@ def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
     world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
     recipe = RestoreGate(
         given.agent, **world, modality=RGB, schedule=schedule,
-        instants=40, held=20, batch=16, touched=0.1,
+        instants=24, held=10, batch=16, touched=0.1,
     )  # fmt: skip
     before = {name: p.clone() for name, p in given.agent.named_parameters()}
     Trainer(
@@ -70,9 +70,9 @@ def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
         folder=tmp_path / "gate",
         precision="fp32",
         log_every=0,
-        eval_every=60,
+        eval_every=40,
     ).fit()
-    found = recipe.evaluate(60)
+    found = recipe.evaluate(40)
     assert found["threshold"] == recipe.net.threshold != 0
     assert found["helped_found"] > 0.7 > 0.4 > found["clean_touched"]
     changed = [n for n, p in given.agent.named_parameters() if not torch.equal(p, before[n])]
