@@ -7,6 +7,7 @@ import json
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig
 
@@ -19,10 +20,13 @@ from mitigate.bridge.subset import Subset
 from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption
 
+if TYPE_CHECKING:
+    from mitigate.restoration.restorer import Restorer
+
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
     """All conditions of a run, clean first, then repeated clean runs."""
-    from mitigate.evaluation.evaluate import conditions, name_of
+    from mitigate.evaluation.evaluate import conditions
     from mitigate.restoration.restorer import restorer_of
 
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
@@ -42,38 +46,13 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     for corruption, repeat in wanted:
         own = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
         own += f"-again{repeat}" if repeat else ""
-        settings = {
-            "command": text,
-            "seed": cfg.seed,
-            "episodes": cfg.episodes,
-            "turn": cfg.turn,
-            "safeguard": cfg.safeguard,
-            "restore": None if restorer is None else restorer.hash,
-            "tokenizer": cfg.tokenizer,
-            "missing": cfg.missing,
-            "adapters": cfg.adapters,
-            "token_length": cfg.token_length,
-            "record": cfg.record,
-        }
+        settings = _settings(cfg, text, restorer)
         condition = Condition(
             corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep, restorer=restorer
         )
         if cfg.record is not None:
             condition.observers.append(Recorder(Path(cfg.record) / own))
-        label = {
-            "agent": sha if restorer is None else _behind(sha, restorer.hash),
-            "name": name,
-            "split": cfg.split,
-            "seed": cfg.seed,
-        }
-        if cfg.safeguard != "none":
-            from mitigate.safeguard.guard import label as front
-
-            label["name"] += f"+{front(cfg.safeguard)}"
-        if restorer is not None:
-            label["name"] += f"+{name_of(cfg.restore)}"
-        if cfg.adapters is not None:
-            label["name"] += "+adapters"
+        label = _label(cfg, sha, name, restorer)
         folder = out / "conditions" / own
         made.append(
             Cell(
@@ -93,9 +72,37 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     return made
 
 
-def _behind(agent: str, restorer: str) -> str:
-    """The hash of an agent behind a restorer, of their hashes."""
-    return hashlib.sha256(f"{agent} {restorer}".encode()).hexdigest()[:12]
+def _settings(cfg: DictConfig, command: str, restorer: Restorer | None) -> dict[str, Any]:
+    """What a condition's result depends on, by which a finished one is known again."""
+    options = [
+        "seed",
+        "episodes",
+        "turn",
+        "safeguard",
+        "tokenizer",
+        "missing",
+        "adapters",
+        "token_length",
+        "record",
+    ]
+    told = {"command": command, **{name: cfg[name] for name in options}}
+    return told if restorer is None else {**told, "restore": restorer.hash}
+
+
+def _label(cfg: DictConfig, sha: str, name: str, restorer: Restorer | None) -> dict[str, Any]:
+    """What the rows say of the agent: with a restorer in front of it, it is another one."""
+    from mitigate.evaluation.evaluate import name_of
+
+    if cfg.safeguard != "none":
+        from mitigate.safeguard.guard import label as front
+
+        name += f"+{front(cfg.safeguard)}"
+    if restorer is not None:
+        name += f"+{name_of(cfg.restore)}"
+        sha = hashlib.sha256(f"{sha} {restorer.hash}".encode()).hexdigest()[:12]
+    if cfg.adapters is not None:
+        name += "+adapters"
+    return {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
 
 
 def _words(cfg: DictConfig, out: Path) -> Words:
