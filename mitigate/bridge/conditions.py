@@ -23,11 +23,22 @@ from mitigate.corruptions import Corruption
 if TYPE_CHECKING:
     from mitigate.restoration.restorer import Restorer
 
+SETTINGS = (  # options that a condition's result depends on
+    "seed",
+    "episodes",
+    "turn",
+    "safeguard",
+    "tokenizer",
+    "missing",
+    "adapters",
+    "token_length",
+    "record",
+)
+
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
     """All conditions of a run, clean first, then repeated clean runs."""
     from mitigate.evaluation.evaluate import conditions
-    from mitigate.restoration.restorer import restorer_of
 
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     if cfg.corruption is not None:
@@ -37,7 +48,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
         cfg.severity,
         cfg.severity_depth,
     )
-    words, environment, restorer = _words(cfg, out), _environment(cfg), restorer_of(cfg.restore)
+    words, environment, restorer = _words(cfg, out), _environment(cfg), _restorer(cfg)
     keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
     text = shlex.join(command)
@@ -72,21 +83,18 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     return made
 
 
+def _restorer(cfg: DictConfig) -> Restorer | None:
+    if cfg.restore is None:
+        return None  # without a wait for torch
+    from mitigate.restoration.restorer import load_restorer
+
+    return load_restorer(cfg.restore)
+
+
 def _settings(cfg: DictConfig, command: str, restorer: Restorer | None) -> dict[str, Any]:
     """What a condition's result depends on, by which a finished one is known again."""
-    options = [
-        "seed",
-        "episodes",
-        "turn",
-        "safeguard",
-        "tokenizer",
-        "missing",
-        "adapters",
-        "token_length",
-        "record",
-    ]
-    told = {"command": command, **{name: cfg[name] for name in options}}
-    return told if restorer is None else {**told, "restore": restorer.hash}
+    told = {name: cfg[name] for name in SETTINGS}
+    return {"command": command, **told, "restore": None if restorer is None else restorer.hash}
 
 
 def _label(cfg: DictConfig, sha: str, name: str, restorer: Restorer | None) -> dict[str, Any]:
