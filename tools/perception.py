@@ -29,6 +29,7 @@ from mitigate.corruptions.registry import HALVES, modality, unseen_names
 from mitigate.evaluation.bootstrap import resampled_means
 from mitigate.evaluation.evaluate import load, name_of
 from mitigate.evaluation.sections import label
+from mitigate.restoration.restorer import Restorer, restorer_of
 from mitigate.worlds.apartments.labels import free_directions, view_labels
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.simulator import apartment_of
@@ -58,12 +59,15 @@ class Poses:
             self.free.append(free_directions(apartment.space, xy, heading) > 0.5)
 
     @torch.no_grad()
-    def counts(self, agent: Any, corruption: Corruption) -> tuple[np.ndarray, np.ndarray]:
+    def counts(
+        self, agent: Any, corruption: Corruption, restorer: Restorer | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
         """For things and for free space: float64 [2, poses], (right ones, what they are a share
         of), so that the ratio of sums is the micro F1, or the intersection over union."""
         things, free = [], []
         for index, clean in enumerate(self.observations):
             seen = corrupt_observation(clean, corruption, Key(self.seed, f"pose {index}", 0))
+            seen = seen if restorer is None else restorer(seen)
             frames = (torch.from_numpy(seen[name])[None] for name in (RGB, DEPTH))
             _, concepts, waypoints = agent.perceive(*frames)
             said, true = concepts[0, :, THINGS].cpu().numpy() > 0, self.things[index]
@@ -74,14 +78,18 @@ class Poses:
 
 
 def measure(
-    agent: Any, poses: Poses, names: Sequence[str], severity: float
+    agent: Any,
+    poses: Poses,
+    names: Sequence[str],
+    severity: float,
+    restorer: Restorer | None = None,
 ) -> dict[str, tuple[float, float, float]]:
     """Score with its 95 % interval over poses, by condition: "clean" and every RGB corruption of
     ``names`` (F1), "clean depth" and every depth corruption (overlap)."""
-    things, free = poses.counts(agent, CLEAN)
+    things, free = poses.counts(agent, CLEAN, restorer)
     found = {"clean": _ratio(things), "clean depth": _ratio(free)}
     for name in names:
-        things, free = poses.counts(agent, Corruption(name, severity))
+        things, free = poses.counts(agent, Corruption(name, severity), restorer)
         found[name] = _ratio(things if modality(name) == "rgb" else free)
     return found
 
@@ -136,6 +144,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--poses", type=int, default=60, help="random ones (default 60)")
     parser.add_argument("--severity", type=float, default=0.6)
     parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--restore", help="a restorer's folder: each agent behind it as well")
     options = parser.parse_args(arguments)
     if options.poses < 1:
         raise ValueError(f"--poses {options.poses}: at least one is needed.")
@@ -143,10 +152,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     for weights in options.agents:  # all first: a wrong path must not cost the others' minutes
         agents[_column(weights, agents)] = load(_agent_node(), weights)
     poses = Poses(options.split, options.poses, options.seed)
-    scores = {
-        name: measure(agent, poses, SUITES[options.suite], options.severity)
-        for name, agent in tqdm(agents.items(), desc="agents", disable=None)
-    }
+    scores, names = {}, SUITES[options.suite]
+    restorer = restorer_of(options.restore)
+    for name, agent in tqdm(agents.items(), desc="agents", disable=None):
+        scores[name] = measure(agent, poses, names, options.severity)
+        if restorer is not None:
+            scores[f"{name}+restorer"] = measure(agent, poses, names, options.severity, restorer)
     print(
         f"{options.poses} poses of {options.split}, severity {options.severity:g}, seed "
         f"{options.seed}\n\n{table(scores)}"

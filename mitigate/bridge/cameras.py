@@ -10,13 +10,16 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
+from mitigate.core.observation import DEPTH, HFOV_DEGREES, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.corruptions.normalised import corrupt_normalised
+
+if TYPE_CHECKING:  # it needs torch, which a run without one does not wait for
+    from mitigate.restoration.restorer import Restorer
 
 LARGEST = 1 << 30  # bytes of all frames of a call (ours): 24 cameras of 1080 x 1920 have 5e8
 MOST = 256  # cameras of a call (ours)
@@ -205,6 +208,39 @@ class Rig:
                 views[...] = corrupted(group, views, part, key, heading)
                 changed |= dict.fromkeys(camera.name for camera in group.cameras)
         return list(changed)
+
+    def restore(self, memory: Any, offsets: Mapping[str, int], restorer: Restorer) -> list[str]:
+        """Restore the frames in ``memory``, in place; return the names of the cameras concerned.
+
+        A panorama of 12 cameras is one frame; every other camera is judged by itself.
+        """
+        changed: list[str] = []
+        for group in (g for g in self.groups if g.cameras[0].kind in restorer.nets):
+            views, cameras = _views(memory, offsets, group), group.cameras
+            whole = len(cameras) == len(views) == VIEWS and cameras[0].hfov == HFOV_DEGREES
+            alone = zip(cameras, group.views, strict=True)
+            parts = [((camera,), np.s_[view : view + 1]) for camera, view in alone]
+            parts = [(cameras, np.s_[:])] if whole else parts
+            for concerned, where in parts:
+                made = restored(cameras[0], views[where], restorer)
+                if made is not None:
+                    views[where] = made
+                    changed += [camera.name for camera in concerned]
+        return changed
+
+
+def restored(camera: Camera, views: np.ndarray, restorer: Restorer) -> np.ndarray | None:
+    """Views [V, ...] of cameras like ``camera`` as ``restorer`` leaves them; None: as they were."""
+    frames = views
+    if camera.kind == DEPTH:
+        frames = views.reshape(*views.shape[:3], 1).astype(np.float32, copy=False)
+        frames = camera.sensor.to_metres(frames) if camera.normalised else frames
+    made = restorer.restore(camera.kind, frames)
+    if made is frames:
+        return None
+    if camera.kind == DEPTH and camera.normalised:
+        made = camera.sensor.from_metres(made)
+    return made.reshape(views.shape).astype(views.dtype, copy=False)
 
 
 def corrupted(

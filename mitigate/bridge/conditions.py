@@ -7,6 +7,7 @@ import json
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig
 
@@ -18,6 +19,21 @@ from mitigate.bridge.results import Told
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption
+
+if TYPE_CHECKING:
+    from mitigate.restoration.restorer import Restorer
+
+SETTINGS = (  # options that a condition's result depends on
+    "seed",
+    "episodes",
+    "turn",
+    "safeguard",
+    "tokenizer",
+    "missing",
+    "adapters",
+    "token_length",
+    "record",
+)
 
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
@@ -32,7 +48,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
         cfg.severity,
         cfg.severity_depth,
     )
-    words, environment = _words(cfg, out), _environment(cfg)
+    words, environment, restorer = _words(cfg, out), _environment(cfg), _restorer(cfg)
     keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
     text = shlex.join(command)
@@ -41,28 +57,13 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     for corruption, repeat in wanted:
         own = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
         own += f"-again{repeat}" if repeat else ""
-        settings = {
-            "command": text,
-            "seed": cfg.seed,
-            "episodes": cfg.episodes,
-            "turn": cfg.turn,
-            "safeguard": cfg.safeguard,
-            "tokenizer": cfg.tokenizer,
-            "missing": cfg.missing,
-            "adapters": cfg.adapters,
-            "token_length": cfg.token_length,
-            "record": cfg.record,
-        }
-        condition = Condition(corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep=keep)
+        settings = _settings(cfg, text, restorer)
+        condition = Condition(
+            corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep, restorer=restorer
+        )
         if cfg.record is not None:
             condition.observers.append(Recorder(Path(cfg.record) / own))
-        label = {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
-        if cfg.safeguard != "none":
-            from mitigate.safeguard.guard import label as front
-
-            label["name"] += f"+{front(cfg.safeguard)}"
-        if cfg.adapters is not None:
-            label["name"] += "+adapters"
+        label = _label(cfg, sha, name, restorer)
         folder = out / "conditions" / own
         made.append(
             Cell(
@@ -80,6 +81,36 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
             )
         )
     return made
+
+
+def _restorer(cfg: DictConfig) -> Restorer | None:
+    if cfg.restore is None:
+        return None  # without a wait for torch
+    from mitigate.restoration.restorer import load_restorer
+
+    return load_restorer(cfg.restore)
+
+
+def _settings(cfg: DictConfig, command: str, restorer: Restorer | None) -> dict[str, Any]:
+    """What a condition's result depends on, by which a finished one is known again."""
+    told = {name: cfg[name] for name in SETTINGS}
+    return {"command": command, **told, "restore": None if restorer is None else restorer.hash}
+
+
+def _label(cfg: DictConfig, sha: str, name: str, restorer: Restorer | None) -> dict[str, Any]:
+    """What the rows say of the agent: with a restorer in front of it, it is another one."""
+    from mitigate.evaluation.evaluate import name_of
+
+    if cfg.safeguard != "none":
+        from mitigate.safeguard.guard import label as front
+
+        name += f"+{front(cfg.safeguard)}"
+    if restorer is not None:
+        name += f"+{name_of(cfg.restore)}"
+        sha = hashlib.sha256(f"{sha} {restorer.hash}".encode()).hexdigest()[:12]
+    if cfg.adapters is not None:
+        name += "+adapters"
+    return {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
 
 
 def _words(cfg: DictConfig, out: Path) -> Words:

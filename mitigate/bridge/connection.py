@@ -17,7 +17,7 @@ import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mitigate.bridge.cameras import Rig
 from mitigate.bridge.hook import mitigate_hook
@@ -25,6 +25,9 @@ from mitigate.bridge.hook.mitigate_hook import receive, send
 from mitigate.bridge.words import Words
 from mitigate.core.names import short, unknown
 from mitigate.corruptions import Corruption, Key
+
+if TYPE_CHECKING:
+    from mitigate.restoration.restorer import Restorer
 
 EVENTS = "events.jsonl"
 KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted")  # of messages, after "hello"
@@ -35,7 +38,8 @@ class Condition:
     """What a command meets: the corruption, its seed, and how it is applied.
 
     repeat: number of this run of the same condition; part of the keys where it is not 0. missing:
-    metres that a hole reads. turn: where a growing yaw turns. observers: told of every episode
+    metres that a hole reads. turn: where a growing yaw turns. restorer: goes over all frames
+    behind the corruption. observers: told of every episode
     and frame, before its corruption (``recording.py``).
     """
 
@@ -46,6 +50,7 @@ class Condition:
     missing: float = 0.0
     turn: str = "left"
     keep: Callable[[list[str]], list[int]] | None = None
+    restorer: Restorer | None = None
     observers: list[Any] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
@@ -60,6 +65,13 @@ def note(folder: Path, **event: Any) -> None:
     with open(folder / EVENTS, "a", encoding="utf-8") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         file.write(line)
+
+
+def _one_thread() -> None:
+    """Let torch compute on one thread: environments run side by side, and this is a fork."""
+    import torch
+
+    torch.set_num_threads(1)
 
 
 def _unfit(kind: str, error: Exception) -> str:
@@ -96,6 +108,8 @@ class Connection:
         if not self._greet():
             return
         self.channel.settimeout(None)
+        if self.condition.restorer is not None:
+            _one_thread()
         kinds = {kind: getattr(self, f"on_{kind}") for kind in KINDS}
         while (message := self._next()) is not None:
             kind = str(message.get("kind"))
@@ -146,6 +160,7 @@ class Connection:
         self.rig = Rig(message["cameras"], condition.missing, condition.turn)
         wanted = (
             *condition.corruption.modalities,
+            *(condition.restorer.nets if condition.restorer is not None else ()),
             *(k for o in condition.observers for k in o.kinds),
         )
         self.offsets, size = self.rig.lay_out(wanted)
@@ -202,9 +217,11 @@ class Connection:
             self.condition.key(self.scene, self.episode, int(message["call"])),
             None if heading is None else float(heading),
         )
+        if self.condition.restorer is not None:
+            changed += self.rig.restore(self.memory, self.offsets, self.condition.restorer)
         self.worked += time.perf_counter() - began
         self.calls += 1
-        return {"changed": changed}
+        return {"changed": list(dict.fromkeys(changed))}
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """How the episode went."""

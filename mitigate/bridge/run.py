@@ -47,6 +47,7 @@ class RunConfig:
     split: str = "unnamed"
     rule: str | None = None
     safeguard: str = "none"
+    restore: str | None = None
     tokenizer: str | None = None
     token_length: int | None = None
     missing: float = 0.0

@@ -16,6 +16,8 @@ from mitigate.corruptions import (
 )
 from mitigate.corruptions.registry import parts
 from mitigate.evaluation.rows import MEASURES
+from mitigate.restoration.restorer import Restorer
+from mitigate.restoration.world import Restored
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import Corrupted, World
 
@@ -27,17 +29,20 @@ def run_episode(
     corruption: Corruption,
     seed: int,
     repaired: Mapping[str, str] | None = None,
+    restorer: Restorer | None = None,
 ) -> dict[str, Any]:
     """Run one episode to its end and return its measures, with ``decisions``: how often the agent
     looked.
 
     ``repaired``: what a safeguard makes of instructions; one that is not in it stays as it is.
+    ``restorer``: goes over the frames before the agent reads them.
     """
     met = Corrupted(world, corruption, seed)
-    observation = met.reset(episode)
+    shown: World = met if restorer is None else Restored(met, restorer)
+    observation = shown.reset(episode)
     with instructed(agent, episode, corruption, seed, repaired):
         while not met.done:
-            observation = met.step(agent.act(observation))
+            observation = shown.step(agent.act(observation))
     found = {**met.measures(), "decisions": met.looks}
     return {name: found.pop(name) for name in MEASURES if name in found} | found
 

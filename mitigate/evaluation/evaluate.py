@@ -88,6 +88,7 @@ class EvaluateConfig:
     runs: str = "runs"
     checkpoint: str | None = None
     safeguard: str = "none"
+    restore: str | None = None
     name: str | None = None
     split: str = "val_unseen"
     episodes: int | None = None
@@ -132,14 +133,17 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     )
     from mitigate.core import build
     from mitigate.core.identity import identity
-    from mitigate.evaluation.evaluator import evaluate
+    from mitigate.evaluation.evaluator import evaluate, fronts
+    from mitigate.restoration.restorer import restorer_of
     from mitigate.safeguard import guard
 
     node = build.settings_of(cfg.agent, cfg.checkpoint, overrides)
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     front, world = guard.label(cfg.safeguard), build.maker(cfg.env.world)
-    name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), front])
-    name = name.removesuffix("+none")
+    restorer = restorer_of(cfg.restore)
+    before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
+    before = [part for part in before if part != "none"]
+    name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     with FolderLock(out):
         _check_list(out / LIST, cfg.env.episodes[cfg.split])
@@ -155,7 +159,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             workers=cfg.workers,
             launcher=OmegaConf.to_object(cfg.launcher),
             safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
-            identity=identity(agent, world().sensors, front),
+            restorer=restorer,
+            identity=identity(agent, world().sensors, fronts(front, restorer)),
         )
         write_table([out / ROWS], out)
     return out

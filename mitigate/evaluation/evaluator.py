@@ -29,6 +29,7 @@ from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode
+from mitigate.restoration.restorer import Restorer
 from mitigate.safeguard.guard import Safeguard
 from mitigate.scale.launcher import LauncherConfig, count, results
 from mitigate.worlds.episodes import Episode
@@ -45,13 +46,14 @@ Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says 
 class EpisodeTask:
     """Runs jobs (``mitigate/core/workers.py``): each one's result is its label with its measures.
 
-    make_world: each process makes one. repaired: what a safeguard makes of instructions. A label
-    holds "seed".
+    make_world: each process makes one. repaired: what a safeguard makes of instructions. restorer:
+    of frames. A label holds "seed".
     """
 
     agent: Any
     make_world: Callable[[], World]
     repaired: dict[str, str] = field(default_factory=dict)
+    restorer: Restorer | None = None
     world: World | None = None
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
@@ -81,7 +83,7 @@ class EpisodeTask:
             for episode, condition, label in jobs:
                 seed = label["seed"]
                 measures = run_episode(
-                    self.agent, self.world, episode, condition, seed, self.repaired
+                    self.agent, self.world, episode, condition, seed, self.repaired, self.restorer
                 )
                 yield {**label, **measures}
 
@@ -107,6 +109,7 @@ def evaluate(
     workers: int | None = 1,
     launcher: LauncherConfig = LOCAL,
     safeguard: Safeguard | None = None,
+    restorer: Restorer | None = None,
     identity: str | None = None,
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
@@ -116,8 +119,9 @@ def evaluate(
     name: the table's column. split: what the rows say. seed: of the corruptions' keys. workers:
     processes, None: one a core if there is work for them; the rows do not depend on it, nor on the
     launcher, which says on which machines (``scale/launcher.py``). safeguard:
-    repairs each instruction, once, before the agent hears it. identity: of the agent in its rows
-    (``core/identity.py``); None: of the agent behind the world's sensors.
+    repairs each instruction, once, before the agent hears it. restorer: goes over the frames before
+    the agent reads them. identity: of the agent in its rows
+    (``core/identity.py``); None: of the agent behind the world's sensors and the restorer.
     Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
     out = Path(out)
@@ -127,7 +131,7 @@ def evaluate(
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
     label = {
-        "agent": identity or identity_of(agent, made.sensors),
+        "agent": identity or identity_of(agent, made.sensors, fronts("none", restorer)),
         "name": name,
         "split": split,
         "seed": seed,
@@ -141,9 +145,15 @@ def evaluate(
     decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
     repaired = {decision.original: decision.text for decision in decided}
     if todo:
-        task, title = EpisodeTask(agent, world, repaired), f"{name}, {split}"
+        task, title = EpisodeTask(agent, world, repaired, restorer), f"{name}, {split}"
         _run(task, todo, len(jobs), out, workers, launcher, title)
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
+
+
+def fronts(safeguard: str, restorer: Restorer | None) -> str:
+    """What stands in front of an agent, for its identity: a safeguard by its label, and a restorer
+    by its hash."""
+    return safeguard if restorer is None else f"{safeguard}+restorer-{restorer.hash}"
 
 
 def _jobs(

@@ -52,6 +52,7 @@ class ReplayConfig:
     agents: list[str] = MISSING
     instruction: str | None = None
     conditions: list[str] | None = None
+    restore: str | None = None
     severity: float = 0.6
     severity_depth: float | None = None
     seed: int = 0
@@ -90,9 +91,13 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
     if not others or cfg.severity == 0:
         raise ValueError("Clean walks alone have nothing to compare: name a corruption.")
     met = conditions(["clean", *others], cfg.severity, cfg.severity_depth)
+    from mitigate.restoration.restorer import restorer_of
+
+    restorer = restorer_of(cfg.restore)
     agents = load_agents(list(cfg.agents))
     out = Path(cfg.out or f"{cfg.runs}/replay/{_name(paths)}-s{cfg.severity:g}")
     settings = _settings(cfg, paths, agents)
+    settings["restorer"] = None if restorer is None else restorer.hash
     _check_earlier(out, settings)
     recordings = load_recordings(cfg, paths, {agent.views for agent in agents.values()})
     out.mkdir(parents=True, exist_ok=True)
@@ -100,7 +105,9 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
         picture.unlink()
     with atomic_text(out / SETTINGS) as file:
         json.dump(settings, file, indent=1)
-    return replay(agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed)
+    return replay(
+        agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, restorer=restorer
+    )
 
 
 def _name(paths: Sequence[str]) -> str:
@@ -195,9 +202,11 @@ def replay(
     *,
     severity: float,
     seed: int,
+    restorer: Any = None,
 ) -> Path:
     """Walk ``agents`` (by name) along ``recordings`` (by their number of views) under the
-    corruptions ``met``, clean first; write the report into ``out`` and return it."""
+    corruptions ``met``, clean first, behind ``restorer`` if there is one; write the report into
+    ``out`` and return it."""
     from mitigate.core.progress import Progress
     from mitigate.replay import changes, report
     from mitigate.replay.walk import Answers, lines, walk
@@ -219,7 +228,9 @@ def replay(
                 here = answers.setdefault(corruption.name, {})
                 for drive in drives:
                     clean = answers["clean"].get(drive.name)
-                    here[drive.name] = walk(agent, drive, corruption, seed, clean=clean)
+                    here[drive.name] = walk(
+                        agent, drive, corruption, seed, clean=clean, restorer=restorer
+                    )
                     told = {"agent": name, "condition": corruption.name}
                     told |= {"severity": corruption.severity, "seed": seed}
                     made = lines(told, drive, answers["clean"][drive.name], here[drive.name])
@@ -227,7 +238,9 @@ def replay(
                     progress.advance(note=f"{name}, {corruption.name}")
             clean = answers["clean"]
             found[name] = {n: changes.compare(drives, clean, a) for n, a in answers.items()}
-            pictures += _picture(name, agent, drives, met, found[name], answers, seed, out)
+            pictures += _picture(
+                name, agent, drives, met, found[name], answers, seed, out, restorer
+            )
     text = report.table(found, severity, sum(steps), len(steps))
     with atomic_text(out / TABLE) as table:
         table.write(text)
@@ -263,6 +276,7 @@ def _picture(
     answers: Mapping[str, Mapping[str, Any]],
     seed: int,
     out: Path,
+    restorer: Any,
 ) -> list[Path]:
     """A picture of decisions that the worst corruption of frames changed, if it changed any."""
     from mitigate.replay import report
@@ -281,7 +295,7 @@ def _picture(
     if not steps:
         return []
     clean = answers["clean"][drive.name]
-    again = walk(agent, drive, worst, seed, keep=steps, clean=clean)
+    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, restorer=restorer)
     path = out / f"{name.replace('/', '-')}-{worst.name}.png"
     return [report.picture(drive, worst, clean, again, path)]
 

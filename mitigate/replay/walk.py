@@ -12,9 +12,11 @@ from mitigate.agents.agent import Agent
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import instructed
+from mitigate.restoration.restorer import Restorer
+from mitigate.restoration.world import Restored
 from mitigate.worlds.recorded import RecordedWorld, Recording
 from mitigate.worlds.recorded.steps import answered
-from mitigate.worlds.world import Corrupted
+from mitigate.worlds.world import Corrupted, World
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 
@@ -39,16 +41,19 @@ def walk(
     seed: int,
     keep: Collection[int] = (),
     clean: Answers | None = None,
+    restorer: Restorer | None = None,
 ) -> Answers:
     """Show ``agent`` the drive under ``corruption`` and return its answers.
 
     After each it is told what the driver did (``taken``, ``agents/agent.py``). Where that is not
     known, it is told what it answered on clean frames (``clean``; None: this is that walk), so that
-    nothing but frames and words differs. ``keep``: steps whose frames are returned. Raises
-    ValueError if the drive lacks what the agent reads.
+    nothing but frames and words differs. ``keep``: steps whose frames are returned.
+    ``restorer``: goes over the frames before the agent. Raises ValueError if the drive lacks what
+    the agent reads.
     """
     world = RecordedWorld(recording)
-    met = Corrupted(world, corruption, seed)
+    met: World = Corrupted(world, corruption, seed)
+    met = met if restorer is None else Restored(met, restorer)
     done = recording.driven if clean is None else recording.driven or answered(clean.actions)
     episode = world.episode()
     observation = met.reset(episode)

@@ -3,7 +3,7 @@ encoders. They depend on no weights, so workers make them ahead of time."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,8 @@ class Poses:
     agent: whose success rates a success-distributed schedule without rates starts from, on
     ``refresh_episodes`` episodes of ``training`` each.
     world: makes a world that can look from anywhere (``worlds/world.py``). sensor: "rgb" or
-    "depth". label: the entry of its truth that is learned. panoramas: a batch. every: of the views
+    "depth". label: the entry of its truth that is learned, None: none, then the targets are empty.
+    panoramas: a batch. every: of the views
     of a panorama, only every second one is learned from (2), since neighbours overlap, or all (1).
     own: draw corruptions of this sensor alone; else those of the other leave its frames clean.
 
@@ -39,7 +40,7 @@ class Poses:
         schedule: Schedule,
         *,
         sensor: str,
-        label: str,
+        label: str | None,
         panoramas: int,
         every: int,
         seed: int,
@@ -128,7 +129,7 @@ class Poses:
         clean, truth = self.world.put(xy, heading, views=views, rgb=self.sensor == RGB)
         drawn = self.schedule.draw(self.seed, name, 0)
         frames = corrupt_observation(clean, *drawn, depth_sensor(self.world.sensors))
-        target = truth[self.label]
+        target = self._target(truth)
         target = target[views] if len(target) == VIEWS else target
         return frames[self.sensor][views], clean[self.sensor][views], target
 
@@ -140,7 +141,10 @@ class Poses:
         clean, truth = self.world.put(xy, heading, views=None, rgb=self.sensor == RGB)
         drawn = self.schedule.draw(self.seed, name, number)
         frames = corrupt_observation(clean, *drawn, depth_sensor(self.world.sensors))
-        return frames[self.sensor], clean[self.sensor], truth[self.label]
+        return frames[self.sensor], clean[self.sensor], self._target(truth)
+
+    def _target(self, truth: Mapping[str, np.ndarray]) -> np.ndarray:
+        return np.zeros(0, np.float32) if self.label is None else truth[self.label]
 
 
 def share_of(scenes: Any, piece: int, pieces: int) -> Any:

@@ -22,6 +22,7 @@ from mitigate.evaluation import controls, evaluator, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.evaluator import evaluate
+from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
@@ -54,6 +55,29 @@ def test_two_workers_give_the_rows_of_one(finished, tmp_path):
     folder, rows = finished
     assert run(tmp_path, workers=2) == rows
     assert (tmp_path / "rows.jsonl").read_bytes() == (folder / "rows.jsonl").read_bytes()
+
+
+def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
+    conditions = [CLEAN, Corruption("black_out", 0.9)]
+    seen = []
+
+    class Noted(Restorer):
+        def forward(self, observation):
+            seen.append(observation)
+            return super().forward(observation)
+
+    alone = run(tmp_path, episodes=1, conditions=conditions)
+    restorer = Noted(width=4, depth_width=4)
+    for net in restorer.parts().values():
+        net.threshold.fill_(1e9)  # it takes every frame for clean
+    behind = run(tmp_path, episodes=1, conditions=conditions, restorer=restorer)
+    assert len(seen) == sum(row["decisions"] for row in behind) > 0
+    assert {row["agent"] for row in alone}.isdisjoint(row["agent"] for row in behind)
+    without = [{k: v for k, v in row.items() if k != "agent"} for row in alone]
+    assert without == [{k: v for k, v in row.items() if k != "agent"} for row in behind]
+    assert len((tmp_path / "rows.jsonl").read_text().splitlines()) == 4
+    restorer.nets["rgb"].threshold.fill_(0.0)
+    assert run(tmp_path, episodes=1, conditions=conditions, restorer=restorer) != behind
 
 
 def test_a_row_says_what_it_measured(finished):

@@ -56,6 +56,19 @@ def test_an_agent_is_shown_every_step_and_told_what_the_driver_did():
     assert agent.heard == [(FORWARD, 0.25, 0.0)] * (T - 1) + [(STOP, 0.0, 0.0)]
 
 
+def test_a_restorer_goes_over_the_frames_before_the_agent_does():
+    dark, looks = Corruption("low_light", 1.0), []
+
+    def brightened(frames):
+        looks.append(frames)
+        return {**frames, RGB: np.full_like(frames[RGB], 200)}
+
+    assert set(walk(ByBrightness(), drive(), dark, 0).actions.tolist()) == {RIGHT}
+    found = walk(ByBrightness(), drive(), dark, 0, keep=[2], restorer=brightened)
+    assert found.actions.tolist() == [FORWARD] * T and len(looks) == T
+    assert (found.seen[2][RGB] == 200).all()
+
+
 def test_where_nobody_knows_who_drove_all_walks_are_told_the_clean_answers():
     agent, clean = ByBrightness(), walk(ByBrightness(), drive(), CLEAN, 0)
     dark = walk(agent, drive(), Corruption("low_light", 0.9), 0, clean=clean)

@@ -28,6 +28,9 @@ def test_every_recipe_trains_two_steps(tmp_path, name):
     if cfg.get("schedule") and cfg.schedule.mode == "success_distributed":
         for stage in cfg.stages.values():  # success rates of one episode a corruption, not eight
             OmegaConf.update(stage, "recipe.refresh_episodes", 1, force_add=True)
+    for stage in cfg.stages.values():  # frames that a gate learns from
+        if "held" in stage.recipe:
+            stage.recipe.held, stage.recipe.instants = 2, 4
     folder = train.run(cfg)
     for stage in cfg.stages:
         assert checkpoint.checkpoints(folder / stage)[-1].name == "step-00000002.pt"

@@ -1,0 +1,145 @@
+"""The restorer of one sensor: judge, correct, fill what is lost, refine.
+
+    trust, gain, bias = U-Net(x)                   zero-initialised: at first nothing changes
+    y = x gain + bias                              light, blur, noise
+    z = y where trusted, else what other views of the panorama show, else what is around
+    out = z + U-Net2(z, trust, sure)
+
+At sizes above the working size all but ``x`` and what other views show is computed small and
+enlarged, so detail stays.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor, nn
+
+from mitigate.core.observation import DEPTH, RGB, Z_MAX
+from mitigate.restoration import ring
+from mitigate.restoration.network import FACTOR, Encoded, Gate, UNet, texture
+
+CHANNELS = {RGB: 3, DEPTH: 1}
+LOST = -3.0  # logit of "lost" before anything is learned: 5 % (ours)
+SUREST = 6.0  # the greatest logit, either way: a pixel is never given up for good (ours)
+GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; low light leaves 0.03)
+
+
+class Restored(NamedTuple):
+    """out, coarse [n, c, H, W]: the restored frames, and before they were refined; trust
+    [n, 1, H, W]; gate [instants]: logits of "corrupted"."""
+
+    out: Tensor
+    coarse: Tensor
+    trust: Tensor
+    gate: Tensor
+
+
+class SensorRestorer(nn.Module):
+    """Restores the frames of one sensor.
+
+    Args: sensor: "rgb" or "depth". width: of the U-Net's finest maps. size: pixels of the shorter
+    side that it works at; larger frames are reduced to it. far: metres that depth is divided by.
+    ``threshold``: logit of the gate above which a frame is restored (a buffer; training sets it).
+    """
+
+    threshold: Tensor
+
+    def __init__(self, sensor: str, width: int, size: int, far: float = Z_MAX) -> None:
+        super().__init__()
+        self.sensor, self.size, self.far = sensor, size, far
+        channels = CHANNELS[sensor]
+        inputs = channels + (sensor == DEPTH)
+        self.net = UNet(inputs, 2 * channels + 1, width)
+        self.refine = UNet(channels + 2, channels, width)
+        self.gate = Gate(width)
+        self.register_buffer("threshold", torch.zeros(()))
+
+    def scaled(self, frames: Tensor) -> tuple[Tensor, Tensor]:
+        """Frames [n, H, W, c] as they come to values [n, c, H, W] in [0, 1], and which pixels
+        [n, 1, H, W] are a reading (of depth: finite and above 0)."""
+        x = frames.permute(0, 3, 1, 2).float()
+        if self.sensor == RGB:
+            return x / 255, torch.ones_like(x[:, :1])
+        valid = torch.isfinite(x) & (x > 0)
+        return torch.where(valid, x, 0.0).div(self.far).clamp(max=1), valid.float()
+
+    def working(self, height: int, width: int) -> tuple[int, int]:
+        """The size that frames of a size are worked on at: multiples of 8."""
+        scale = min(1.0, self.size / min(height, width))
+        return tuple(max(1, round(n * scale / FACTOR)) * FACTOR for n in (height, width))  # type: ignore[return-value]
+
+    def small(self, x: Tensor, valid: Tensor) -> tuple[Tensor, Tensor]:
+        """Values and readings at the working size; a hole does not darken what is beside it."""
+        size = self.working(*x.shape[-2:])
+        if size == tuple(x.shape[-2:]):
+            return x, valid
+        weight = _resized(valid, size)
+        return _resized(x * valid, size) / weight.clamp(min=1e-3), (weight > 0.5).float()
+
+    def forward(self, frames: Tensor, views: int) -> Restored:
+        """Frames [n, H, W, c] as they come, every ``views`` of them one instant, all restored."""
+        x, valid = self.scaled(frames)
+        less, read = self.small(x, valid)
+        maps, gate = self.judge(less, read, views)
+        return self._composed(x, valid, self.net.decode(maps), views, gate)
+
+    def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor]:
+        """The U-Net's maps and the gate's logits [instants] of frames at the working size."""
+        maps = self.net.encode(self.seen(x, valid), views)
+        return maps, self.gate(maps.stats, texture(x, valid), views)
+
+    def seen(self, x: Tensor, valid: Tensor) -> Tensor:
+        """What goes into the U-Net."""
+        return torch.cat([x * 2 - 1, valid], 1) if self.sensor == DEPTH else x * 2 - 1
+
+    def _composed(
+        self, x: Tensor, valid: Tensor, maps: Tensor, views: int, gate: Tensor
+    ) -> Restored:
+        """Frames [n, c, H, W] with the U-Net's ``maps`` at the working size."""
+        channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
+        maps = maps if full == small else _resized(maps, full)
+        gain, bias, lost = maps.split([channels, channels, 1], 1)
+        trust = (-SUREST * ((lost + LOST) / SUREST).tanh()).sigmoid() * valid
+        y = (x * gain.clamp(*GAINS).exp() + bias).clamp(0, 1)
+        known, values, sure = trust, y, torch.zeros_like(trust)
+        if ring.is_ring(views, *full):
+            other, sure = ring.from_neighbours(y, trust, self.sensor == DEPTH)
+            values = y + (1 - trust) * sure * (other - y)
+            known = trust + (1 - trust) * sure
+        around = ring.from_around(values, known)
+        z = values + (1 - known) * (around - values)
+        told = [z * 2 - 1, trust, sure]
+        if full != small:
+            told = [_resized(part, small) for part in told]
+        more = self.refine(torch.cat(told, 1), views)
+        return Restored(z + (more if full == small else _resized(more, full)), z, trust, gate)
+
+    # one instant, as an agent sees it ----------------------------------------------------------
+
+    @torch.inference_mode()
+    def judged(self, frames: Tensor) -> tuple[bool, Tensor]:
+        """Whether the gate takes frames [V, H, W, c] for corrupted, and the frames restored if so,
+        else as they are."""
+        views = len(frames)
+        x, valid = self.scaled(frames)
+        maps, gate = self.judge(*self.small(x, valid), views)
+        if not bool(gate > self.threshold):
+            return False, frames
+        made = self._composed(x, valid, self.net.decode(maps), views, gate)
+        return True, self.unscaled(made.out)
+
+    def unscaled(self, out: Tensor) -> Tensor:
+        """Values [n, c, H, W] as the sensor gives them: uint8, or metres above 0."""
+        out = out.clamp(0, 1).permute(0, 2, 3, 1)
+        if self.sensor == RGB:
+            return (out * 255).round().to(torch.uint8)
+        return (out * self.far).clamp(min=1e-3)
+
+
+def _resized(x: Tensor, size: tuple[int, int] | torch.Size) -> Tensor:
+    mode = "area" if size[0] * size[1] < x.shape[-2] * x.shape[-1] else "bilinear"
+    align = None if mode == "area" else False
+    return F.interpolate(x, tuple(size), mode=mode, align_corners=align)

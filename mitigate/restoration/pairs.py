@@ -1,0 +1,157 @@
+"""Pairs of corrupted and clean frames to learn from: panoramas of random poses of a world, or the
+frames of a folder."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+import torch
+
+from mitigate.core.pictures import side_by_side
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule
+from mitigate.corruptions.registry import modality
+from mitigate.corruptions.suite import SENSOR
+from mitigate.encoders.frames import Frames, collect, corrupted
+from mitigate.encoders.sources import TRAIN, source_of
+from mitigate.training.poses import Poses
+from mitigate.worlds.world import TrainingEpisodes
+
+GROUP = 12  # frames of a folder that count as one panorama of a batch
+
+
+class Pairs(Protocol):
+    """The parts of a batch of "frames" and "clean" [instants, views, H, W, c], in numbers that
+    depend on no worker. ``ring``: whether the views of an instant are of one panorama."""
+
+    ring: bool
+
+    def start(self) -> None: ...
+
+    def jobs(self, step: int) -> list[Any]: ...
+
+    def work(self, job: Any) -> Any: ...
+
+    def collate(self, pieces: list[Any]) -> dict[str, Any]: ...
+
+    def figures(self) -> dict[str, np.ndarray]: ...
+
+
+class PosePairs(Poses):
+    """Panoramas of random poses (``training/poses.py``); of a world with one camera, views of
+    random poses."""
+
+    def __init__(
+        self,
+        agent: Any,
+        world: Callable[[], Any],
+        training: TrainingEpisodes,
+        schedule: Schedule,
+        *,
+        sensor: str,
+        panoramas: int,
+        seed: int,
+    ) -> None:
+        super().__init__(
+            agent, world, training, schedule, sensor=sensor, label=None, panoramas=panoramas,
+            every=1, seed=seed,
+        )  # fmt: skip
+        self.ring = False
+
+    def start(self) -> None:
+        """Learn from the world what its views are; ValueError if it cannot look from anywhere or
+        has no such sensor."""
+        if self.sensor not in self.world.sensors:
+            raise ValueError(
+                f"{type(self.world).__name__} shows no {self.sensor}: set agent.sensors to what "
+                f"it shows ({', '.join(self.world.sensors)})."
+            )
+        self.ring = len(self.world.sensors[self.sensor].yaws) > 1
+
+    def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
+        """As :meth:`Poses.collate`, without targets."""
+        made = super().collate(pieces)
+        return {"frames": made["frames"], "clean": made["clean"]}
+
+
+class FramePairs:
+    """Frames of a folder, each corrupted as an instant of its own (``encoders/sources.py``).
+
+    Args: as ``source_of``; frames: read once. batch: frames of a step.
+    """
+
+    ring = False
+
+    def __init__(
+        self,
+        world: Callable[[], Any],
+        schedule: Schedule,
+        *,
+        sensor: str,
+        frames: int,
+        panoramas: int,
+        seed: int,
+    ) -> None:
+        self.source = source_of(world, sensor, None, "", None)
+        self.schedule, self.sensor, self.seed = schedule, sensor, seed
+        self.count, self.groups = frames, panoramas
+        self.frames: Frames | None = None
+        self._last: np.ndarray | None = None
+
+    def start(self) -> None:
+        """Read the frames."""
+        self.frames = collect(self.source, TRAIN, self.count, self.seed)
+
+    def jobs(self, step: int) -> list[tuple[int, int]]:
+        """(step, group) of each group of frames."""
+        return [(step, group) for group in range(self.groups)]
+
+    def work(self, job: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
+        """Corrupted and clean frames [GROUP, H, W, c] of a group."""
+        assert self.frames is not None, "start() reads the frames"
+        step, group = job
+        chosen = generator(self.seed, "restore frames", step, group).integers(
+            len(self.frames), size=GROUP
+        )
+        drawn = [self.schedule.draw(self.seed, f"{step}-{group}-{i}", 0) for i in range(GROUP)]
+        frames = [
+            corrupted(self.frames, int(index), *draw, SENSOR)
+            for index, draw in zip(chosen, drawn, strict=True)
+        ]
+        return np.stack(frames), self.frames.frames[chosen]
+
+    def collate(self, pieces: list[tuple[np.ndarray, np.ndarray]]) -> dict[str, Any]:
+        """The groups as tensors "frames" and "clean"."""
+        frames, clean = (np.stack(part) for part in zip(*pieces, strict=True))
+        self._last = frames[-1]
+        return {"frames": torch.from_numpy(frames), "clean": torch.from_numpy(clean)}
+
+    def figures(self) -> dict[str, np.ndarray]:
+        """The last frames of the last batch."""
+        return {} if self._last is None else {"views": side_by_side(self._last)}
+
+
+def of_sensor(schedule: Schedule, sensor: str) -> Schedule:
+    """``schedule`` with the corruptions of one sensor alone; ValueError if it has none."""
+    names = tuple(name for name in schedule.names if modality(name) == sensor)
+    if not names:
+        raise ValueError(f"schedule.names has no corruption of {sensor}.")
+    return dataclasses.replace(schedule, names=names)
+
+
+def pairs_of(
+    agent: Any,
+    world: Callable[[], Any],
+    training: TrainingEpisodes | None,
+    schedule: Schedule,
+    **how: Any,
+) -> Pairs:
+    """The pairs of an ``env`` config: of a world, or of a folder of frames, which has no training
+    episodes. ``how``: sensor, panoramas, seed; and frames, for a folder alone."""
+    frames = how.pop("frames")
+    if training is None:
+        return FramePairs(world, schedule, frames=frames, **how)
+    return PosePairs(agent, world, training, schedule, **how)

@@ -1,0 +1,214 @@
+"""What a restorer does to frames of unseen scenes: errors before and after, what the gate lets by.
+
+    python -m mitigate.restoration.report checkpoints/restorer --split val_seen --suite unseen_val
+
+Errors are means over pixels: RGB in levels of 255, depth in centimetres. How much of an agent's
+success comes back is for `python -m mitigate.evaluate restore=FOLDER` to say.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+from torch import nn
+
+from mitigate.core import conf
+from mitigate.core.build import maker
+from mitigate.core.files import atomic_text, find, write_bytes
+from mitigate.core.names import unknown
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.core.progress import Progress
+from mitigate.core.seeding import generator
+from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
+from mitigate.corruptions.gallery import depth_picture
+from mitigate.corruptions.registry import title
+from mitigate.encoders.frames import collect
+from mitigate.encoders.sources import UNSEEN
+from mitigate.evaluation.bootstrap import Estimate, mean, share
+from mitigate.evaluation.evaluate import conditions
+from mitigate.restoration.restorer import Restorer, load_restorer
+from mitigate.worlds.episodes import read_episodes
+
+UNITS = {RGB: 1.0, DEPTH: 100.0}  # levels of 255; centimetres
+SHOWN = (0, 1, 2)  # views of an instant in the picture
+SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names beside it
+
+
+class Score(NamedTuple):
+    """Mean error before and after, and the share of instants that the gate had restored."""
+
+    before: Estimate
+    after: Estimate
+    restored: Estimate
+
+
+def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
+    """Print and write ``restoration.md`` and ``restoration.jpg``: what a training's restorer does
+    to ``evaluation.episodes`` random instants of unseen scenes, under the conditions of the suite.
+
+    ``cfg`` is a training's config. ``base`` is not used: before is without a restorer.
+    """
+    assert isinstance(trained, Restorer)
+    quick = cfg.evaluation
+    met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+    seen = instants(cfg.env, quick.split, quick.episodes or 300, cfg.seed, list(trained.nets))
+    write(trained, seen, met, cfg.seed, folder, f"{quick.split}, severity {cfg.severity:g}")
+
+
+def instants(
+    env: Any, split: str, count: int, seed: int, sensors: Sequence[str]
+) -> list[dict[str, np.ndarray]]:
+    """Clean observations of ``count`` random poses in the scenes of a list of ``env``, or frames of
+    the unseen part of a folder. Raises ValueError for an unknown split."""
+    made = maker(env.world)()
+    if hasattr(made, "shots"):
+        found = collect(made, UNSEEN, count, seed).frames
+        return [{sensors[0]: frame[None]} for frame in found]
+    if split not in env.episodes:
+        raise ValueError(unknown("split", split, env.episodes))
+    scenes = sorted({e.scene_id for e in read_episodes(find(env.episodes[split]))})
+    observations = []
+    for number in range(count):
+        rng = generator(seed, "restoration report", number)
+        made.enter(scenes[number * len(scenes) // count])
+        looked, _ = made.put(
+            made.point(rng), float(rng.uniform(-np.pi, np.pi)), views=None, rgb=True
+        )
+        observations.append({name: np.copy(value) for name, value in looked.items()})
+    return observations
+
+
+def measure(
+    restorer: Restorer, seen: Sequence[dict[str, np.ndarray]], met: Sequence[Corruption], seed: int
+) -> dict[tuple[str, str], Score]:
+    """Scores by sensor and condition; a corruption counts for the sensor that it changes."""
+    scores: dict[tuple[str, str], Score] = {}
+    wanted = [(s, c) for c in met for s in restorer.nets if c is CLEAN or s in c.modalities]
+    wanted = [(s, c) for s, c in wanted if s in seen[0]]
+    with Progress("restoration", len(wanted), unit="condition") as progress:
+        for sensor, corruption in wanted:
+            rows = []
+            for number, clean in enumerate(seen):
+                frames = _corrupted(clean, corruption, seed, number)[sensor]
+                made = restorer.restore(sensor, frames)
+                errors = [_error(sensor, part, clean[sensor]) for part in (frames, made)]
+                rows.append((*errors, made is not frames))
+            before, after, hit = np.array(rows, float).T
+            scores[sensor, corruption.name] = Score(mean(before), mean(after), share(hit))
+            progress.advance(note=corruption.name)
+    return scores
+
+
+def _corrupted(clean: dict[str, np.ndarray], corruption: Corruption, seed: int, n: int) -> dict:
+    frames = {name: clean[name] for name in clean if name in (RGB, DEPTH, POSE)}
+    return corrupt_observation(frames, corruption, Key(seed, f"instant {n}", 0))
+
+
+def _error(sensor: str, frames: np.ndarray, clean: np.ndarray) -> float:
+    """Mean absolute difference where the clean frame reads something."""
+    valid = np.isfinite(clean) & (clean > 0) if sensor == DEPTH else np.ones(clean.shape, bool)
+    made = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
+    wanted = np.where(valid, clean, 0).astype(np.float64)
+    return float(np.abs(made - wanted)[valid].mean() * UNITS[sensor]) if valid.any() else 0.0
+
+
+def table(scores: dict[tuple[str, str], Score], about: str) -> str:
+    """Markdown: a row a condition, a block a sensor."""
+    parts = [f"# Frames before and after restoration\n\n{about}. In brackets 95 % intervals.\n"]
+    for sensor in dict.fromkeys(sensor for sensor, _ in scores):
+        unit = "levels of 255" if sensor == RGB else "cm"
+        lines = [f"| {sensor}: mean error, {unit} | before | after | instants restored, % |"]
+        lines.append("| --- | ---: | ---: | ---: |")
+        for (own, name), score in scores.items():
+            if own == sensor:
+                cells = [_text(score.before), _text(score.after), _text(score.restored, 100)]
+                lines.append(f"| {' | '.join([title(name), *cells])} |")
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
+def _text(e: Estimate, scale: float = 1.0) -> str:
+    return f"{scale * e.value:.1f} [{scale * e.low:.1f}, {scale * e.high:.1f}]"
+
+
+def sheet(
+    restorer: Restorer, clean: dict[str, np.ndarray], met: Sequence[Corruption], seed: int
+) -> np.ndarray:
+    """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean."""
+    rows = []
+    for corruption in met:
+        sensor = next((s for s in corruption.modalities if s in restorer.nets and s in clean), None)
+        if sensor is None:
+            continue
+        frames = _corrupted(clean, corruption, seed, 0)[sensor]
+        shown = [
+            _views(sensor, f) for f in (frames, restorer.restore(sensor, frames), clean[sensor])
+        ]
+        name = np.full((SIDE, LABEL, 3), 255, np.uint8)
+        place, font = (4, SIDE // 2), cv2.FONT_HERSHEY_SIMPLEX
+        cv2.putText(name, title(corruption.name)[:18], place, font, 0.42, (0, 0, 0), 1, cv2.LINE_AA)
+        gap = np.full((SIDE, 6, 3), 255, np.uint8)
+        rows.append(np.hstack([name, shown[0], gap, shown[1], gap, shown[2]]))
+    return np.vstack(rows)
+
+
+def _views(sensor: str, frames: np.ndarray) -> np.ndarray:
+    views = frames if frames.ndim == 4 else frames[None]
+    shown = [views[k] for k in SHOWN if k < len(views)]
+    drawn = shown if sensor == RGB else [depth_picture(view[..., 0]) for view in shown]
+    nearest = cv2.INTER_NEAREST
+    return np.hstack([cv2.resize(view, (SIDE, SIDE), interpolation=nearest) for view in drawn])
+
+
+def write(
+    restorer: Restorer,
+    seen: Sequence[dict[str, np.ndarray]],
+    met: Sequence[Corruption],
+    seed: int,
+    folder: Path,
+    about: str,
+) -> None:
+    """Measure, print, and write the table and the picture into ``folder``."""
+    scores = measure(restorer.eval(), seen, met, seed)
+    about = f"{len(seen)} instants of {about}, seed {seed}, restorer {restorer.hash}"
+    text = table(scores, about)
+    folder.mkdir(parents=True, exist_ok=True)
+    with atomic_text(folder / "restoration.md") as file:
+        file.write(text)
+    drawn = sheet(restorer, seen[0], [c for c in met if c is not CLEAN], seed)
+    encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
+    write_bytes(folder / "restoration.jpg", encoded.tobytes())
+    print(f"{text}\nwrote {folder / 'restoration.md'}\nwrote {folder / 'restoration.jpg'}")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run from the command line."""
+    parser = argparse.ArgumentParser(prog="mitigate.restoration.report", description=__doc__)
+    parser.add_argument("folder", help="of the restorer")
+    parser.add_argument("--split", default="val_seen")
+    parser.add_argument("--suite", default="full")
+    parser.add_argument("--count", type=int, default=40, help="random instants (default 40)")
+    parser.add_argument("--severity", type=float, default=0.6)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", default="runs/restoration", help="folder of table and picture")
+    options = parser.parse_args(arguments)
+    cfg = conf.load_config("evaluate", [f"suite={options.suite}"])
+    met = conditions(list(cfg.suite.conditions), options.severity, None)
+    restorer = load_restorer(options.folder)
+    count, seed = max(1, options.count), options.seed
+    seen = instants(cfg.env, options.split, count, seed, list(restorer.nets))
+    about = f"{options.split}, suite {options.suite}, severity {options.severity:g}"
+    write(restorer, seen, met, seed, Path(options.out), about)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")

@@ -1,0 +1,76 @@
+"""What one view of a panorama has lost, taken from the views beside it, and from around a hole.
+
+The views share one centre and overlap, so up to four others show a point that a view should show.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from mitigate.agents.ring import neighbour_grid
+from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
+
+STEPS = (1, 2)  # views away that still overlap: of 90 degrees, 30 and 60 apart
+SURE = 0.05  # of trust squared at which what the neighbours show is half believed (ours)
+FAINT = 0.02  # weight of the coarser level where a hole is filled from around it (ours)
+
+
+@lru_cache(maxsize=8)
+def neighbours(size: int) -> tuple[Tensor, Tensor]:
+    """Of the views at -1, +1, -2 and +2 steps: ``grid`` [4, size, size, 2] as ``neighbour_grid``,
+    and ``ahead`` [4, size, size]: metres along the neighbour's axis for one along the own."""
+    half = math.tan(math.radians(HFOV_DEGREES) / 2)
+    x = ((torch.arange(size) + 0.5) / size * 2 - 1) * half
+    grids, aheads = [], []
+    for step in STEPS:
+        grids.append(neighbour_grid(size, size, step * VIEW_STEP_DEGREES, HFOV_DEGREES))
+        for sign in (-1, 1):
+            angle = math.radians(sign * step * VIEW_STEP_DEGREES)
+            ahead = x * math.sin(angle) + math.cos(angle)
+            aheads.append(ahead.clamp(min=1e-3).expand(size, size))
+    return torch.cat(grids), torch.stack(aheads)
+
+
+def is_ring(views: int, height: int, width: int) -> bool:
+    """Whether frames are a panorama of 12 square views, whose geometry is known."""
+    return views == VIEWS and height == width
+
+
+def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor, Tensor]:
+    """What the other views of each panorama say of every pixel.
+
+    Args: values float [P * 12, c, s, s]: colours, or (``depth``) metres along each view's axis over
+    anything. trust [P * 12, 1, s, s] in [0, 1]: which of them are to be believed.
+    Returns their mean [P * 12, c, s, s] and how sure it is, [P * 12, 1, s, s] in [0, 1).
+    """
+    grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
+    maps = torch.cat([values * trust, trust], 1).unflatten(0, (-1, VIEWS))
+    shifts = [sign * step for step in STEPS for sign in (1, -1)]
+    total = torch.zeros_like(values)
+    weight = torch.zeros_like(trust)
+    for shift, turned, scale in zip(shifts, grid, ahead, strict=True):
+        ring = maps.roll(shift, 1).flatten(0, 1)
+        seen = F.grid_sample(ring, turned.expand(len(ring), -1, -1, -1), align_corners=False)
+        value, sure = seen[:, :-1], seen[:, -1:]
+        total = total + value * sure / (scale if depth else 1.0)
+        weight = weight + sure.square()
+    return total / (weight + 1e-4), weight / (weight + SURE)
+
+
+def from_around(values: Tensor, trust: Tensor) -> Tensor:
+    """``values`` [n, c, h, w] where ``trust`` [n, 1, h, w] is 1, and elsewhere the mean of what is
+    trusted around, the nearer the more: a pyramid of halvings, filled from its top."""
+    sums, weights = [values * trust], [trust]
+    while min(sums[-1].shape[-2:]) > 1:
+        sums.append(F.avg_pool2d(sums[-1], 2, ceil_mode=True, count_include_pad=False))
+        weights.append(F.avg_pool2d(weights[-1], 2, ceil_mode=True, count_include_pad=False))
+    filled = sums[-1].mean((2, 3), keepdim=True) / (weights[-1].mean((2, 3), keepdim=True) + 1e-4)
+    for total, weight in zip(reversed(sums), reversed(weights), strict=True):
+        coarser = F.interpolate(filled, total.shape[-2:], mode="nearest")
+        filled = (total + FAINT * coarser) / (weight + FAINT)
+    return filled

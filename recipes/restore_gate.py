@@ -1,0 +1,168 @@
+"""Train the gate of a restorer: which frames come nearer to the clean ones by being restored.
+
+    L = BCE(gate, error after < ``BETTER`` error before)
+
+A frame that is neither clearly better afterwards nor clean or worse counts for neither. The maps
+that the gate reads do not change here, so they are computed once, for ``instants`` random instants,
+and learned from many times. Afterwards the threshold is set on clean frames of the training scenes
+that were held back: ``touched`` of them lie above it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import torch
+import torch.nn.functional as F
+from torch import Tensor
+
+from mitigate.core.progress import Progress
+from mitigate.core.seeding import generator
+from mitigate.corruptions import Schedule
+from mitigate.restoration.frames import SensorRestorer
+from mitigate.restoration.network import texture
+from mitigate.restoration.pairs import Pairs, of_sensor, pairs_of
+from mitigate.restoration.restorer import Restorer
+from mitigate.training.recipe import Recipe
+from mitigate.worlds.world import TrainingEpisodes
+
+CLEAN_SHARE = 0.35  # of the instants that are learned from (ours)
+BETTER = 0.85  # of the error before: what restoring must get below to be worth it (ours)
+OFFSETS = {"learned": 0, "held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000}  # steps
+
+
+class Judged(NamedTuple):
+    """Of N instants of V views: stats [N, V, s] and textures [N, V, t], which the gate reads;
+    before, after [N]: mean error over the range as they are and as restored."""
+
+    stats: Tensor
+    textures: Tensor
+    before: Tensor
+    after: Tensor
+
+    @property
+    def wanted(self) -> tuple[Tensor, Tensor]:
+        """Which should be restored, and which are to be counted: bool [N] each."""
+        hit = (self.before > 0) & (self.after < BETTER * self.before)
+        return hit, hit | (self.after >= self.before)
+
+
+class RestoreGate(Recipe):
+    """Args:
+    agent: the restorer; the gate of its network of ``modality`` is trained in place. world,
+    training, schedule, frames: as ``Restore``. instants: learned from, and as many single views.
+    held: clean instants that set the threshold. batch: of a step; a share ``single`` of the steps
+    learns from single views. touched: share of clean instants above the threshold.
+    """
+
+    here = True  # a step takes milliseconds
+
+    def __init__(
+        self,
+        agent: Restorer,
+        world: Callable[[], Any],
+        training: TrainingEpisodes | None,
+        modality: str,
+        schedule: Schedule,
+        instants: int = 400,
+        held: int = 300,
+        batch: int = 64,
+        frames: int = 4800,
+        single: float = 0.3,
+        touched: float = 0.005,
+        seed: int = 0,
+    ) -> None:
+        super().__init__()
+        if not (0 <= single <= 1 and 0 < touched < 1 and min(instants, held, batch) >= 1):
+            raise ValueError(
+                f"recipe.single ({single}) and recipe.touched ({touched}) are shares from 0 to 1; "
+                f"recipe.instants ({instants}), held ({held}) and batch ({batch}) at least 1."
+            )
+        self.modality, self.instants, self.held, self.batch_size = modality, instants, held, batch
+        self.single, self.touched, self.seed = single, touched, seed
+        self.agent = agent.requires_grad_(False)
+        self.net: SensorRestorer = agent.parts()[modality]  # type: ignore[assignment]
+        self.net.gate.requires_grad_(True)
+        own = of_sensor(schedule, modality)
+        how = {"sensor": modality, "panoramas": 4, "seed": seed, "frames": frames}
+        self.pairs, self.clean = (
+            pairs_of(agent, world, training, dataclasses.replace(own, clean_share=share), **how)
+            for share in (CLEAN_SHARE, 1.0)
+        )
+        self.learned: list[Judged] = []  # of panoramas, if there are any, and of single views
+
+    def start(self) -> None:
+        self.pairs.start()
+        self.clean.start()
+        kinds = [True, False] if self.pairs.ring else [False]
+        self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
+
+    def batch(self, step: int) -> dict[str, Any]:
+        assert self.learned, "start() collects the maps"
+        rng = generator(self.seed, "gate batch", step)
+        table = self.learned[-1 if rng.random() < self.single else 0]
+        chosen = rng.integers(len(table.before), size=self.batch_size)
+        return {"judged": Judged(*(part[torch.from_numpy(chosen)] for part in table))}
+
+    def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
+        judged = Judged(*(part.to(self.net.threshold.device) for part in batch["judged"]))
+        logits, (hit, counted) = self._logits(judged), judged.wanted
+        each = F.binary_cross_entropy_with_logits(logits, hit.float(), reduction="none")
+        total, right = counted.sum().clamp(min=1), (logits > 0) == hit
+        return {
+            "loss": (each * counted).sum() / total,
+            "accuracy": (right & counted).sum() / total,
+            "wanted": (hit & counted).sum() / total,
+        }
+
+    def _logits(self, judged: Judged) -> Tensor:
+        """[N]: each of the N is one instant."""
+        stats, textures = (part.flatten(0, 1) for part in judged[:2])
+        return self.net.gate(stats, textures, judged.stats.shape[1]).float()
+
+    @torch.no_grad()
+    def _judged(self, pairs: Pairs, count: int, which: str, ring: bool) -> Judged:
+        """What the gate reads of ``count`` instants, and what restoring them comes to; ``ring``:
+        of panoramas, or each view by itself."""
+        parts: list[tuple[Tensor, ...]] = []
+        step, have, device = OFFSETS[which], 0, self.net.threshold.device
+        with Progress(f"{self.modality}, {which}", count, unit="instant") as progress:
+            while have < count:
+                batch = pairs.collate([pairs.work(job) for job in pairs.jobs(step)])
+                frames, clean = (batch[n].flatten(0, 1).to(device) for n in ("frames", "clean"))
+                parts.append(self._part(frames, clean, batch["frames"].shape[1] if ring else 1))
+                found, step = min(len(parts[-1][0]), count - have), step + 1
+                have += found
+                progress.advance(found)
+        return Judged(*(torch.cat(part)[:count] for part in zip(*parts, strict=True)))
+
+    def _part(self, frames: Tensor, clean: Tensor, views: int) -> tuple[Tensor, ...]:
+        """The entries of :class:`Judged` for frames [n, H, W, c]."""
+        made = self.net(frames, views)
+        less = self.net.small(*self.net.scaled(frames))
+        read = (self.net.net.encode(self.net.seen(*less), views).stats, texture(*less))
+        wanted, valid = self.net.scaled(clean)
+        seen, _ = self.net.scaled(frames)
+        errors = [((x - wanted).abs() * valid).mean((1, 2, 3)) for x in (seen, made.out)]
+        rings = [part.unflatten(0, (-1, views)) for part in (*read, *errors)]
+        return rings[0], rings[1], rings[2].mean(1), rings[3].mean(1)
+
+    @torch.no_grad()
+    def evaluate(self, step: int) -> dict[str, float]:
+        """Set the threshold; return it, with the shares above it of other clean instants, and of
+        corrupted ones that restoring makes clearly better."""
+        ring = self.pairs.ring
+        logits = self._logits(self._judged(self.clean, self.held, "held", ring))
+        self.net.threshold.fill_(float(logits.quantile(1 - self.touched)))
+        fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)
+        met = self._judged(self.pairs, -(-self.held // 3), "corrupted", ring)
+        return {
+            "threshold": float(self.net.threshold),
+            "clean_touched": self._above(self._logits(fresh)),
+            "helped_found": self._above(self._logits(met)[met.wanted[0]]),
+        }
+
+    def _above(self, logits: Tensor) -> float:
+        return float((logits > self.net.threshold).float().mean())

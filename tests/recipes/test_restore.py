@@ -1,0 +1,104 @@
+"""Restorers learn from random poses or a folder of frames; their thresholds follow clean frames."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+import torch
+from PIL import Image
+
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions import Schedule
+from mitigate.encoders.sources import FolderFrames
+from mitigate.recipes.restore import Restore
+from mitigate.recipes.restore_gate import RestoreGate
+from mitigate.restoration.restorer import Restorer
+from mitigate.training.trainer import Trainer
+from mitigate.worlds.apartments.tasks import DrawnEpisodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+
+
+def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **given) -> Restore:
+    torch.manual_seed(0)
+    restorer = Restorer(width=4, depth_width=4)
+    how = {"panoramas": 1, **given}
+    schedule = Schedule("per_episode", (0.4, 0.8), names=names, clean_share=0.3)
+    world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
+    return Restore(restorer, **world, modality=sensor, schedule=schedule, **how)
+
+
+@pytest.mark.parametrize(("sensor", "left"), [(RGB, 0.6), (DEPTH, 0.9)])
+def test_training_takes_a_corruption_away(tmp_path, sensor, left):
+    recipe = recipe_of(sensor, panoramas=2, single=0.0)
+    Trainer(recipe, steps=20, lr=5e-3, folder=tmp_path, precision="fp32", log_every=0).fit()
+    with torch.no_grad():
+        found = [recipe.eval()(recipe.batch(step)) for step in range(100, 104)]
+    before, after = (sum(float(each[name]) for each in found) for name in ("before", "after"))
+    assert after < left * before
+    others = [p for name, net in recipe.agent.parts().items() if name != sensor
+              for p in net.parameters()]  # fmt: skip
+    assert not any(p.requires_grad for p in others)
+
+
+def test_a_batch_is_a_function_of_the_step_and_some_show_single_views():
+    recipe, again = recipe_of(single=0.5), recipe_of(single=0.5)
+    recipe.start(), again.start()
+    views = []
+    for step in range(8):
+        one, two = recipe.batch(step), again.batch(step)
+        assert torch.equal(one["frames"], two["frames"]) and one["views"] == two["views"]
+        views.append(one["views"])
+    assert set(views) == {1, 12}
+
+
+def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
+    given = recipe_of(single=0.0)
+    Trainer(given, steps=10, lr=5e-3, folder=tmp_path / "first", precision="fp32").fit()
+    schedule = Schedule("per_episode", (0.4, 0.8), names=("low_light", "foreign_object"))
+    world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
+    recipe = RestoreGate(
+        given.agent, **world, modality=RGB, schedule=schedule,
+        instants=24, held=10, batch=16, touched=0.1,
+    )  # fmt: skip
+    before = {name: p.clone() for name, p in given.agent.named_parameters()}
+    Trainer(
+        recipe,
+        steps=60,
+        lr=5e-3,
+        folder=tmp_path / "gate",
+        precision="fp32",
+        log_every=0,
+        eval_every=40,
+    ).fit()
+    found = recipe.evaluate(40)
+    assert found["threshold"] == recipe.net.threshold != 0
+    assert found["helped_found"] > 0.7 > 0.4 > found["clean_touched"]
+    changed = [n for n, p in given.agent.named_parameters() if not torch.equal(p, before[n])]
+    assert changed and all(name.startswith("nets.rgb.gate.") for name in changed)
+
+
+def test_a_folder_of_frames_will_do(tmp_path):
+    rng = np.random.default_rng(0)
+    for scene in range(3):
+        (tmp_path / f"s{scene}").mkdir()
+        for number in range(4):
+            coarse = rng.integers(0, 256, (4, 4, 3), np.uint8)
+            Image.fromarray(coarse).resize((24, 24), 3).save(tmp_path / f"s{scene}/{number}.png")
+    recipe = _of_folder(tmp_path)
+    recipe.start()
+    batch = recipe.batch(0)
+    assert batch["frames"].shape == batch["clean"].shape == (1, 12, 24, 24, 3)
+    assert batch["views"] == 1 and recipe(batch)["loss"].item() > 0
+
+
+def _of_folder(path) -> Restore:
+    world = partial(FolderFrames, str(path))
+    schedule = Schedule("per_episode", 0.6, clean_share=0.0)
+    return Restore(Restorer([RGB], width=4), world, None, RGB, schedule, panoramas=1, frames=8)
+
+
+def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
+    with pytest.raises(ValueError, match="no corruption of depth"):
+        recipe_of(DEPTH, names=("flare",))

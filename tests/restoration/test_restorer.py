@@ -1,0 +1,226 @@
+"""Frames taken for clean pass as they are; others are corrected, filled, and keep their form."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+
+from mitigate.core.observation import DEPTH, RGB, Observation
+from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
+from mitigate.restoration import ring
+from mitigate.restoration.restorer import Restorer, load_restorer
+from mitigate.restoration.world import Restored
+from mitigate.worlds.world import Corrupted
+from tests.restoration.conftest import opened
+
+SHIPPED = Path(__file__).parents[2] / "checkpoints/restorer"
+SHAPES = [(64, 64), (50, 70), (120, 160)]
+
+
+def frames(sensor: str, *shape: int) -> np.ndarray:
+    rng = np.random.default_rng(0)
+    if sensor == RGB:
+        return rng.integers(20, 230, (*shape, 3), np.uint8)
+    return rng.uniform(0.5, 9.0, (*shape, 1)).astype(np.float32)
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_a_frame_that_the_gate_takes_for_clean_is_the_same_object(untrained, sensor):
+    opened(untrained, 1e9)
+    frame = frames(sensor, 12, 64, 64)
+    before = frame.copy()
+    made = untrained({sensor: frame, "pose": "as it came"})
+    assert made[sensor] is frame and made["pose"] == "as it came"
+    assert np.array_equal(frame, before)
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_before_anything_is_learned_a_frame_hardly_changes(untrained, sensor, shape):
+    for full in (shape, (1, *shape), (3, *shape)):
+        frame = frames(sensor, *full)
+        made = untrained.restore(sensor, frame)
+        assert made.shape == frame.shape and made.dtype == frame.dtype and made is not frame
+        moved = np.abs(made.astype(float) - frame).mean()
+        assert moved <= (3.0 if sensor == RGB else 0.1)
+
+
+def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
+    frame = frames(DEPTH, 40, 48)[..., 0]
+    frame[10:20, 10:20], frame[0, 0], frame[1, 1] = 0.0, np.nan, np.inf
+    made = untrained.restore(DEPTH, frame)
+    assert made.shape == (40, 48) and np.isfinite(made).all() and (made > 0).all()
+    assert 0.5 < made[10:20, 10:20].mean() < 9.0
+
+
+@pytest.mark.parametrize(
+    ("sensor", "frame", "words"),
+    [
+        (RGB, np.zeros((8, 8, 3), np.float32), "uint8"),
+        (DEPTH, np.zeros((8, 8, 1), np.uint16), "float32 metres"),
+        (RGB, np.zeros((8, 8), np.uint8), r"\[H, W, 3\]"),
+        (RGB, np.zeros((37, 8, 8, 3), np.uint8), "36 views"),
+        ("sound", np.zeros(3), "rgb, depth, not for sound"),
+    ],
+)
+def test_frames_of_another_form_are_refused(untrained, sensor, frame, words):
+    with pytest.raises((TypeError, ValueError, KeyError), match=words):
+        untrained.restore(sensor, frame)
+
+
+def test_a_large_frame_keeps_its_detail_under_a_correction_computed_small():
+    restorer = opened(Restorer([RGB], width=8, size=32).eval())
+    net = restorer.nets[RGB]
+    with torch.no_grad():
+        net.net.head.bias.view(-1, 4)[:3] = np.log(2.0)  # every gain is 2
+        net.net.head.bias.view(-1, 4)[6] = -100.0  # nothing is lost
+    frame = frames(RGB, 128, 128) // 2
+    made = restorer.restore(RGB, frame)
+    assert np.abs(made.astype(int) - 2 * frame.astype(int)).max() <= 1
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_the_neighbours_show_what_a_view_has_lost(panorama, sensor):
+    values = torch.from_numpy(panorama[sensor]).float().permute(0, 3, 1, 2)
+    values = values / (255 if sensor == RGB else 10)
+    trust = torch.ones_like(values[:, :1])
+    trust[0] = 0
+    other, sure = ring.from_neighbours(values, trust, sensor == DEPTH)
+    seen = sure[0] > 0.9
+    assert seen.float().mean() > 0.9
+    error = ((other[0] - values[0]).abs() * seen).mean()
+    assert error < (0.35 if sensor == RGB else 0.05) * (values[0] - values[0].mean()).abs().mean()
+
+
+def test_a_hole_takes_the_mean_around_it():
+    values = torch.zeros(1, 1, 32, 32)
+    values[..., 16:] = 1.0
+    trust = torch.ones_like(values)
+    trust[..., 10:20, 2:8] = trust[..., 10:20, 24:30] = 0
+    filled = ring.from_around(torch.where(trust > 0, values, 0.5), trust)
+    assert filled[0, 0, 15, 5] < 0.15 and filled[0, 0, 15, 27] > 0.85
+
+
+def test_a_world_is_restored_when_its_frames_are_read(untrained, panorama):
+    class Still:
+        sensors: dict = {}
+        reads = 0
+
+        def reset(self, episode):
+            def made():
+                self.reads += 1
+                return {RGB: panorama[RGB]}
+
+            return Observation({"pose": panorama["pose"]}, made, (RGB,))
+
+    class Episode:
+        episode_id = "1"
+
+    still = Still()
+    met = Corrupted(still, Corruption("foreign_object", 0.6), 0)
+    shown = Restored(met, untrained).reset(Episode())
+    assert still.reads == 0 and shown["pose"] is panorama["pose"]
+    assert not np.array_equal(shown[RGB], met.last[RGB]) and still.reads == 1
+    assert np.array_equal(shown.clean[RGB], panorama[RGB])
+
+
+# folders -----------------------------------------------------------------------------------------
+
+
+def test_a_folder_gives_the_same_restorer(untrained, tmp_path):
+    opened(untrained, 0.25)
+    untrained.save(tmp_path, half=True)
+    loaded = load_restorer(tmp_path)
+    assert loaded.hash == untrained.hash and loaded.nets[RGB].threshold == 0.25
+    frame = frames(RGB, 12, 64, 64)
+    opened(untrained), opened(loaded)
+    assert np.array_equal(loaded.restore(RGB, frame), untrained.restore(RGB, frame))
+
+
+def damaged_weights(folder: Path) -> None:
+    file = folder / "model.safetensors"
+    raw = bytearray(file.read_bytes())
+    raw[-3] ^= 1
+    file.write_bytes(bytes(raw))
+
+
+def no_sum(folder: Path) -> None:
+    (folder / "model.safetensors.sha256").unlink()
+
+
+def card_with(**changed):
+    def change(folder: Path) -> None:
+        card = json.loads((folder / "card.json").read_text())
+        settings = {k: v for k, v in changed.items() if k in card["settings"]}
+        card = {**card, **{k: v for k, v in changed.items() if k not in settings}}
+        card["settings"] |= settings
+        (folder / "card.json").write_text(json.dumps(card))
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (damaged_weights, "cut short or damaged"),
+        (no_sum, "no model.safetensors.sha256"),
+        (card_with(hash="0" * 12), "not those of its card"),
+        (card_with(width=1 << 30), "whole number from 4 to 128"),
+        (card_with(width=16), "do not fit"),
+        (card_with(far="many"), "far must be metres"),
+        (card_with(sensors=["rgb", "sound"]), "a list of rgb, depth"),
+        (card_with(format=2), "format 1"),
+        (lambda folder: (folder / "card.json").unlink(), "card.json missing"),
+    ],
+)
+def test_a_damaged_folder_is_refused(untrained, tmp_path, change, words):
+    untrained.save(tmp_path)
+    change(tmp_path)
+    with pytest.raises((ValueError, FileNotFoundError), match=words):
+        load_restorer(tmp_path)
+
+
+# what is shipped ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory):
+    copied = tmp_path_factory.mktemp("shipped") / "restorer"
+    shutil.copytree(SHIPPED, copied)
+    return load_restorer(copied)
+
+
+def test_the_shipped_restorer_leaves_a_clean_panorama_alone(shipped, panorama):
+    made = shipped(panorama)
+    assert made[RGB] is panorama[RGB] and made[DEPTH] is panorama[DEPTH]
+
+
+@pytest.mark.parametrize(
+    ("name", "sensor", "left"),
+    [
+        ("foreign_object", RGB, 0.35),
+        ("low_light_noise", RGB, 0.75),
+        ("black_out", RGB, 0.4),
+        ("missing_data", DEPTH, 0.25),
+    ],
+)
+def test_the_shipped_restorer_takes_away_its_part_of_a_corruption(
+    shipped, panorama, name, sensor, left
+):
+    frames = corrupt_observation(panorama, Corruption(name, 0.6), Key(0, "test"))
+    made = shipped(frames)
+    errors = [np.abs(f[sensor].astype(float) - panorama[sensor]).mean() for f in (frames, made)]
+    assert errors[1] < left * errors[0]
+    other = DEPTH if sensor == RGB else RGB
+    assert made[other] is panorama[other]
+
+
+def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):
+    seen = corrupt_observation(panorama, CLEAN, Key(0, "test"))
+    dark = corrupt_observation(panorama, Corruption("low_light", 0.8), Key(0, "test"))
+    assert shipped.doubt(RGB, seen[RGB]) < 0 < shipped.doubt(RGB, dark[RGB])
