@@ -10,21 +10,12 @@ import re
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
-from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
-from mitigate.safeguard.meaning import differs
+from mitigate.safeguard.meaning import CATEGORIES, differs
 from mitigate.safeguard.text import MASK, words
 
 ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
-# categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
-CATEGORIES = bag(
-    """
-    chair table picture cabinet cushion sofa bed dresser plant sink toilet stool towel tv shower
-    bathtub counter fireplace equipment seating clothes desk lamp bookshelf armchair rug wardrobe
-    painting nightstand fridge stove oven mirror monitor refrigerator couch microwave bench
-    """
-)
 _HUNTS = re.compile(
     r"\b(?:find|finding|look(?:ing)? for|locat|search|seek|spot|fetch|hunt|where|in search)",
     re.IGNORECASE,
