@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
-from mitigate.corruptions.language.landmarks import normal
 from mitigate.corruptions.language.tagger import Token, tag
 from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.plain_words import PHRASES, plain_form
@@ -130,7 +129,7 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
             out += [heard[end : token.start] if end >= 0 else " ", said]
         else:
             said = "." if edit.act == PLAIN and token.text in ENDS | PAUSES else token.text
-            out += [" " if token.text in "([“\"" else "", said]
+            out += [" " if token.text in '([“"' else "", said]
         end = token.end
     return _closed(out)
 

@@ -6,12 +6,14 @@ Whoever wants to change a text, a rule or a model, asks here; each function says
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
+from mitigate.safeguard.losses import unproven
 from mitigate.safeguard.meaning import CATEGORIES, differs
 from mitigate.safeguard.text import MASK, words
 
@@ -105,6 +107,17 @@ def rewrite_refused(heard: str, said: str, last: bool = False) -> str:
     if wanted and found and wanted.isdisjoint(found) and not route_turns(heard):
         return f"another thing is to be found: {', '.join(sorted(found))}"
     return differs(heard, said)
+
+
+def edit_refused(heard: str, said: str, aside: Sequence[str], last: bool = False) -> str:
+    """Return why ``said``, which holds nothing but words of ``heard`` and closed phrases, may not
+    stand for it; ``aside``: the words that were taken out and surely tell nothing of the way;
+    ``last`` as of :func:`rewrite_refused`. Empty, it is refused if a fact would be lost."""
+    if len(words(said)) > len(words(heard)) + 1:
+        return "longer than what it replaces"
+    if said and not rewrite_refused(heard, said, last):
+        return ""
+    return unproven(heard, said, aside)
 
 
 def route_turns(text: str) -> bool:

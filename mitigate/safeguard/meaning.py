@@ -226,13 +226,27 @@ def _turns(old: Meaning, new: Meaning) -> str:
 
 
 def _things(old: Meaning, new: Meaning) -> str:
-    for name in old.ways:
-        if name not in _WEAK and name not in _SPEECH and not _named(name, new) and _meant(name, old):
-            return f"landmark lost: {name}"
-    for name in new.ways:
-        if name not in _WEAK and not _named(name, old):
-            return f"landmark invented: {name}"
-    return ""
+    lost, added = missing(old, new), missing(new, old, every=True)
+    if lost:
+        return f"landmark lost: {lost[0]}"
+    return f"landmark invented: {added[0]}" if added else ""
+
+
+def missing(old: Meaning, new: Meaning, *, every: bool = False) -> list[str]:
+    """Return the things that ``old`` tells of and ``new`` does not; ``every``: whether or not they
+    are of the way."""
+    return [
+        name
+        for name in old.ways
+        if name not in _WEAK
+        and not _named(name, new)
+        and (every or (name not in _SPEECH and _meant(name, old)))
+    ]
+
+
+def moved(old: Meaning, new: Meaning) -> str:
+    """Return a thing that one goes by in another way, or in another order; "" if there is none."""
+    return _ways(old, new) or _order(old, new)
 
 
 def _meant(name: str, old: Meaning) -> bool:

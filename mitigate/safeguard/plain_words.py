@@ -97,11 +97,9 @@ _SAME = {
     "with": "w",
 }
 _FORM = {form: plain for plain, forms in _SAME.items() for form in forms.split()}
-# phrases that plain routes have and the same routes in speech lack, by how often (of the train voices);
-# no thing, side, number or colour is in them
-PHRASES = tuple(
-    phrase.strip()
-    for phrase in """
+# what plain routes have and the same routes in speech lack, by how often (of the train voices): no
+# thing, side, number or colour
+_PHRASES = """
     . | the | go | turn | walk | stop | and | to | , | stop at | with | into | at | on | and
     stop | enter | leave | go up | through | past | and turn | and stop at the | around | at the
     | stop at the | of | to the | go down | exit | go through | find | , turn | take | pass | go
@@ -116,8 +114,8 @@ PHRASES = tuple(
     | go in | follow the | keeping | stop by | go into | and go past | go out | you are in |
     stop on | walk through | go between the | go straight | walk straight | wait at | walk to
     the | . go | . turn | . stop | . walk
-    """.split("|")
-)
+    """
+PHRASES = tuple(" ".join(phrase.split()) for phrase in _PHRASES.split("|"))
 
 
 @lru_cache(maxsize=8192)

@@ -20,18 +20,14 @@ _NUMBER = (
     r"(?:\d{1,2}(?:st|nd|rd|th)?|one|two|three|four|five|six|seven|eight|nine|ten|first(?:ly)?|"
     r"second(?:ly)?|third(?:ly)?|fourth(?:ly)?|fifth(?:ly)?|sixth(?:ly)?|last(?:ly)?|final(?:ly)?)"
 )
-_SELF = (
-    r"(?:i|we|he|she|they|nobody|everybody|everyone|people)"
-)
-# before "right", where it is a side
-_NO_TURN = "".join(
-    f"(?<!{word} )"
-    for word in (
-        "turn turning turned take taking make the your a to on go going bear veer head keep hard "
-        "slight slightly sharp sharply gently gentle little bit immediate immediately first second "
-        "third far and then left angle degrees 90 ninety pivot rotate swing hang"
-    ).split()
-)
+_SELF = r"(?:i|we|he|she|they|nobody|everybody|everyone|people)"
+# words before "right" where it is a side
+_BEFORE_SIDE = """
+    turn turning turned take taking make the your a to on go going bear veer head keep hard slight
+    slightly sharp sharply gently gentle little bit immediate immediately first second third far and
+    then left angle degrees 90 ninety pivot rotate swing hang
+    """
+_NO_TURN = "".join(f"(?<!{word} )" for word in _BEFORE_SIDE.split())
 _REMOVED = tuple(
     (re.compile(pattern), said)
     for pattern, said in (

@@ -1,35 +1,44 @@
 """A small network that edits speech into plain words: for each word or mark keep, drop or plain
 form, and the phrase before it.
 
-A word is read as its letters (hashed pieces of 3 to 5) and as what the safeguard's word classes say
-of it, so none is unknown; two layers of bidirectional GRU read the text. It writes nothing of its
-own but the closed phrases (:mod:`plain_words`), and cannot end too soon.
+A word is read as its vector (of a language model's own table), its letters (hashed pieces of 3 to
+5) and what the safeguard's word classes say of it, so none is unknown; five dilated convolutions see
+62 words to each side. It writes nothing of its own but the closed phrases (:mod:`plain_words`), and
+cannot end too soon.
 """
 
 from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
+from typing import Any
 
 import torch
 from torch import Tensor, nn
 
+from mitigate.core.checkpoint import load_weights
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, COLOURS
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard import edits
-from mitigate.safeguard.edits import DROP, KEEP, Edit
+from mitigate.safeguard.edits import DROP, KEEP, PLAIN, Edit
 from mitigate.safeguard.evidence import LANDMARKS, VERBS
 from mitigate.safeguard.lexicon import FUNCTION, GROUPS
 from mitigate.safeguard.plain_words import PHRASES, plain_form
+from mitigate.safeguard.plainly_said import TRIES, Tagged
 from mitigate.safeguard.ways import RELATION
+from mitigate.safeguard.word_vectors import SCALE, SIZE, SMOLLM2, VECTORS, word_key, word_vectors
 
 PIECES = 8192  # hashed pieces of words; 0 is none
-VECTORS, SIZE = 21530, 48
 LONGEST_WORD = 14  # pieces of a word that are read
 TAGS = ("NOUN", "PROPN", "VERB", "ADJ", "ADV", "DET", "PRON", "AUX", "ADP", "PART", "CCONJ",
     "SCONJ", "NUM", "PUNCT", "X", "INTJ")  # fmt: skip
+NO_PHRASE = 0.5  # from this probability on no phrase is put
+Encoded = dict[str, list[Any]]
+KNOWN = LANDMARKS | frozenset(CANONICAL)
 SIDES = frozenset({"left", "right", "up", "down", "around", "straight", "back"})
 
 
@@ -49,19 +58,30 @@ class Block(nn.Module):
 
 
 class Tagger(nn.Module):
-    """Args: width: of a word. hidden: of each direction of the GRU. dropout: while training."""
+    """Args: base: language model whose word vectors are taken where a training begins without.
+    width: of a word inside. spelling: of its letters. dropout: while training."""
 
-    def __init__(self, width: int = 112, spelling: int = 32, dropout: float = 0.2, vectors=VECTORS, size=SIZE) -> None:
+    def __init__(
+        self, base: str = SMOLLM2, width: int = 112, spelling: int = 32, dropout: float = 0.2
+    ) -> None:
         super().__init__()
-        self.register_buffer("keys", torch.zeros(vectors, dtype=torch.int64))
-        self.register_buffer("vectors", torch.zeros(vectors, size, dtype=torch.int8))
+        self.base = base
+        self.register_buffer("keys", torch.zeros(VECTORS, dtype=torch.int64))
+        self.register_buffer("vectors", torch.zeros(VECTORS, SIZE, dtype=torch.int8))
         self.pieces = nn.EmbeddingBag(PIECES, spelling, mode="mean", padding_idx=0)
-        self.first = nn.Linear(size + spelling + len(FLAGS), width)
+        self.first = nn.Linear(SIZE + spelling + len(FLAGS), width)
         self.dropout = nn.Dropout(dropout)
         self.blocks = nn.ModuleList(Block(width, 2**i, dropout) for i in range(5))
         self.norm = nn.LayerNorm(width)
         self.act = nn.Linear(width, 3)
         self.before = nn.Linear(width, 1 + len(PHRASES))
+
+    def learn_words(self) -> None:
+        """Take the word vectors of the base, if there are none yet. Raises as ``load_base``."""
+        if not self.keys.any():
+            keys, vectors = word_vectors(self.base)
+            self.keys.copy_(keys)
+            self.vectors.copy_(vectors)
 
     def forward(self, batch: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
         """Return logits of the acts [B, T, 3] and of the phrases [B, T, 1 + P].
@@ -73,7 +93,7 @@ class Tagger(nn.Module):
         spelled = self.pieces(batch["pieces"].flatten(0, 1)).view(*shape, -1)
         keys = batch["words"]
         at = torch.searchsorted(self.keys, keys).clamp(max=len(self.keys) - 1)
-        vector = self.vectors[at].float() / 32 * (self.keys[at] == keys)[..., None]
+        vector = self.vectors[at].float() / SCALE * (self.keys[at] == keys)[..., None]
         seen = self.first(self.dropout(torch.cat([vector, spelled, batch["flags"]], -1)))
         mask = (torch.arange(shape[1]) < batch["length"][:, None])[..., None].float()
         for block in self.blocks:
@@ -84,27 +104,37 @@ class Tagger(nn.Module):
         return acts.masked_fill(plain, -30.0), self.before(found)
 
     @torch.no_grad()
-    def edit(self, texts: Sequence[str], keep: float = 0.5, add: float = 0.5) -> list[str]:
-        return [edits.edited(t, e) for t, e in zip(texts, self.edits(texts, keep, add))]
-
-    @torch.no_grad()
-    def edits(self, texts: Sequence[str], keep: float = 0.5, add: float = 0.5) -> list[list[Edit]]:
-        """Return the edits of each text."""
+    def tag(self, text: str) -> Tagged:
+        """Return the edits of a text and how probably each of its words goes; the same text always
+        gets the same ones."""
+        found = tuple(edits.tokens(text))
+        if not found:
+            return Tagged((), (), ())
         self.eval()
-        out = []
-        for text in texts:
-            found = edits.tokens(text)
-            acts, before = self(collate([encode(found)]))
-            p = acts[0].softmax(-1)
-            q = before[0].softmax(-1)
-            q0 = q[:, 0]
-            row = []
-            for i in range(len(found)):
-                act = DROP if p[i, 1] > keep else (2 if p[i, 2] > p[i, 0] else KEEP)
-                n = int(q[i, 1:].argmax()) + 1 if q0[i] < 1 - add else 0
-                row.append(Edit(act, n))
-            out.append(row)
-        return out
+        acts, before = (logits[0].softmax(-1) for logits in self(collate([encode(found)])))
+        phrase = before[:, 1:].argmax(-1) + 1
+        phrase[before[:, 0] >= NO_PHRASE] = 0
+        plain = acts[:, PLAIN] > acts[:, KEEP]
+        made = [
+            Edit(int(act), int(number)) for act, number in zip(plain * PLAIN, phrase, strict=True)
+        ]
+        return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()))
+
+    def alone(self, text: str, least: float = TRIES[0]) -> str:
+        """Return ``text`` after all edits, without rules and gate."""
+        tagged = self.tag(text)
+        made = [
+            replace(edit, act=DROP) if p > least else edit
+            for edit, p in zip(tagged.edits, tagged.drop, strict=True)
+        ]
+        return edits.edited(text, made, tagged.tokens)
+
+
+def open_tagger(folder: str | Path) -> Tagger:
+    """Return the tagger of a folder. Raises FileNotFoundError or ValueError, naming the file."""
+    tagger = Tagger()
+    load_weights(tagger, folder)
+    return tagger.eval()
 
 
 def _hash(text: str, size: int) -> int:
@@ -117,14 +147,14 @@ def spelled(word: str) -> tuple[int, tuple[int, ...]]:
     held = f"<{word}>"
     found = [held[i : i + n] for n in (3, 4, 5) for i in range(len(held) - n + 1)]
     pieces = [_hash(piece, PIECES) for piece in found[: 2 * LONGEST_WORD]] or [_hash(held, PIECES)]
-    return zlib.crc32(word.encode()), tuple(pieces)
+    return word_key(word), tuple(pieces)
 
 
 FLAGS = (
-    *TAGS,
-    *GROUPS,
+    *TAGS, *GROUPS,
     "function", "verb", "landmark", "relation", "side", "attribute", "colour", "digit",
-    "first", "capital", "shout", "after mark", "before mark", "plain", "said before", "said after", "start", "end"
+    "first", "capital", "shout", "after mark", "before mark", "plain", "said before", "said after",
+    "start", "end",
 )  # fmt: skip
 
 
@@ -132,18 +162,17 @@ FLAGS = (
 def _classes(word: str) -> tuple[float, ...]:
     return (
         *(float(word in group) for group in GROUPS.values()),
-        float(word in FUNCTION), float(word in VERBS), float(word in LANDMARKS or word in CANONICAL),
-        float(word in RELATION), float(word in SIDES), float(word in ATTRIBUTES),
-        float(word in COLOURS), float(word.isdigit()),
+        *(float(word in group) for group in (FUNCTION, VERBS, KNOWN, RELATION, SIDES)),
+        *(float(word in group) for group in (ATTRIBUTES, COLOURS)), float(word.isdigit()),
     )  # fmt: skip
 
 
-def encode(found: Sequence[Token]) -> dict[str, list]:
+def encode(found: Sequence[Token]) -> Encoded:
     """Return what the network reads of the tokens of a text."""
     lower = [t.lower for t in found]
     last = {w: i for i, w in enumerate(lower)}
     first: dict[str, int] = {}
-    rows: dict[str, list] = {"words": [], "pieces": [], "flags": [], "plain": []}
+    rows: Encoded = {"words": [], "pieces": [], "flags": [], "plain": []}
     for i, token in enumerate(found):
         seen = first.setdefault(token.lower, i)
         word, pieces = spelled(token.lower)
@@ -171,7 +200,7 @@ def encode(found: Sequence[Token]) -> dict[str, list]:
     return rows
 
 
-def collate(rows: Sequence[dict[str, list]]) -> dict[str, Tensor]:
+def collate(rows: Sequence[Encoded]) -> dict[str, Tensor]:
     """Return a batch of :func:`encode`'s rows, padded at the end."""
     lengths = [len(row["words"]) for row in rows]
     width = max(lengths)
