@@ -37,7 +37,7 @@ class SafeguardTagger(Recipe):
         self,
         agent: Tagger,
         texts: int = 32,
-        micro_batch: int = 8,
+        micro_batch: int = 16,
         phrases: float = 0.5,
         forget: float = 0.1,
         seed: int = 0,

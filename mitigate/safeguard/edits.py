@@ -73,11 +73,13 @@ def align(source: Sequence[Token], target: Sequence[Token]) -> list[tuple[int, i
     """Return the pairs (place in source, place in target) of a best alignment without crossings;
     neighbours that stay neighbours are worth more."""
     rows, columns = len(source), len(target)
+    ones = [(token.lower, token.is_word) for token in source]
+    others = [(token.lower, token.is_word) for token in target]
     best = [[0.0] * (columns + 1) for _ in range(rows + 1)]
     joined = [[-1e9] * (columns + 1) for _ in range(rows + 1)]
-    for i in range(1, rows + 1):
-        for j in range(1, columns + 1):
-            value = _worth(source[i - 1], target[j - 1])
+    for i, (one, is_word) in enumerate(ones, 1):
+        for j, (other, other_too) in enumerate(others, 1):
+            value = _worth(one, other, is_word and other_too)
             if value:
                 after = max(joined[i - 1][j - 1] + NEXT, best[i - 1][j - 1])
                 joined[i][j] = after + value
@@ -95,12 +97,8 @@ def align(source: Sequence[Token], target: Sequence[Token]) -> list[tuple[int, i
     return pairs[::-1]
 
 
-def _worth(one: Token, other: Token) -> float:
-    return _worth_of(one.lower, other.lower, one.is_word and other.is_word)
-
-
 @lru_cache(maxsize=65536)
-def _worth_of(one: str, other: str, words: bool) -> float:
+def _worth(one: str, other: str, words: bool) -> float:
     if not words:
         ended = one in ENDS and other == "."
         return MARKS if one == other or ended or (one in PAUSES and other == ",") else 0.0
