@@ -3,9 +3,9 @@
 Attackers put their sentences in front, whole. In front of what is surely a plain route this reads
 more of them than :mod:`evidence`, which looks everywhere and must be more careful: beside a
 sentence that is surely foreign goes what is likely, before it in any case, behind it if it names
-nothing that routes name. The weights (``FRONT``) are of a logistic regression on the same examples as
-those of :mod:`evidence`: ``python -m mitigate.safeguard.fit --front --write``. The thresholds were
-chosen on the prefix bank's validation families, by weights that had not seen them.
+nothing that routes name. The weights (``FRONT``) are of a logistic regression on the same examples
+as those of :mod:`evidence`: ``python -m mitigate.safeguard.fit --front --write``. The thresholds
+were chosen on the prefix bank's validation families, by weights that had not seen them.
 """
 
 from __future__ import annotations

@@ -44,8 +44,8 @@ class Decision:
     """What became of one instruction.
 
     ``route``: "clean" (untouched), "rules", "tagger" (said in plain words by it), "model", or
-    "fallback" (the model was asked, and none of its answers was safe). ``reasons``: what was done and refused, in words. ``seconds``: its
-    share of the time.
+    "fallback" (the model was asked, and none of its answers was safe). ``reasons``: what was done
+    and refused, in words. ``seconds``: its share of the time.
     """
 
     original: str

@@ -70,7 +70,7 @@ CATEGORIES = bag(
     """
 )
 _MEET = bag(
-    "find reach follow see cross face keep pass meet see spot locate seek fetch use take open enter "
+    "find reach follow see cross face keep pass meet spot locate seek fetch use take open enter "
     "exit leave climb ignore watch avoid touch"
 )
 _THINGS = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | CATEGORIES

@@ -40,8 +40,8 @@ _REMOVED = tuple(
         ),
         (r"\b(?:first|last) (?:of all|thing)\b|\bto (?:begin|start) with\b", " "),
         # a side taken back, a side that is not meant
-        (rf"\b(?:{_SIDES})\b[,.;:!? –—-]+(?:{_BACK}[,.;:!? –—-]+)+(?:(?:it's|it is|the|a|to the|turn|"
-         rf"go|on the|your) )*(?={_SIDES})", ""),
+        (rf"\b(?:{_SIDES})\b[,.;:!? –—-]+(?:{_BACK}[,.;:!? –—-]+)+(?:(?:it's|it is|the|a|to the|"
+         rf"turn|go|on the|your) )*(?={_SIDES})", ""),
         (rf",? ?\b(?:and |but )?(?:not|never)(?: to| at| on| in| the| your| towards)* (?:{_SIDES})"
          r"(?:[- ]hand)?(?: one| side)?\b", " "),
         # a number taken back
@@ -57,9 +57,9 @@ _REMOVED = tuple(
          r"is|are|gets?|being)(?:'ve|'d|'s)? left (?!side|hand|of|turn|at|and|then|into|past|"
          r"through)(?=\w)", " "),
         # what is so with others is no denial of a way
-        (rf"\b{_SELF}(?:'(?:m|s|re|ve|d|ll))?(?: (?:is|are|was|were|am|do|does|did|has|have|had|can|"
-         r"could|will|would|should|may|might|just|really|simply))?(?: not|n't| never)\b(?! to\b)",
-         " "),
+        (rf"\b{_SELF}(?:'(?:m|s|re|ve|d|ll))?(?: (?:is|are|was|were|am|do|does|did|has|have|had|"
+         r"can|could|will|would|should|may|might|just|really|simply))?"
+         r"(?: not|n't| never)\b(?! to\b)", " "),
         (rf"\b{_SELF} (?:isn't|aren't|wasn't|weren't|don't|doesn't|didn't|hasn't|haven't|hadn't|"
          r"can't|cannot|couldn't|won't|wouldn't|ain't)\b", " "),
         (r"\b(?:don't|do not|never) (?:you )?(?:worry|mind|ask|panic|fret|be (?:shy|nervous|scared|"

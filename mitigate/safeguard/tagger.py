@@ -2,9 +2,9 @@
 form, and the phrase before it.
 
 A word is read as its vector (of a language model's own table), its letters (hashed pieces of 3 to
-5) and what the safeguard's word classes say of it, so none is unknown; five dilated convolutions see
-62 words to each side. It writes nothing of its own but the closed phrases (:mod:`plain_words`), and
-cannot end too soon.
+5) and what the safeguard's word classes say of it, so none is unknown; five dilated convolutions
+see 62 words to each side. It writes nothing of its own but the closed phrases
+(:mod:`plain_words`), and cannot end too soon.
 """
 
 from __future__ import annotations
