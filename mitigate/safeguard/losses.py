@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Iterable
 
 from mitigate.corruptions.language.landmarks import normal
+from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.meaning import Meaning, meaning, missing, moved
 from mitigate.safeguard.plain_words import plain_form
 
-# words that may carry a turn, a climb, a stop or a denial
+# words that may carry a turn, a climb or a stop
 _CARRY = {
     "left": "left leftward leftwards leftmost l port",
     "right": "right rightward rightwards rightmost r starboard",
@@ -18,8 +19,11 @@ _CARRY = {
     "remain remains hold holds stand stands standing rest end ends done arrived",
     "up": "up upstairs upward upwards climb climbs climbing ascend ascends ascending mount",
     "down": "down downstairs downward downwards descend descends descending",
-    "denial": "not never no don't dont can't cannot won't isn't aren't avoid without n't nor",
 }
+_ENDS = bag(
+    "remain remains rest rests hold await destination goal target arrive arrives arrived reached "
+    "done finish finished concluded conclude halt stand stay stays park"
+)
 _CARRIERS = {name: frozenset(words.split()) for name, words in _CARRY.items()}
 
 
@@ -33,7 +37,7 @@ def unproven(heard: str, said: str, aside: Iterable[str]) -> str:
     problem = _turns(old, new, gone) or _counted(old, new, gone)
     if problem:
         return problem
-    for name in missing(old, new):
+    for name in missing(old, new, speech=True):
         if name not in named:
             return f"landmark lost: {name}"
     added = next(iter(missing(new, old, every=True)), "")
@@ -56,13 +60,14 @@ def _turns(old: Meaning, new: Meaning, gone: Counter[str]) -> str:
 
 
 def _ends(old: Meaning) -> bool:
-    return bool(old.words & _CARRIERS["stop"])
+    """Return whether a text may mean to stop without saying so."""
+    return bool(old.words & _ENDS)
 
 
 def _counted(old: Meaning, new: Meaning, gone: Counter[str]) -> str:
     if new.denied and not old.denied:
         return "a denial more"
-    if old.denied and not new.denied and not any(gone[w] for w in _CARRIERS["denial"]):
+    if old.denied and not new.denied:  # what is left may be the contrary, however sure
         return "a denial less"
     for kind in ("numbers", "colours", "compass"):
         before, after = (Counter(set(getattr(m, kind))) for m in (old, new))

@@ -232,15 +232,15 @@ def _things(old: Meaning, new: Meaning) -> str:
     return f"landmark invented: {added[0]}" if added else ""
 
 
-def missing(old: Meaning, new: Meaning, *, every: bool = False) -> list[str]:
-    """Return the things that ``old`` tells of and ``new`` does not; ``every``: whether or not they
-    are of the way."""
+def missing(old: Meaning, new: Meaning, *, every: bool = False, speech: bool = False) -> list[str]:
+    """Return the things that ``old`` tells of and ``new`` does not; ``speech``: whether or not they
+    are of the way; ``every``: and although speech has such words for what is no thing."""
     return [
         name
         for name in old.ways
         if name not in _WEAK
         and not _named(name, new)
-        and (every or (name not in _SPEECH and _meant(name, old)))
+        and (every or (name not in _SPEECH and (speech or _meant(name, old))))
     ]
 
 

@@ -1,24 +1,25 @@
 """What the tagger makes of an instruction, sentence by sentence, each past the gate.
 
-A sentence that the gate refuses is tried again with only those edits that the tagger is sure of,
-and then left as it was heard.
+A sentence that the gate refuses is tried again without phrases, then with only those edits that the
+tagger is sure of, and else left as it was heard.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Protocol
 
 from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard import gate
 from mitigate.safeguard.edits import DROP, KEEP, Edit, edited
 from mitigate.safeguard.pieces import sentence_pieces
-from mitigate.safeguard.text import MASK
+from mitigate.safeguard.text import MASK, words
 
-# probabilities of dropping from which a word goes, at the first and the second try; and from which
-# it may go although it may tell of the way (chosen on the validation voices)
-TRIES = (0.5, 0.9)
+# probability of dropping from which a word goes, and whether phrases are put, at each try; then the
+# probability from which a word may go although it may tell of the way (chosen on the validation
+# voices)
+TRIES = ((0.5, True), (0.5, False), (0.9, False))
 SURE = 0.97
 SPEECH = 0.12  # mean probability of dropping a word from which a text counts as speech (the same)
 
@@ -31,6 +32,12 @@ class Tagged:
     tokens: tuple[Token, ...]
     edits: tuple[Edit, ...]
     drop: tuple[float, ...]
+
+    def edit(self, place: int, least: float = TRIES[0][0], phrases: bool = True) -> Edit:
+        """Return what becomes of a token that is dropped from the probability ``least`` on."""
+        made = self.edits[place]
+        act = DROP if self.drop[place] > least else made.act
+        return Edit(act, made.before if phrases else 0)
 
     @property
     def speech(self) -> float:
@@ -52,41 +59,57 @@ def is_speech(tagged: Tagged) -> bool:
 
 def plainly_said(text: str, tagged: Tagged) -> tuple[str, list[str]]:
     """Return ``text`` in plain words, and what was kept for which reason."""
+    reasons: list[str] = []
+    for tries in (TRIES, TRIES[-1:]):
+        said, kept = _all_said(text, tagged, tries)
+        problem = gate.result_refused(text, said)
+        reasons += [*kept, *([f"kept all: {problem}"] if problem else [])]
+        if not problem:
+            return said, reasons
+    return text, reasons
+
+
+def _all_said(
+    text: str, tagged: Tagged, tries: Sequence[tuple[float, bool]]
+) -> tuple[str, list[str]]:
     given, reasons = [], []
     spans = [(piece.start, piece.end) for piece in sentence_pieces(text)]
     for index, (start, end) in enumerate(spans):
-        chosen = [i for i, t in enumerate(tagged.tokens) if start <= t.start < end]
-        said, problem = _sentence(text, text[start:end], tagged, chosen, index == len(spans) - 1)
+        places = [i for i, t in enumerate(tagged.tokens) if start <= t.start < end]
+        last = index == len(spans) - 1
+        said, problem = _sentence(text, text[start:end], tagged, places, tries, last)
         given.append(said)
         if problem:
             reasons.append(f"kept {text[start:end][:40]!r}: {problem}")
-    said = " ".join(part for part in given if part)
-    problem = gate.result_refused(text, said)
-    if problem:
-        return text, [*reasons, f"kept all: {problem}"]
-    return said, reasons
+    return " ".join(part for part in given if part), reasons
 
 
 def _sentence(
-    text: str, heard: str, tagged: Tagged, chosen: Sequence[int], last: bool
+    text: str,
+    heard: str,
+    tagged: Tagged,
+    places: Sequence[int],
+    tries: Sequence[tuple[float, bool]],
+    last: bool,
 ) -> tuple[str, str]:
-    found = [tagged.tokens[i] for i in chosen]
-    refused = ""
+    """Return what is given on of a sentence, and why it is not what the tagger would say."""
     if MASK.search(heard):
         return heard, "words are hidden"
-    for least in TRIES:
-        edits = [
-            replace(tagged.edits[i], act=DROP) if tagged.drop[i] > least else tagged.edits[i]
-            for i in chosen
-        ]
+    found = [tagged.tokens[i] for i in places]
+    refused = ""
+    for least, phrases in tries:
+        edits = [tagged.edit(i, least, phrases) for i in places]
         if all(edit == Edit(KEEP) for edit in edits):
             return heard, refused
         said = edited(text, edits, found)
-        sure = [
-            t for t, e, i in zip(found, edits, chosen, strict=True)
-            if e.act == DROP and tagged.drop[i] >= SURE
-        ]  # fmt: skip
-        problem = gate.edit_refused(heard, said, [t.lower for t in sure], last)
+        if not gate.weight(said) or (gate.weight(said) == 1 and len(words(said)) < 2):
+            said = ""  # what is left tells nothing
+        aside = [
+            token.lower
+            for token, edit, i in zip(found, edits, places, strict=True)
+            if edit.act == DROP and tagged.drop[i] >= SURE
+        ]
+        problem = gate.edit_refused(heard, said, aside, last)
         if not problem:
             return said, ""
         refused = refused or problem

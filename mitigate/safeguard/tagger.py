@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -28,7 +27,7 @@ from mitigate.safeguard.edits import DROP, KEEP, PLAIN, Edit
 from mitigate.safeguard.evidence import LANDMARKS, VERBS
 from mitigate.safeguard.lexicon import FUNCTION, GROUPS
 from mitigate.safeguard.plain_words import PHRASES, plain_form
-from mitigate.safeguard.plainly_said import TRIES, Tagged
+from mitigate.safeguard.plainly_said import Tagged
 from mitigate.safeguard.ways import RELATION
 from mitigate.safeguard.word_vectors import SCALE, SIZE, SMOLLM2, VECTORS, word_key, word_vectors
 
@@ -120,13 +119,10 @@ class Tagger(nn.Module):
         ]
         return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()))
 
-    def alone(self, text: str, least: float = TRIES[0]) -> str:
+    def alone(self, text: str) -> str:
         """Return ``text`` after all edits, without rules and gate."""
         tagged = self.tag(text)
-        made = [
-            replace(edit, act=DROP) if p > least else edit
-            for edit, p in zip(tagged.edits, tagged.drop, strict=True)
-        ]
+        made = [tagged.edit(place) for place in range(len(tagged.tokens))]
         return edits.edited(text, made, tagged.tokens)
 
 
