@@ -120,10 +120,11 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
                 out += ["" if word in ".," else " ", word]
             end = -1
         if edit.act == DROP:
+            end = -1
             continue
         if token.is_word:
-            said = _lowered(token, heard) if end < 0 or heard[end : token.start].strip() else ""
-            said = plain_form(token.lower) if edit.act == PLAIN else said or token.text
+            said = _lowered(token, heard) if end < 0 else token.text
+            said = plain_form(token.lower) if edit.act == PLAIN else said
             out += [heard[end : token.start] if end >= 0 else " ", said]
         else:
             said = "." if edit.act == PLAIN and token.text in ENDS | PAUSES else token.text

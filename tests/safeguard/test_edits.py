@@ -63,7 +63,14 @@ def test_what_is_plain_is_taught_to_stay():
 def test_taught_edits_take_speech_to_the_plain_text():
     heard = "So, er, if you'd just wander past the settee, lovely, and then it's left you go."
     given_on = edited(heard, taught(heard, "Walk past the couch and go left."))
-    assert given_on == "Walk past the couch and left go."
+    assert given_on == "Walk past the couch and go left."
+
+
+def test_a_dropped_word_is_gone_wherever_it_stands():
+    heard = "Go past the nice old sofa, dear, and stop."
+    gone = ("nice", "old", "dear")
+    edits = [Edit(DROP if t.lower in gone else KEEP) for t in tokens(heard)]
+    assert edited(heard, edits) == "Go past the sofa, and stop."
 
 
 def test_edits_come_nearer_to_what_is_meant_on_every_voice():
