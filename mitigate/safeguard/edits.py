@@ -115,8 +115,9 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
     out: list[str] = []  # words, marks and the space before each
     end = -1  # of the last token that was kept, where nothing stands between
     for token, edit in zip(found, edits, strict=True):
-        if edit.before:
-            for word in PHRASES[edit.before - 1].split():
+        phrase = PHRASES[edit.before - 1].split() if edit.before else []
+        if phrase and phrase[-1] != plain_form(token.lower):  # "stop" is not said twice
+            for word in phrase:
                 out += ["" if word in ".," else " ", word]
             end = -1
         if edit.act == DROP:

@@ -109,14 +109,11 @@ def rewrite_refused(heard: str, said: str, last: bool = False) -> str:
     return differs(heard, said)
 
 
-def edit_refused(heard: str, said: str, aside: Sequence[str], last: bool = False) -> str:
+def edit_refused(heard: str, said: str, aside: Sequence[str]) -> str:
     """Return why ``said``, which holds nothing but words of ``heard`` and closed phrases, may not
-    stand for it; ``aside``: the words that were taken out and surely tell nothing of the way;
-    ``last`` as of :func:`rewrite_refused`. Empty, it is refused if a fact would be lost."""
+    stand for it; ``aside``: the words that were taken out and surely tell nothing of the way."""
     if len(words(said)) > len(words(heard)) + 2:
         return "longer than what it replaces"
-    if last and "stop" in facts(said).directions and "stop" not in facts(heard).directions:
-        heard = f"{heard.rstrip(' .!?;,')}, and stop."
     return unproven(heard, said, aside)
 
 

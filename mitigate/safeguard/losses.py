@@ -2,79 +2,86 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable
 
+from mitigate.corruptions.language.directions import MOTION
+from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
 from mitigate.corruptions.language.landmarks import normal
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.meaning import Meaning, meaning, missing, moved
 from mitigate.safeguard.plain_words import plain_form
 
-# words that may carry a turn, a climb or a stop
-_CARRY = {
-    "left": "left leftward leftwards leftmost l port",
-    "right": "right rightward rightwards rightmost r starboard",
-    "around": "around round about back 180 reverse rotate full u",
-    "stop": "stop stops stopping stopped wait waits waiting halt halts halting pause stay stays "
-    "remain remains hold holds stand stands standing rest end ends done arrived",
-    "up": "up upstairs upward upwards climb climbs climbing ascend ascends ascending mount",
-    "down": "down downstairs downward downwards descend descends descending",
-}
+# words by which one may mean to stop without saying so
 _ENDS = bag(
     "remain remains rest rests hold await destination goal target arrive arrives arrived reached "
-    "done finish finished concluded conclude halt stand stay stays park"
+    "concluded halt stand stay stays park"
 )
-_CARRIERS = {name: frozenset(words.split()) for name, words in _CARRY.items()}
+_STEP = re.compile(
+    rf"\b(?:{'|'.join(sorted(MOTION))}|step|get)\b(?: \w+){{0,2}} (?:in|out|through|inside|outside|"
+    r"across|past|between|behind|over|under|around|round|back|beyond|along|off|up|down)\b"
+)
 
 
 def unproven(heard: str, said: str, aside: Iterable[str]) -> str:
-    """Return a fact of ``heard`` that is not in ``said`` though no word of it is ``aside`` (words
-    in lower case that are surely no part of the way), or one of ``said`` that was not heard; ""
-    if there is none."""
+    """Return a fact of ``heard`` that is not in ``said``, or one of ``said`` that was not heard; ""
+    if there is none.
+
+    A turn, a climb, a stop, a denial, how sharp a turn is and which way one goes by a thing that
+    stays must be in both. Things, numbers, colours and other attributes may go with the words that
+    are ``aside``: in lower case, those that surely tell nothing of the way.
+    """
     old, new = meaning(heard), meaning(said)
-    gone = Counter(aside)
-    named = {normal(plain_form(word)) for word in gone}
-    problem = _turns(old, new, gone) or _counted(old, new, gone)
+    gone = set(aside)
+    problem = _turns(old, new) or _read(heard, said) or _counted(old, new, gone)
     if problem:
         return problem
+    if not said and (step := _STEP.search(heard.lower())):
+        return f"a step lost: {step.group()}"
+    named = {normal(plain_form(word)) for word in gone}
     for name in missing(old, new, speech=True):
         if name not in named:
             return f"landmark lost: {name}"
+    for name, way in old.ways.items():
+        if way and name in new.ways and not new.ways[name]:
+            return f"way lost: {', '.join(sorted(way))} {name}"
     added = next(iter(missing(new, old, every=True)), "")
     return f"landmark invented: {added}" if added else moved(old, new)
 
 
-def _turns(old: Meaning, new: Meaning, gone: Counter[str]) -> str:
+def _turns(old: Meaning, new: Meaning) -> str:
     before, after = (Counter([d for d, _ in m.turns] + list(m.levels)) for m in (old, new))
     for name, count in (after - before).items():
-        if name != "stop" or not before["stop"] and not _ends(old):
+        if name != "stop" or not before["stop"] and not old.words & _ENDS:
             return f"directions: {count} {name} more"
     for name, count in (before - after).items():
-        if name == "stop" and after["stop"]:
-            continue
-        if sum(gone[word] for word in _CARRIERS[name]) < count:
+        if name != "stop" or not after["stop"]:
             return f"directions: {count} {name} less"
-    if old.sharpness and new.sharpness and old.sharpness != new.sharpness:
+    if old.sharpness != new.sharpness:
         return "sharpness changed"
+    if bool(old.denied) != bool(new.denied):  # what is left may be the contrary
+        return f"denials: {old.denied} -> {new.denied}"
     return ""
 
 
-def _ends(old: Meaning) -> bool:
-    """Return whether a text may mean to stop without saying so."""
-    return bool(old.words & _ENDS)
+def _read(heard: str, said: str) -> str:
+    """Return a turn that ``said`` has for who reads it word by word; "" if there is none."""
+    before, after = (
+        Counter(d for d in facts(text).directions if d not in ("stop", "straight"))
+        for text in (heard, said)
+    )
+    return f"directions: {', '.join(after - before)} more" if after - before else ""
 
 
-def _counted(old: Meaning, new: Meaning, gone: Counter[str]) -> str:
-    if new.denied and not old.denied:
-        return "a denial more"
-    if old.denied and not new.denied:  # what is left may be the contrary, however sure
-        return "a denial less"
-    for kind in ("numbers", "colours", "compass"):
-        before, after = (Counter(set(getattr(m, kind))) for m in (old, new))
-        if after - before:
-            return f"{kind}: {', '.join(after - before)} more"
-        known = {plain_form(word) for word in gone} | set(gone)
-        for name in before - after:
-            if name not in known:
-                return f"{kind}: {name} less"
+def _counted(old: Meaning, new: Meaning, gone: set[str]) -> str:
+    known = {plain_form(word) for word in gone} | gone
+    counted = [(kind, getattr(old, kind), getattr(new, kind)) for kind in ("numbers", "colours",
+        "compass")]  # fmt: skip
+    counted.append(("attributes", old.words & ATTRIBUTES, new.words & ATTRIBUTES))
+    for kind, before, after in counted:
+        if added := set(after) - set(before):
+            return f"{kind}: {', '.join(sorted(added))} more"
+        if lost := set(before) - set(after) - known:
+            return f"{kind}: {', '.join(sorted(lost))} less"
     return ""

@@ -21,7 +21,7 @@ from mitigate.safeguard.text import MASK, words
 # voices)
 TRIES = ((0.5, True), (0.5, False), (0.9, False))
 SURE = 0.97
-SPEECH = 0.12  # mean probability of dropping a word from which a text counts as speech (the same)
+SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,9 @@ def _all_said(
 ) -> tuple[str, list[str]]:
     given, reasons = [], []
     spans = [(piece.start, piece.end) for piece in sentence_pieces(text)]
-    for index, (start, end) in enumerate(spans):
+    for start, end in spans:
         places = [i for i, t in enumerate(tagged.tokens) if start <= t.start < end]
-        last = index == len(spans) - 1
-        said, problem = _sentence(text, text[start:end], tagged, places, tries, last)
+        said, problem = _sentence(text, text[start:end], tagged, places, tries)
         given.append(said)
         if problem:
             reasons.append(f"kept {text[start:end][:40]!r}: {problem}")
@@ -90,7 +89,6 @@ def _sentence(
     tagged: Tagged,
     places: Sequence[int],
     tries: Sequence[tuple[float, bool]],
-    last: bool,
 ) -> tuple[str, str]:
     """Return what is given on of a sentence, and why it is not what the tagger would say."""
     if MASK.search(heard):
@@ -109,7 +107,7 @@ def _sentence(
             for token, edit, i in zip(found, edits, places, strict=True)
             if edit.act == DROP and tagged.drop[i] >= SURE
         ]
-        problem = gate.edit_refused(heard, said, aside, last)
+        problem = gate.edit_refused(heard, said, aside)
         if not problem:
             return said, ""
         refused = refused or problem
