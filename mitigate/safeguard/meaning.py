@@ -147,7 +147,7 @@ def meaning(text: str) -> Meaning:
 def _plain(match: re.Match[str]) -> str:
     """Return a word in its plain form, but for words that tell ways and turns apart."""
     word = match.group()
-    return word if word in _SENSED else plain_form(word)
+    return word if word in _SENSED or len(word) < 3 else plain_form(word)
 
 
 def _says_again(turn: str, clause: str, turns: list[tuple[str, int]]) -> bool:
