@@ -19,9 +19,9 @@ from mitigate.safeguard.text import MASK, words
 # probability of dropping from which a word goes, and whether phrases are put, at each try; then the
 # probability from which a word may go although it may tell of the way (chosen on the validation
 # voices)
-TRIES = ((0.5, True), (0.5, False), (0.9, False))
-SURE = 0.97
-SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
+TRIES = ((0.65, True), (0.65, False), (0.95, False))
+SURE = 0.9
+SPEECH = 0.25  # mean probability of dropping a word from which a text counts as speech (the same)
 
 
 @dataclass(frozen=True)
