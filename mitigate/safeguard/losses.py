@@ -68,12 +68,15 @@ def _turns(old: Meaning, new: Meaning) -> str:
 
 
 def _read(heard: str, said: str) -> str:
-    """Return a turn that ``said`` has for who reads it word by word; "" if there is none."""
+    """Return a turn that ``said`` has for who reads it word by word, or that one goes straight on
+    in one text alone; "" if there is none."""
     before, after = (
-        Counter(d for d in facts(text).directions if d not in ("stop", "straight"))
-        for text in (heard, said)
+        Counter(d for d in facts(text).directions if d != "stop") for text in (heard, said)
     )
-    return f"directions: {', '.join(after - before)} more" if after - before else ""
+    if after - before:
+        return f"directions: {', '.join(after - before)} more"
+    ahead = before["straight"] and not after["straight"]
+    return "directions: straight less" if ahead else ""
 
 
 def _counted(old: Meaning, new: Meaning, gone: set[str]) -> str:

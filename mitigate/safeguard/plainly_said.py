@@ -21,7 +21,7 @@ from mitigate.safeguard.text import MASK, words
 # voices)
 TRIES = ((0.65, True), (0.65, False), (0.95, False))
 SURE = 0.9
-SPEECH = 0.25  # mean probability of dropping a word from which a text counts as speech (the same)
+SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
 
 
 @dataclass(frozen=True)
