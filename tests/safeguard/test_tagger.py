@@ -7,6 +7,7 @@ import torch
 
 from mitigate.core.files import find
 from mitigate.core.seeding import generator
+from mitigate.safeguard.edits import KEEP, Edit, tokens
 from mitigate.safeguard.guard import TAGGER, Safeguard, label, open_safeguard
 from mitigate.safeguard.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
@@ -74,10 +75,10 @@ def test_hidden_words_and_texts_of_nothing_are_left_alone(shipped):
 def test_a_tagger_that_drops_everything_loses_nothing_of_the_way():
     class Deaf:
         def tag(self, text: str) -> Tagged:
-            full = Tagger().tag(text)
-            return Tagged(full.tokens, full.edits, (0.95,) * len(full.tokens))
+            found = tuple(tokens(text))
+            return Tagged(found, (Edit(KEEP),) * len(found), (0.96,) * len(found))
 
-    heard = "Walk past the two red sofas. Turn left. Stop at the door."
+    heard = "Do not go up. Turn left. Then step into it, and go straight. Stop."
     tagged = Deaf().tag(heard)
     assert is_speech(tagged)
     assert plainly_said(heard, tagged)[0] == heard
