@@ -24,7 +24,7 @@ from mitigate.core.files import atomic_text
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.prefixes import prefixes
-from mitigate.safeguard import gate, routes, rules, trials
+from mitigate.safeguard import front, gate, routes, rules, trials, weights
 from mitigate.safeguard.data import draw_pair, vary
 from mitigate.safeguard.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
 from mitigate.safeguard.lexicon import GROUPS
@@ -54,9 +54,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Fit, and print the module or write it. ``arguments``: of the command line."""
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.fit", description=__doc__)
     parser.add_argument("--write", action="store_true", help=f"replace {WEIGHTS.name}")
-    write = parser.parse_args(arguments).write
-    text = module(*fit_weights(), style_words())
-    if not write:
+    parser.add_argument("--front", action="store_true", help="fit FRONT alone; keep the others")
+    options = parser.parse_args(arguments)
+    if options.front:
+        kept = {"OWN": weights.OWN, "CONTEXT": weights.CONTEXT, "PART": weights.PART}
+        text = module({**kept, "FRONT": front_weights()}, weights.WORDS, weights.STYLE)
+    else:
+        text = module(*fit_weights(), style_words())
+    if not options.write:
         print(text, end="")
         return
     with atomic_text(WEIGHTS) as file:
@@ -73,15 +78,15 @@ def module(
         "from __future__ import annotations\n",
         "from mitigate.corruptions.language.words import bag\n",
     ]
-    for name, weights in fitted.items():
+    for name, found in fitted.items():
         lines.append(f"{name}: dict[str, float] = {{")
-        lines += [f'    "{key}": {value:.3f},' for key, value in weights.items()]
+        lines += [f'    "{key}": {value:.3f},' for key, value in found.items()]
         lines.append("}")
     scores = [f"{term}={100 * value:.0f}" for term, value in sorted(table.items())]
-    for name, found in (("STYLE", sorted(marks)), ("_WORDS", scores)):
+    for name, listed in (("STYLE", sorted(marks)), ("_WORDS", scores)):
         lines.append(f'{name} = bag(\n    """')
         lines += textwrap.wrap(
-            " ".join(found), 96, initial_indent="    ", subsequent_indent="    ",
+            " ".join(listed), 96, initial_indent="    ", subsequent_indent="    ",
             break_on_hyphens=False,
         )  # fmt: skip
         lines.append('    """\n)')
@@ -108,7 +113,14 @@ def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
             if e.fold == out:
                 strange[e.text, e.markup] = rules.probability(fitted, row)
     fitted = {"OWN": own, "CONTEXT": _context(own, whole, strange), "PART": _part(own, tables)}
-    return fitted, whole
+    return {**fitted, "FRONT": front_weights(examples)}, whole
+
+
+def front_weights(examples: Sequence[Example] | None = None) -> dict[str, float]:
+    """Return the weights of the few counts of ``front.py``, by the same examples as the others."""
+    examples = [*_attacks(), *_routes()] if examples is None else examples
+    rows = [front.counts(e.text) for e in examples]
+    return _regression(rows, [e.attack for e in examples], [e.weight for e in examples])
 
 
 def word_table(examples: Sequence[Example]) -> dict[str, float]:

@@ -3,9 +3,9 @@
 Attackers put their sentences in front, whole. In front of what is surely a plain route this reads
 more of them than :mod:`evidence`, which looks everywhere and must be more careful: beside a
 sentence that is surely foreign goes what is likely, before it in any case, behind it if it names
-nothing that routes name. The weights are of a logistic regression on the train split of the prefix
-bank and our own routes, by the fit of an earlier version; ``fit.py`` does not make them anew. The
-thresholds were chosen on the bank's validation families.
+nothing that routes name. The weights (``FRONT``) are of a logistic regression on the same examples
+as those of :mod:`evidence`: ``python -m mitigate.safeguard.fit --front --write``. The thresholds
+were chosen on the prefix bank's validation families, by weights that had not seen them.
 """
 
 from __future__ import annotations
@@ -19,24 +19,9 @@ from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.text import MASK, sentences, words
+from mitigate.safeguard.weights import FRONT
 
-SURE, LIKELY = 0.50, 0.25
-BIAS = -2.845
-WEIGHTS: dict[str, float] = {
-    "universal": 2.891,
-    "text": 1.940,
-    "person": 0.072,
-    "modal": 0.505,
-    "negation": 0.289,
-    "style": -0.226,
-    "unknown": 3.642,
-    "late_verb": 0.358,
-    "no_verb": 0.379,
-    "landmarks": 0.298,
-    "no_landmark": 1.407,
-    "directions": -1.021,
-    "commas": -0.094,
-}
+SURE, LIKELY = 0.4, 0.2
 STYLE = bag(
     """
     advisable appreciated ask betake breather briefing bunch closing colleague commence complete
@@ -97,7 +82,7 @@ def strangeness(sentence: str) -> float:
     """Return the probability that ``sentence`` does not belong to a route."""
     if not any(c.isalpha() for c in sentence):
         return 0.0
-    score = BIAS + sum(WEIGHTS[name] * value for name, value in counts(sentence).items())
+    score = FRONT["bias"] + sum(FRONT[name] * value for name, value in counts(sentence).items())
     return 1 / (1 + math.exp(-max(-30.0, min(30.0, score))))
 
 

@@ -6,25 +6,18 @@ Whoever wants to change a text, a rule or a model, asks here; each function says
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
-from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
-from mitigate.safeguard.meaning import differs
+from mitigate.safeguard.losses import unproven
+from mitigate.safeguard.meaning import CATEGORIES, differs
 from mitigate.safeguard.text import MASK, words
 
 ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
-# categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
-CATEGORIES = bag(
-    """
-    chair table picture cabinet cushion sofa bed dresser plant sink toilet stool towel tv shower
-    bathtub counter fireplace equipment seating clothes desk lamp bookshelf armchair rug wardrobe
-    painting nightstand fridge stove oven mirror monitor refrigerator couch microwave bench
-    """
-)
 _HUNTS = re.compile(
     r"\b(?:find|finding|look(?:ing)? for|locat|search|seek|spot|fetch|hunt|where|in search)",
     re.IGNORECASE,
@@ -114,6 +107,14 @@ def rewrite_refused(heard: str, said: str, last: bool = False) -> str:
     if wanted and found and wanted.isdisjoint(found) and not route_turns(heard):
         return f"another thing is to be found: {', '.join(sorted(found))}"
     return differs(heard, said)
+
+
+def edit_refused(heard: str, said: str, aside: Sequence[str]) -> str:
+    """Return why ``said``, which holds nothing but words of ``heard`` and closed phrases, may not
+    stand for it; ``aside``: the words that were taken out and surely tell nothing of the way."""
+    if len(words(said)) > len(words(heard)) + 2:
+        return "longer than what it replaces"
+    return unproven(heard, said, aside)
 
 
 def route_turns(text: str) -> bool:

@@ -18,16 +18,18 @@ from typing import Protocol
 
 from mitigate.core.files import find
 from mitigate.core.names import unknown
-from mitigate.corruptions.language.fidelity import facts
 from mitigate.safeguard import gate, masks, rules
 from mitigate.safeguard.addresses import check_choice
+from mitigate.safeguard.plainly_said import Tags, is_speech, plainly_said
+from mitigate.safeguard.refusals import refusal
 from mitigate.safeguard.text import MASK, passages, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
-CHOICES = ("none", "rules", "prompted", "lora", "http://host/v1@model")
+CHOICES = ("none", "rules", "tagger", "prompted", "lora", "tagger+lora", "http://host/v1@model")
 ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"
+TAGGER = "checkpoints/safeguard_tagger"
 ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # for the language model, each instruction (ours)
 
@@ -42,9 +44,9 @@ class Rewriter(Protocol):
 class Decision:
     """What became of one instruction.
 
-    ``route``: "clean" (untouched), "rules", "model", or "fallback" (the model was asked, and none
-    of its answers was safe). ``reasons``: what was done and refused, in words. ``seconds``: its
-    share of the time.
+    ``route``: "clean" (untouched), "rules", "tagger" (said in plain words by it), "model", or
+    "fallback" (the model was asked, and none of its answers was safe). ``reasons``: what was done
+    and refused, in words. ``seconds``: its share of the time.
     """
 
     original: str
@@ -58,7 +60,8 @@ class Safeguard:
     """Turns corrupted instructions into plain ones; the same text always gets the same answer.
 
     Args:
-        rewriter: a language model; None works by rules alone.
+        rewriter: a language model; None works without.
+        tagger: says speech in plain words before the model is asked; None leaves it as it is.
         seconds: time budget for the model, each instruction; what is late falls back.
         log: JSON-lines file that every new decision is added to.
     """
@@ -67,10 +70,11 @@ class Safeguard:
         self,
         rewriter: Rewriter | None = None,
         *,
+        tagger: Tags | None = None,
         seconds: float = SECONDS,
         log: str | Path | None = None,
     ) -> None:
-        self.rewriter, self.seconds = rewriter, seconds
+        self.rewriter, self.tagger, self.seconds = rewriter, tagger, seconds
         self.log = None if log is None else Path(log)
         self._known: dict[str, Decision] = {}
 
@@ -89,7 +93,7 @@ class Safeguard:
                 raise TypeError(f"An instruction must be a text (str), but this one is {text!r}.")
         fresh = [text for text in dict.fromkeys(texts) if text not in self._known]
         began = time.monotonic()
-        drafts = [_Draft(text) for text in fresh]
+        drafts = [_Draft(text, self.tagger) for text in fresh]
         if self.rewriter is not None and drafts:
             self._ask(drafts)
         each = (time.monotonic() - began) / max(1, len(fresh))
@@ -119,15 +123,30 @@ class Safeguard:
 def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
     """Return the safeguard that ``choice`` names, None for "none".
 
-    "rules"; "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``)
-    or an adapter folder; ``http://host/v1@model`` for an OpenAI-compatible endpoint. Raises
-    ValueError or FileNotFoundError.
+    "rules"; "tagger" (the rules, then ``checkpoints/safeguard_tagger``) or a tagger's folder;
+    "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``) or an
+    adapter folder; ``http://host/v1@model`` for an OpenAI-compatible endpoint; "tagger+" before one
+    of the last three. Raises ValueError or FileNotFoundError.
     """
+    from mitigate.core.checkpoint import WEIGHTS
+    from mitigate.safeguard.tagger import open_tagger
+
+    first, plus, second = choice.partition("+")
+    if plus and first == "tagger":
+        made = open_safeguard(second, log)
+        if made is None or made.rewriter is None:
+            raise ValueError(unknown("safeguard", choice, CHOICES))
+        made.tagger = open_tagger(find(TAGGER))
+        return made
     if choice == "none":
         return None
     if choice == "rules":
         return Safeguard(log=log)
     check_choice(choice)  # before anything repeats it
+    if choice == "tagger" or (Path(choice) / WEIGHTS).is_file():
+        return Safeguard(
+            tagger=open_tagger(find(TAGGER) if choice == "tagger" else choice), log=log
+        )
     if choice.lower().startswith(("http://", "https://")):
         from mitigate.safeguard.endpoint import ChatEndpoint
 
@@ -147,11 +166,16 @@ def label(choice: str) -> str:
     endpoint's host and model; the names of ours as they are."""
     if choice.startswith(("http://", "https://")):
         return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
+    from mitigate.core.checkpoint import WEIGHTS
     from mitigate.core.files import sha256
-    from mitigate.safeguard.adapter_folder import ADAPTER as WEIGHTS
+    from mitigate.safeguard.adapter_folder import ADAPTER as ADAPTER_FILE
 
-    weights = Path(choice) / WEIGHTS
-    if not weights.is_file():
+    first, plus, second = choice.partition("+")
+    if plus and first == "tagger":
+        return f"tagger+{label(second)}"
+    files = [Path(choice) / name for name in (ADAPTER_FILE, WEIGHTS)]
+    weights = next((file for file in files if file.is_file()), None)
+    if weights is None:
         return Path(choice).name
     folder = Path(choice)
     while folder.name == "agent":  # every trained adapter lies in a folder called so
@@ -162,31 +186,51 @@ def label(choice: str) -> str:
 class _Draft:
     """One instruction on its way: what the rules made of it, its passages, the reasons so far."""
 
-    def __init__(self, original: str) -> None:
-        self.original = original
+    def __init__(self, original: str, tagger: Tags | None = None) -> None:
+        self.original, self.tagger = original, tagger
         self.tidied = tidy(original)
         self.reasons: list[str] = []
         self.asked = self.taken = 0
-        self.plain = not _readable(self.tidied) or _untouched(original)
+        self.plain = not _readable(self.tidied) or (_untouched(original) and not self._spoken())
         self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.original))
         self.repair(set())
+
+    def _spoken(self) -> bool:
+        """Return whether the tagger takes the text for speech."""
+        return self.tagger is not None and is_speech(self.tagger.tag(self.tidied))
 
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
         if self.plain:
             self.repaired, self.passages, self.styled = self.original, [self.original], False
-            self.same = True
+            self.same, self.tagged = True, False
             self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
             return
         done = rules.repair(self.original, empty.__contains__)
         self.same = done.text == self.original
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
+        self.tagged = self._say_plainly()
         self.styled = done.marks >= MARKS
         if len(words(self.repaired)) > TOO_LONG:
             self.passages = [self.repaired]
             self.reasons.append(f"over {TOO_LONG} words: rules alone")
         else:
             self.passages = passages(self.repaired, PASSAGE)
+
+    def _say_plainly(self) -> bool:
+        """Let the tagger say speech in plain words; return whether it changed any."""
+        if self.tagger is None or len(words(self.repaired)) > TOO_LONG:
+            return False
+        tagged = self.tagger.tag(self.repaired)
+        if not is_speech(tagged):
+            return False
+        said, kept = plainly_said(self.repaired, tagged)
+        self.reasons += kept
+        changed = said != self.repaired
+        if changed:
+            self.reasons.append("said in plain words by the tagger")
+            self.repaired, self.same = said, False
+        return changed
 
     @property
     def wanted(self) -> list[str]:
@@ -218,7 +262,8 @@ class _Draft:
             self.reasons.append("masks filled by rule")
         if text != self.original and not self.reasons:
             self.reasons.append("said again by the model" if self.taken else "characters tidied")
-        route = "model" if self.taken else "fallback" if self.asked else "rules"
+        done = "tagger" if self.tagged else "rules"
+        route = "model" if self.taken else "fallback" if self.asked else done
         route = "clean" if text == self.original and not self.asked else route
         return Decision(self.original, text, route, tuple(self.reasons), seconds)
 
@@ -231,33 +276,6 @@ class _Draft:
             self.reasons.append(f"kept all: {problem}")
             return text
         return said
-
-
-def refusal(passage: str, answer: str | None, last: bool = False) -> str:
-    """Return why ``answer`` may not stand for ``passage``, the ``last`` of its text or another;
-    empty if it may."""
-    if answer is None:
-        return "no answer in time"
-    if MASK.search(passage):
-        return _refused_filling(passage, answer)
-    if len(words(answer)) > len(words(passage)) + 3:
-        return "longer than what it replaces"
-    return gate.rewrite_refused(passage, answer, last)
-
-
-def _refused_filling(passage: str, answer: str) -> str:
-    """Return why ``answer`` may not fill the masks of ``passage``: only small words are hidden, so
-    what stands for one must not say where to go, what is there or what it is like."""
-    found = masks.filled(passage, answer)
-    if found is None:
-        return "other words than the masks changed"
-    said = facts(", ".join(word for word in found if word))
-    added = (*said.landmarks, *said.numbers, *said.compass, *said.attributes)
-    if added:
-        return f"invented: {', '.join(added)}"
-    if said.denials or facts(answer).directions != facts(masks.fill(passage)).directions:
-        return "directions changed by a hidden word"
-    return ""
 
 
 def _readable(text: str) -> bool:

@@ -13,9 +13,12 @@ from functools import lru_cache
 
 from mitigate.corruptions.language.directions import MOTION
 from mitigate.corruptions.language.fidelity import COLOURS, COMPASS, facts
-from mitigate.corruptions.language.landmarks import PLAIN, normal
+from mitigate.corruptions.language.landmarks import CANONICAL, PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
 from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.evidence import VERBS
+from mitigate.safeguard.plain_words import plain_form
+from mitigate.safeguard.speech import meant
 from mitigate.safeguard.ways import AGREE, OPPOSED, OPPOSITES, RELATION, SENSES
 from mitigate.safeguard.wording import in_equal_words
 
@@ -58,6 +61,21 @@ _CLAUSE = re.compile(
     r"stop|wait|take|make|past|into|out|head|climb|towards|left|right|find|keep|continue|around|"
     r"across|stand|follow|move|step|up|down)\b)|\bafter (?:it|that)\b"
 )
+# categories of Habitat's, HM3D's and MP3D's object goals and of the apartments
+CATEGORIES = bag(
+    """
+    chair table picture cabinet cushion sofa bed dresser plant sink toilet stool towel tv shower
+    bathtub counter fireplace equipment seating clothes desk lamp bookshelf armchair rug wardrobe
+    painting nightstand fridge stove oven mirror monitor refrigerator couch microwave bench
+    """
+)
+_MEET = bag(
+    "find reach follow see cross face keep pass meet spot locate seek fetch use take open enter "
+    "exit leave climb ignore watch avoid touch"
+)
+_THINGS = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | CATEGORIES
+_SENSED = frozenset().union(*(bag for pair in SENSES for bag in pair))
+_WORD = re.compile(r"[a-z0-9']+")
 _SHADES = bag("dark pale light")
 
 
@@ -78,6 +96,7 @@ class Meaning:
     colours: tuple[str, ...]
     compass: tuple[str, ...]
     words: frozenset[str]
+    objects: frozenset[str]
 
 
 def differs(heard: str, said: str) -> str:
@@ -93,7 +112,7 @@ def differs(heard: str, said: str) -> str:
 @lru_cache(maxsize=512)
 def meaning(text: str) -> Meaning:
     """Return what ``text`` means."""
-    equal = in_equal_words(text)
+    equal = _WORD.sub(_plain, in_equal_words(meant(text)))
     turns: list[tuple[str, int]] = []
     levels: set[str] = set()
     ways: dict[str, set[str]] = {}
@@ -121,7 +140,14 @@ def meaning(text: str) -> Meaning:
         + tuple(w for w in words if w in _SHADES),
         tuple(w for w in words if COMPASS.match(w)),
         frozenset(words),
+        frozenset(name for clause in _CLAUSE.split(equal) for name in _objects(clause)),
     )
+
+
+def _plain(match: re.Match[str]) -> str:
+    """Return a word in its plain form, but for words that tell ways and turns apart."""
+    word = match.group()
+    return word if word in _SENSED or len(word) < 3 else plain_form(word)
 
 
 def _says_again(turn: str, clause: str, turns: list[tuple[str, int]]) -> bool:
@@ -164,10 +190,24 @@ def _passed(clause: str) -> list[tuple[str, set[str]]]:
             since = 0
         name = normal(token.lower)
         noun = token.tag in ("NOUN", "PROPN") and token.lower not in PLAIN and len(name) > 1
+        noun = noun and token.lower not in RELATION
         if noun and not (place == 0 and len(tokens) > 2) and name not in COLOURS:
             after = " ".join(t.lower for t in tokens[place + 1 : place + 5])
             turned = re.match(r"(?:is |at |lies )?(?:behind you|your back|behind)\b", after)
             found.append((name, {"away"} if turned else set(way) if since <= 6 else set()))
+    return found
+
+
+def _objects(clause: str) -> list[str]:
+    """Return the things that a verb of the way takes: "follow the rail", "find a treadmill"."""
+    found, verb = [], -99
+    for place, token in enumerate(tag(clause)):
+        if token.lower in VERBS or token.lower in _MEET:
+            verb = place
+        elif token.tag in ("NOUN", "PROPN") and place - verb <= 5:
+            found.append(normal(token.lower))
+        elif token.tag in ("VERB", "AUX", "PRON", "SCONJ"):
+            verb = -99
     return found
 
 
@@ -186,13 +226,32 @@ def _turns(old: Meaning, new: Meaning) -> str:
 
 
 def _things(old: Meaning, new: Meaning) -> str:
-    for name in old.ways:
-        if name not in _WEAK and name not in _SPEECH and not _named(name, new):
-            return f"landmark lost: {name}"
-    for name in new.ways:
-        if name not in _WEAK and not _named(name, old):
-            return f"landmark invented: {name}"
-    return ""
+    lost, added = missing(old, new), missing(new, old, every=True)
+    if lost:
+        return f"landmark lost: {lost[0]}"
+    return f"landmark invented: {added[0]}" if added else ""
+
+
+def missing(old: Meaning, new: Meaning, *, every: bool = False, speech: bool = False) -> list[str]:
+    """Return the things that ``old`` tells of and ``new`` does not; ``speech``: whether or not they
+    are of the way; ``every``: and although speech has such words for what is no thing."""
+    return [
+        name
+        for name in old.ways
+        if name not in _WEAK
+        and not _named(name, new)
+        and (every or (name not in _SPEECH and (speech or _meant(name, old))))
+    ]
+
+
+def moved(old: Meaning, new: Meaning) -> str:
+    """Return a thing that one goes by in another way, or in another order; "" if there is none."""
+    return _ways(old, new) or _order(old, new)
+
+
+def _meant(name: str, old: Meaning) -> bool:
+    """Return whether a thing is one of the way: routes name such, or one goes by it."""
+    return bool(old.ways[name]) or name in _THINGS or name in old.objects
 
 
 def _named(name: str, other: Meaning) -> bool:

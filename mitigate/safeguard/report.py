@@ -26,7 +26,7 @@ from mitigate.safeguard.addresses import check_choice
 from mitigate.safeguard.data import read_texts
 from mitigate.safeguard.guard import PASSAGE, Rewriter, Safeguard, open_safeguard
 from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
-from mitigate.safeguard.spoken import SPLITS, spoken
+from mitigate.safeguard.spoken import SPLITS, VALIDATION, spoken
 from mitigate.safeguard.text import passages, sentences
 from mitigate.worlds.episodes import read_episodes
 
@@ -82,8 +82,12 @@ def choose(name: str) -> Repairer:
         return list
     check_choice(name)
     safeguard = open_safeguard(name.removesuffix(ALONE))
-    if safeguard is None or (name.endswith(ALONE) and safeguard.rewriter is None):
+    if safeguard is None or (
+        name.endswith(ALONE) and safeguard.rewriter is None and safeguard.tagger is None
+    ):
         raise ValueError(f"{name} has no language model that could work alone: write lora{ALONE}.")
+    if name.endswith(ALONE) and safeguard.tagger is not None:
+        return tagged_alone(safeguard.tagger)
     if name.endswith(ALONE):
         assert safeguard.rewriter is not None
         return alone(safeguard.rewriter)
@@ -114,6 +118,25 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
         "after, guarded": repaired(chosen, guarded(Safeguard(trained))),  # type: ignore[arg-type]
     }
     write(results, folder, f"{quick.split}, severity {cfg.severity:g}, unseen attacks")
+
+
+def before_after_tagger(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
+    """As :func:`before_after`, of a tagger, on what people of the validation voices say (at most
+    ``evaluation.episodes`` texts of each voice); ``before`` is not used."""
+    each = cfg.evaluation.episodes
+    chosen = voices("validation", None if each is None else each * len(VALIDATION))
+    results = {
+        "none": chosen,
+        "rules": repaired(chosen, guarded(Safeguard())),
+        "tagger, alone": repaired(chosen, tagged_alone(trained)),
+        "tagger, guarded": repaired(chosen, guarded(Safeguard(tagger=trained))),  # type: ignore[arg-type]
+    }
+    write(results, folder, f"{len(chosen)} texts of the validation voices")
+
+
+def tagged_alone(tagger: Any) -> Repairer:
+    """Return a tagger as a repairer, without rules and gate."""
+    return lambda texts: [tagger.alone(text) for text in texts]
 
 
 def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:

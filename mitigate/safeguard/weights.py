@@ -215,6 +215,22 @@ PART: dict[str, float] = {
     "worst words": -0.124,
     "best words": -0.658,
 }
+FRONT: dict[str, float] = {
+    "bias": -2.789,
+    "universal": 1.711,
+    "text": 2.314,
+    "person": 0.091,
+    "modal": 0.316,
+    "negation": 0.250,
+    "style": 0.208,
+    "unknown": 4.405,
+    "late_verb": 0.781,
+    "no_verb": -0.116,
+    "landmarks": -0.279,
+    "no_landmark": 0.636,
+    "directions": -0.888,
+    "commas": -1.279,
+}
 STYLE = bag(
     """
     advisable appreciated below betake breather briefing bunch closing colleague commence

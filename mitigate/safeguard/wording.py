@@ -39,7 +39,7 @@ _EQUAL = tuple(
         ),
         (
             r"(?:a )?(?:slight(?:ly)?|gentl[ey]|half|little|bit|tiny bit|smidge)(?: "
-            r"turn)?(?: to the)? (?=left|right)",
+            r"turn)?(?: to (?:the|your))? (?=left|right)",
             "slightly ",
         ),
         (
@@ -48,7 +48,7 @@ _EQUAL = tuple(
         ),
         (
             r"(?:a )?(?:sharp(?:ly)?|hard|steep(?:ly)?|tight|abrupt(?:ly)?)(?: turn)?(?: to "
-            r"the)? (?=left|right)",
+            r"(?:the|your))? (?=left|right)",
             "sharply ",
         ),
         (r"hard to the (?=left|right)", "sharply "),

@@ -1,0 +1,165 @@
+"""Edits that make plain words of speech: each word or mark is kept, dropped or said in its plain
+form, and one of a few phrases may stand before it.
+
+The phrases name no thing, no side, no number and no colour, and a plain form is the same thing or
+motion by another name: whatever edits are chosen, they cannot tell of what was not heard.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+from mitigate.corruptions.language.tagger import Token, tag
+from mitigate.safeguard.lexicon import FUNCTION
+from mitigate.safeguard.plain_words import PHRASES, plain_form
+
+KEEP, DROP, PLAIN = range(3)
+ENDS, PAUSES = frozenset(".!?;:"), frozenset(",;:-–—(")
+NUMBER = {phrase: number for number, phrase in enumerate(PHRASES, 1)}  # 0: no phrase
+# worth of a pair of words in an alignment: equal, both of one word, a small word, marks (ours)
+EQUAL, KIN, SMALL, MARKS, NEXT = 2.0, 1.7, 1.0, 0.4, 0.6
+
+
+@dataclass(frozen=True)
+class Edit:
+    """What becomes of a token: ``act`` is KEEP, DROP or PLAIN (of a mark: a full stop);
+    ``before``: number of the phrase that stands before it, 0 for none."""
+
+    act: int
+    before: int = 0
+
+
+def tokens(text: str) -> list[Token]:
+    """Return the words and marks of ``text``, tagged."""
+    return tag(text)
+
+
+def taught(heard: str, meant: str) -> list[Edit]:
+    """Return the edits that bring ``heard`` nearest to ``meant``, one a token."""
+    source, target = tokens(heard), tokens(meant)
+    pairs = [(-1, -1), *align(source, target), (len(source), len(target))]
+    acts, before = [DROP] * len(source), [0] * (len(source) + 1)
+    for place, goal in pairs[1:-1]:
+        acts[place] = KEEP if source[place].lower == target[goal].lower else PLAIN
+    for (a, b), (c, d) in zip(pairs, pairs[1:], strict=False):
+        number = _phrase([t.lower for t in target[b + 1 : d]])
+        if number:
+            before[_stands(source, a + 1, c)] = number
+    return [Edit(act, number) for act, number in zip(acts, before[:-1], strict=True)]
+
+
+def _phrase(words: list[str]) -> int:
+    """Return the number of the longest phrase at the end of what is missing, else at its start."""
+    for start in range(len(words)):
+        if number := NUMBER.get(" ".join(words[start:])):
+            return number
+    for end in range(len(words) - 1, 0, -1):
+        if number := NUMBER.get(" ".join(words[:end])):
+            return number
+    return 0
+
+
+def _stands(source: Sequence[Token], first: int, last: int) -> int:
+    """Return the token that a phrase stands before: the first verb of those it replaces."""
+    for place in range(first, last):
+        if source[place].tag == "VERB":
+            return place
+    return first
+
+
+def align(source: Sequence[Token], target: Sequence[Token]) -> list[tuple[int, int]]:
+    """Return the pairs (place in source, place in target) of a best alignment without crossings;
+    neighbours that stay neighbours are worth more."""
+    rows, columns = len(source), len(target)
+    ones = [(token.lower, token.is_word) for token in source]
+    others = [(token.lower, token.is_word) for token in target]
+    best = [[0.0] * (columns + 1) for _ in range(rows + 1)]
+    joined = [[-1e9] * (columns + 1) for _ in range(rows + 1)]
+    for i, (one, is_word) in enumerate(ones, 1):
+        for j, (other, other_too) in enumerate(others, 1):
+            value = _worth(one, other, is_word and other_too)
+            if value:
+                after = max(joined[i - 1][j - 1] + NEXT, best[i - 1][j - 1])
+                joined[i][j] = after + value
+            best[i][j] = max(joined[i][j], best[i - 1][j], best[i][j - 1])
+    pairs, i, j, inside = [], rows, columns, False
+    while i and j:
+        if inside or best[i][j] == joined[i][j]:
+            pairs.append((i - 1, j - 1))
+            inside = joined[i - 1][j - 1] + NEXT >= best[i - 1][j - 1]
+            i, j = i - 1, j - 1
+        elif best[i][j] == best[i - 1][j]:
+            i -= 1
+        else:
+            j -= 1
+    return pairs[::-1]
+
+
+@lru_cache(maxsize=65536)
+def _worth(one: str, other: str, words: bool) -> float:
+    if not words:
+        ended = one in ENDS and other == "."
+        return MARKS if one == other or ended or (one in PAUSES and other == ",") else 0.0
+    if one == other:
+        return SMALL if one in FUNCTION else EQUAL
+    return KIN if plain_form(one) == other else 0.0
+
+
+def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = None) -> str:
+    """Return ``heard`` after its edits, one a token."""
+    found = tokens(heard) if found is None else found
+    if all(edit == Edit(KEEP) for edit in edits):
+        return heard
+    out: list[str] = []  # words, marks and the space before each
+    end = -1  # of the last token that was kept, where nothing stands between
+    for token, edit in zip(found, edits, strict=True):
+        phrase = PHRASES[edit.before - 1].split() if edit.before else []
+        if phrase and phrase[-1] != plain_form(token.lower):  # "stop" is not said twice
+            for word in phrase:
+                out += ["" if word in ".," else " ", word]
+            end = -1
+        if edit.act == DROP:
+            end = -1
+            continue
+        if token.is_word:
+            said = _lowered(token, heard) if end < 0 else token.text
+            said = plain_form(token.lower) if edit.act == PLAIN else said
+            out += [heard[end : token.start] if end >= 0 else " ", said]
+        else:
+            said = "." if edit.act == PLAIN and token.text in ENDS | PAUSES else token.text
+            out += [" " if token.text in '([“"' else "", said]
+        end = token.end
+    return _closed(out)
+
+
+def _lowered(token: Token, heard: str) -> str:
+    """Return a word without the capital that only the beginning of a sentence gave it."""
+    before = heard[: token.start].rstrip()
+    first = not before or before[-1] in ".!?:\n\"'”’)"
+    return token.text if token.text[1:].lower() != token.text[1:] or not first or (
+        token.lower == "i" or token.lower.startswith("i'")
+    ) else token.lower  # fmt: skip
+
+
+def _closed(out: list[str]) -> str:
+    """Join words and marks: one mark at a time, a capital after each full stop, one at the end."""
+    made: list[str] = []
+    for space, word in zip(out[::2], out[1::2], strict=True):
+        mark = not word[:1].isalnum()
+        last = made[-1][-1:] if made else ""
+        if mark and word in ".,;:!?-–—":
+            if not made or last in ",;:-–—" and word not in ".!?":
+                continue
+            if last in ".!?":
+                continue
+            if last in ",;:-–—":
+                made[-1] = made[-1].rstrip(",;:-–— ")
+            made.append(word if word in ".,;:!?" else " " + word)
+            continue
+        if not made or last in ".!?":
+            word = word[:1].upper() + word[1:]
+        made.append((space or " ") + word if made else word)
+    text = "".join(made).strip().rstrip(",;:-–— ")
+    return text + "." if text and text[-1].isalnum() else text

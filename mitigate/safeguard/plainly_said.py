@@ -1,0 +1,114 @@
+"""What the tagger makes of an instruction, sentence by sentence, each past the gate.
+
+A sentence that the gate refuses is tried again without phrases, then with only those edits that the
+tagger is sure of, and else left as it was heard.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+from mitigate.corruptions.language.tagger import Token
+from mitigate.safeguard import gate
+from mitigate.safeguard.edits import DROP, KEEP, Edit, edited
+from mitigate.safeguard.pieces import sentence_pieces
+from mitigate.safeguard.text import MASK, words
+
+# probability of dropping from which a word goes, and whether phrases are put, at each try; then the
+# probability from which a word may go although it may tell of the way (chosen on the validation
+# voices)
+TRIES = ((0.65, True), (0.65, False), (0.95, False))
+SURE = 0.9
+SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
+
+
+@dataclass(frozen=True)
+class Tagged:
+    """A text as a tagger sees it: its ``tokens``; for each the ``edit`` that is likeliest if it
+    is not dropped, and the probability ``drop`` that it is."""
+
+    tokens: tuple[Token, ...]
+    edits: tuple[Edit, ...]
+    drop: tuple[float, ...]
+
+    def edit(self, place: int, least: float = TRIES[0][0], phrases: bool = True) -> Edit:
+        """Return what becomes of a token that is dropped from the probability ``least`` on."""
+        made = self.edits[place]
+        act = DROP if self.drop[place] > least else made.act
+        return Edit(act, made.before if phrases else 0)
+
+    @property
+    def speech(self) -> float:
+        """How much of the text would go, 0 to 1."""
+        found = [p for token, p in zip(self.tokens, self.drop, strict=True) if token.is_word]
+        return sum(found) / max(1, len(found))
+
+
+class Tags(Protocol):
+    """What tags a text."""
+
+    def tag(self, text: str) -> Tagged: ...
+
+
+def is_speech(tagged: Tagged) -> bool:
+    """Return whether a text is surely no plain route."""
+    return tagged.speech >= SPEECH
+
+
+def plainly_said(text: str, tagged: Tagged) -> tuple[str, list[str]]:
+    """Return ``text`` in plain words, and what was kept for which reason."""
+    reasons: list[str] = []
+    for tries in (TRIES, TRIES[-1:]):
+        said, kept = _all_said(text, tagged, tries)
+        problem = gate.result_refused(text, said)
+        reasons += [*kept, *([f"kept all: {problem}"] if problem else [])]
+        if not problem:
+            return said, reasons
+    return text, reasons
+
+
+def _all_said(
+    text: str, tagged: Tagged, tries: Sequence[tuple[float, bool]]
+) -> tuple[str, list[str]]:
+    given, reasons = [], []
+    spans = [(piece.start, piece.end) for piece in sentence_pieces(text)]
+    for start, end in spans:
+        places = [i for i, t in enumerate(tagged.tokens) if start <= t.start < end]
+        said, problem = _sentence(text, text[start:end], tagged, places, tries)
+        given.append(said)
+        if problem:
+            reasons.append(f"kept {text[start:end][:40]!r}: {problem}")
+    return " ".join(part for part in given if part), reasons
+
+
+def _sentence(
+    text: str,
+    heard: str,
+    tagged: Tagged,
+    places: Sequence[int],
+    tries: Sequence[tuple[float, bool]],
+) -> tuple[str, str]:
+    """Return what is given on of a sentence, and why it is not what the tagger would say."""
+    if MASK.search(heard):
+        return heard, "words are hidden"
+    found = [tagged.tokens[i] for i in places]
+    refused = ""
+    for least, phrases in tries:
+        edits = [tagged.edit(i, least, phrases) for i in places]
+        if all(edit == Edit(KEEP) for edit in edits):
+            return heard, refused
+        said = edited(text, edits, found)
+        if not gate.weight(said) or (gate.weight(said) == 1 and len(words(said)) < 2):
+            said = ""  # what is left tells nothing
+        aside = [
+            token.lower
+            for token, edit, i in zip(found, edits, places, strict=True)
+            if edit.act == DROP and tagged.drop[i] >= SURE
+        ]
+        problem = gate.edit_refused(heard, said, aside)
+        if not problem:
+            return said, ""
+        refused = refused or problem
+    return heard, refused

@@ -1,0 +1,81 @@
+"""How people say more than they mean: corrections, emphasis, marks of a list, talk of themselves.
+
+:func:`meant` takes such words out of a text before its meaning is read. It is for comparing texts,
+never for giving one on: what it leaves is no good English.
+"""
+
+from __future__ import annotations
+
+import re
+
+_SIDES = "left|right"
+# said to take back what was said last
+_BACK = (
+    r"(?:no,? (?:wait|sorry|not that|hang on|hold on|rather)|no|sorry|pardon(?: me)?|excuse me|"
+    r"i mean|(?:or )?rather|correction|make that|make it|scratch that|hang on|hold on|wait|oops|"
+    r"whoops|that is(?: to say)?|my mistake|i tell a lie|strike that|actually)"
+)
+_SOUNDS = r"(?:,? (?:er|erm|um|uh|hmm|oh|ah|well|like)\b,?)"
+_NUMBER = (
+    r"(?:\d{1,2}(?:st|nd|rd|th)?|one|two|three|four|five|six|seven|eight|nine|ten|first(?:ly)?|"
+    r"second(?:ly)?|third(?:ly)?|fourth(?:ly)?|fifth(?:ly)?|sixth(?:ly)?|last(?:ly)?|final(?:ly)?)"
+)
+_SELF = r"(?:i|we|he|she|they|nobody|everybody|everyone|people)"
+# words before "right" where it is a side
+_BEFORE_SIDE = """
+    turn turning turned take taking make the your a to on go going bear veer head keep hard slight
+    slightly sharp sharply gently gentle little bit immediate immediately first second third far and
+    then left angle degrees 90 ninety pivot rotate swing hang
+    """
+_NO_TURN = "".join(f"(?<!{word} )" for word in _BEFORE_SIDE.split())
+_REMOVED = tuple(
+    (re.compile(pattern), said)
+    for pattern, said in (
+        (_SOUNDS, " "),
+        # marks of a list: "2.", "Step 2:", "(two)", "Third and last,"
+        (
+            rf"(?:(?<=[.!?;:,|\n] )|^)\(?(?:(?:step|move|line|point|item|phase|leg|stage|part|task|"
+            rf"number|no\.?|stop)(?: the)? )?{_NUMBER}(?: and last)?(?:[.:)|]+|,| [-–—>|]+)\s+",
+            "",
+        ),
+        (r"\b(?:first|last) (?:of all|thing)\b|\bto (?:begin|start) with\b", " "),
+        # a side taken back, a side that is not meant
+        (rf"\b(?:{_SIDES})\b[,.;:!? –—-]+(?:{_BACK}[,.;:!? –—-]+)+(?:(?:it's|it is|the|a|to the|"
+         rf"turn|go|on the|your) )*(?={_SIDES})", ""),
+        (rf",? ?\b(?:and |but )?(?:not|never)(?: to| at| on| in| the| your| towards)* (?:{_SIDES})"
+         r"(?:[- ]hand)?(?: one| side)?\b", " "),
+        # a number taken back
+        (rf"\b{_NUMBER},? (?:{_BACK},? )+(?={_NUMBER}\b)", ""),
+        # emphasis and agreement
+        (r"\bright(?=[?])|(?:(?<=[.!?;] )|^)(?:all )?right[,.!:;]\s+(?!right|left)|, right(?=[,?])|"
+         r"\b(?:all|that's|you're|be|it's all|quite) right(?=[.!?,])", " "),
+        (rf"{_NO_TURN}\bright (?=(?:after|before|at|by|next|there|here|now|away|up|beside|in front|"
+         r"under|behind|outside|inside|past|beyond|against|between|near|round|around|through|along|"
+         r"down|over|on|to the end)\b)", ""),
+        # what somebody left is no side
+        (r"\b(?:i|he|she|they|we|who|somebody|someone|nobody|people|'ve|has|had|have|been|was|were|"
+         r"is|are|gets?|being)(?:'ve|'d|'s)? left (?!side|hand|of|turn|at|and|then|into|past|"
+         r"through)(?=\w)", " "),
+        # what is so with others is no denial of a way
+        (rf"\b{_SELF}(?:'(?:m|s|re|ve|d|ll))?(?: (?:is|are|was|were|am|do|does|did|has|have|had|"
+         r"can|could|will|would|should|may|might|just|really|simply))?"
+         r"(?: not|n't| never)\b(?! to\b)", " "),
+        (rf"\b{_SELF} (?:isn't|aren't|wasn't|weren't|don't|doesn't|didn't|hasn't|haven't|hadn't|"
+         r"can't|cannot|couldn't|won't|wouldn't|ain't)\b", " "),
+        (r"\b(?:don't|do not|never) (?:you )?(?:worry|mind|ask|panic|fret|be (?:shy|nervous|scared|"
+         r"afraid)|forget|know|think|care|be fooled|look at me|laugh)\b|\b(?:isn't|aren't|doesn't|"
+         r"don't|won't|wasn't|can't) (?:it|that|they|you|she|he|there|we|i)\b|\bwhy don't you\b|"
+         r"\bnot (?:far|long|quite|yet|only|really|sure|too|so|very|exactly|a problem|bad|much|"
+         r"many|all)\b|\bnot at all\b|\bif not\b|\bno (?:more|less|fewer|farther|further|longer|"
+         r"later|problem|doubt|idea|need|hurry|rush|worries|one|joke|kidding|questions?|thanks?)\b|"
+         r"\bno[,.!?;:—–]|\bno (?=(?:wait|sorry|hang|hold)\b)|\bno(?=$)", " "),
+    )
+)  # fmt: skip
+
+
+def meant(text: str) -> str:
+    """Return ``text`` in lower case without what is said and not meant."""
+    left = " ".join(text.lower().replace("’", "'").split())
+    for pattern, said in _REMOVED:
+        left = pattern.sub(said, left)
+    return " ".join(left.split())

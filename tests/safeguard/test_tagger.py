@@ -1,0 +1,98 @@
+"""The tagger: how it reads a text, what it makes of speech and of plain routes behind the gate."""
+
+from __future__ import annotations
+
+import pytest
+import torch
+
+from mitigate.core.files import find
+from mitigate.core.seeding import generator
+from mitigate.safeguard.edits import KEEP, Edit, tokens
+from mitigate.safeguard.guard import TAGGER, Safeguard, label, open_safeguard
+from mitigate.safeguard.lessons import draw_lesson
+from mitigate.safeguard.metrics import token_f1
+from mitigate.safeguard.plainly_said import Tagged, is_speech, plainly_said
+from mitigate.safeguard.report import voices
+from mitigate.safeguard.routes import draw_route
+from mitigate.safeguard.tagger import Tagger, collate, encode, open_tagger
+
+
+@pytest.fixture(scope="module")
+def shipped() -> Tagger:
+    return open_tagger(find(TAGGER))
+
+
+@torch.no_grad()
+def test_what_a_text_gets_does_not_depend_on_what_stands_beside_it_in_a_batch(shipped):
+    texts = ("Go left.", "Well, er, you go past the piano, if it is still there, and stop.")
+    rows = [encode(shipped.tag(text).tokens) for text in texts]
+    alone, together = shipped(collate(rows[:1])), shipped(collate(rows))
+    count = len(rows[0]["words"])
+    for one, both in zip(alone, together, strict=True):
+        assert torch.allclose(one[0], both[0, :count], atol=1e-5)
+
+
+def test_lessons_are_the_same_again_and_have_an_edit_for_each_token():
+    for index in range(40):
+        found, edits = draw_lesson(3, index)
+        assert len(found) == len(edits) and draw_lesson(3, index) == (found, edits)
+
+
+def test_the_shipped_tagger_is_small_and_comes_nearer_to_what_voices_mean(shipped):
+    assert (find(TAGGER) / "model.safetensors").stat().st_size < 3_000_000
+    heard = voices("validation", 40)
+    before = sum(token_f1(r.clean, r.heard) for r in heard)
+    alone = sum(token_f1(r.clean, shipped.alone(r.heard)) for r in heard)
+    assert alone > before + 0.05 * len(heard)
+
+
+def test_plain_routes_come_back_byte_for_byte(shipped):
+    safeguard = Safeguard(tagger=shipped)
+    for number in range(60):
+        text = f" {draw_route(generator(number, 'tagger'))}\n"
+        assert safeguard.canonicalise(text).text == text
+
+
+def test_speech_is_said_in_plain_words_and_the_decision_says_so(shipped):
+    heard = (
+        "Ooh, hello love, so, er, what you want to do is, you want to walk past the piano, lovely "
+        "old thing, and then, um, turn left at the sofa, if you would be so kind, and stop there."
+    )
+    decision = Safeguard(tagger=shipped).canonicalise(heard)
+    assert decision.route == "tagger" and len(decision.text) < 0.8 * len(heard)
+    assert all(word in decision.text for word in ("piano", "left", "stop"))
+
+
+def test_hidden_words_and_texts_of_nothing_are_left_alone(shipped):
+    safeguard = Safeguard(tagger=shipped)
+    assert safeguard.canonicalise("").text == ""
+    assert safeguard.canonicalise("...").text == "..."
+    tagged = shipped.tag("Um, well, so, [MASK] to the sofa, er, dear.")
+    said, reasons = plainly_said("Um, well, so, [MASK] to the sofa, er, dear.", tagged)
+    assert "[MASK]" in said and reasons
+
+
+def test_a_tagger_that_drops_everything_loses_nothing_of_the_way():
+    class Deaf:
+        def tag(self, text: str) -> Tagged:
+            found = tuple(tokens(text))
+            return Tagged(found, (Edit(KEEP),) * len(found), (0.96,) * len(found))
+
+    heard = "Do not go up. Turn left. Then step into it, and go straight. Stop."
+    tagged = Deaf().tag(heard)
+    assert is_speech(tagged)
+    assert plainly_said(heard, tagged)[0] == heard
+    assert Safeguard(tagger=Deaf()).canonicalise(heard).text == heard
+
+
+def test_choices_with_a_tagger(tmp_path, shipped):
+    assert open_safeguard("tagger").tagger is not None
+    both = open_safeguard("tagger+http://localhost:1/v1@m")
+    assert both.tagger is not None and both.rewriter is not None
+    assert label("tagger+http://localhost:1/v1@m") == "tagger+localhost-1-v1@m"
+    with pytest.raises(ValueError, match="tagger"):
+        open_safeguard("tagger+rules")
+    torch_file = tmp_path / "model.safetensors"
+    torch_file.write_bytes(b"no weights")
+    with pytest.raises(ValueError, match="damaged"):
+        open_safeguard(str(tmp_path))
