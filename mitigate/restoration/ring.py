@@ -21,6 +21,7 @@ FAINT = 0.02  # weight of the coarser level where a hole is filled from around i
 
 
 @lru_cache(maxsize=8)
+@torch.inference_mode(False)  # what is kept serves training, too
 def neighbours(size: int) -> tuple[Tensor, Tensor]:
     """Of the views at -1, +1, -2 and +2 steps: ``grid`` [4, size, size, 2] as ``neighbour_grid``,
     and ``ahead`` [4, size, size]: metres along the neighbour's axis for one along the own."""

@@ -29,8 +29,10 @@ def check(settings: Mapping[str, Any]) -> None:
     for name, (low, high) in LIMITS.items():
         value = settings.get(name)
         if value is not None and not in_range(value, low, high):
+            huge = isinstance(value, int) and value.bit_length() > 60  # a float may not hold it
+            shown = "..." if huge else format(value, ".6g")
             raise ValueError(
-                f"trainer.{name}={value:.6g} must be a number from {low:g} to {high:g}"
+                f"trainer.{name}={shown} must be a number from {low:g} to {high:g}"
                 f"{MEANS.get(name, '')}. Set it on the command line, e.g. trainer.steps=100 "
                 "trainer.lr=1e-3."
             )

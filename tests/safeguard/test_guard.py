@@ -181,7 +181,7 @@ def test_a_refusal_names_what_changed():
 
 @pytest.mark.parametrize("choice", ["rule", "checkpoints/nothing", "http://localhost:1/v1"])
 def test_an_unknown_choice_is_explained(choice):
-    with pytest.raises(ValueError, match="rules|Which model"):
+    with pytest.raises(ValueError, match="rules|name of the model"):
         open_safeguard(choice)
 
 

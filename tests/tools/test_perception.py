@@ -30,7 +30,7 @@ def test_a_hidden_middle_costs_things_and_missing_data_costs_free_space(printed)
 def test_no_severity_is_clean():
     poses = perception.Poses("val_seen", 2, seed=1)
     agent = perception.load(perception._agent_node(), "checkpoints/base")
-    found = perception.measure(agent, poses, severity=0.0)
+    found = perception.measure(agent, poses, perception.SUITES["full"], severity=0.0)
     assert found["motion_blur"] == found["clean"] and found["multipath"] == found["clean depth"]
 
 
