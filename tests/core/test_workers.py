@@ -120,6 +120,7 @@ def stopped_by(how, folder):
         [sys.executable, "-c", ENDLESS.format(folder=str(folder))],
         cwd=Path(__file__).parents[2],
         stderr=subprocess.DEVNULL,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background
     )
     pids = []
     while len(pids) < 2:
