@@ -21,7 +21,7 @@ from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.restoration.frames import SensorRestorer
-from mitigate.restoration.pairs import of_sensor, pairs_of
+from mitigate.restoration.pairs import pairs_of
 from mitigate.restoration.restorer import Restorer
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes
@@ -66,7 +66,7 @@ class Restore(Recipe):
         self.net: SensorRestorer = agent.parts()[modality].requires_grad_(True)  # type: ignore[assignment]
         self.net.gate.requires_grad_(False)
         self.pairs = pairs_of(
-            agent, world, training, of_sensor(schedule, modality),
+            agent, world, training, schedule.only(modality),
             sensor=modality, panoramas=panoramas, seed=seed, frames=frames,
         )  # fmt: skip
         self._shown: np.ndarray | None = None

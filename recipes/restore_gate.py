@@ -23,7 +23,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.restoration.frames import SensorRestorer
 from mitigate.restoration.network import texture
-from mitigate.restoration.pairs import Pairs, of_sensor, pairs_of
+from mitigate.restoration.pairs import Pairs, pairs_of
 from mitigate.restoration.restorer import Restorer
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes
@@ -85,7 +85,7 @@ class RestoreGate(Recipe):
         self.agent = agent.requires_grad_(False)
         self.net: SensorRestorer = agent.parts()[modality]  # type: ignore[assignment]
         self.net.gate.requires_grad_(True)
-        own = of_sensor(schedule, modality)
+        own = schedule.only(modality)
         how = {"sensor": modality, "panoramas": 4, "seed": seed, "frames": frames}
         self.pairs, self.clean = (
             pairs_of(agent, world, training, dataclasses.replace(own, clean_share=share), **how)

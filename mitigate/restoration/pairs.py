@@ -3,7 +3,6 @@ frames of a folder."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -13,7 +12,6 @@ import torch
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.corruptions.registry import modality
 from mitigate.corruptions.suite import SENSOR
 from mitigate.encoders.frames import Frames, collect, corrupted
 from mitigate.encoders.sources import TRAIN, source_of
@@ -132,14 +130,6 @@ class FramePairs:
     def figures(self) -> dict[str, np.ndarray]:
         """The last frames of the last batch."""
         return {} if self._last is None else {"views": side_by_side(self._last)}
-
-
-def of_sensor(schedule: Schedule, sensor: str) -> Schedule:
-    """``schedule`` with the corruptions of one sensor alone; ValueError if it has none."""
-    names = tuple(name for name in schedule.names if modality(name) == sensor)
-    if not names:
-        raise ValueError(f"schedule.names has no corruption of {sensor}.")
-    return dataclasses.replace(schedule, names=names)
 
 
 def pairs_of(

@@ -5,27 +5,13 @@ from __future__ import annotations
 import cv2
 import pytest
 
-from mitigate.core.observation import FORWARD, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import trajectories
 from mitigate.evaluation.trajectories import draw_trajectories, won_back, write_pictures
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import row
-
-
-class Straight:
-    """Walks a number of steps ahead, then stops; reads no frame."""
-
-    def __init__(self, steps: int) -> None:
-        self.steps = steps
-
-    def reset(self, instruction: str) -> None:
-        self.left = self.steps
-
-    def act(self, observation) -> int:
-        self.left -= 1
-        return FORWARD if self.left >= 0 else STOP
+from tests.evaluation.straight import Straight
 
 
 def cell(name: str, corruption: str, wins: str, episodes=("a", "b", "c")) -> list[dict]:

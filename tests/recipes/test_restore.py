@@ -100,5 +100,5 @@ def _of_folder(path) -> Restore:
 
 
 def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
-    with pytest.raises(ValueError, match="no corruption of depth"):
+    with pytest.raises(ValueError, match="draws no depth corruption"):
         recipe_of(DEPTH, names=("flare",))

@@ -9,7 +9,6 @@ import re
 import numpy as np
 import pytest
 
-from mitigate.core.observation import FORWARD, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.page import command
@@ -22,6 +21,7 @@ from mitigate.evaluation.sections import sections
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import cell, column, row
+from tests.evaluation.straight import Straight
 
 
 def held(text: str) -> tuple[dict, np.ndarray]:
@@ -110,20 +110,6 @@ def test_text_of_rows_ends_no_element_and_the_page_names_no_address(rows):
     assert "<!--" not in text and held(text)[0]["sections"][0]["columns"][0]["label"] == evil
     addresses = set(re.findall(r"https?://[^\"'\s)]+", text))
     assert addresses == {"http://www.w3.org/2000/svg"}  # a name, not an address that is asked
-
-
-class Straight:
-    """Walks a number of steps ahead, then stops; reads no frame."""
-
-    def __init__(self, steps: int) -> None:
-        self.steps = steps
-
-    def reset(self, instruction: str) -> None:
-        self.left = self.steps
-
-    def act(self, observation) -> int:
-        self.left -= 1
-        return FORWARD if self.left >= 0 else STOP
 
 
 def test_walks_are_chosen_by_turns_of_outcomes_and_corruptions():
