@@ -8,9 +8,11 @@ rolled-out episodes of any trainable agent, ``AdaptViews`` on random poses.
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
@@ -21,6 +23,8 @@ from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import Distil, DistilViews
 from mitigate.training.parts import ADAPTERS, START
 from mitigate.worlds.world import TrainingEpisodes, World
+
+HELD, FRESH = 1_000_000, 2_000_000  # numbers of steps that no training reaches
 
 
 class Adapt(Distil):
@@ -74,6 +78,8 @@ class Adapt(Distil):
 class AdaptViews(DistilViews):
     """Args: as ``DistilViews``; its teacher is the agent itself without its adapters. w_gate: of
     the cross-entropy that teaches the encoders' gates, if they have any, which views are corrupted.
+    ``evaluate`` sets their thresholds, so that they open for a share ``touched`` of the views of
+    ``held`` clean panoramas that no step draws.
 
     Raises ValueError for an agent that has no adapters in the encoders of ``modality``.
     """
@@ -91,8 +97,14 @@ class AdaptViews(DistilViews):
         w_feat: float = 1.0,
         refresh_episodes: int = 8,
         own: bool = False,
-        w_gate: float = 0.2,
+        w_gate: float = 1.0,
+        touched: float = 0.01,
+        held: int = 120,
     ) -> None:
+        if not 0 < touched < 1 or held < 1:
+            raise ValueError(
+                f"touched={touched} is a share from 0 to 1, and held={held} at least 1."
+            )
         super().__init__(
             agent,
             world,
@@ -110,7 +122,8 @@ class AdaptViews(DistilViews):
         )
         encoders = [agent.parts()[name] for name in agent.encoders[modality]]
         has_adapters(agent, *encoders)
-        self.w_gate, self.backbone = w_gate, backbone_sha(agent)
+        self.w_gate, self.touched, self.held = w_gate, touched, held
+        self.backbone = backbone_sha(agent)
         modules = (module for encoder in encoders for module in encoder.modules())
         self.gates = [module for module in modules if isinstance(module, FrameGate)]
 
@@ -118,7 +131,7 @@ class AdaptViews(DistilViews):
         values = super().forward(batch)
         for gate in self.gates:
             corrupted = differ(batch["frames"], batch["clean"])
-            logits = gate.judged.logits.float()
+            logits = gate.judged.logits.float() + gate.threshold
             loss = F.binary_cross_entropy_with_logits(logits, corrupted.float())
             opened = (logits > 0).float()
             values |= {
@@ -130,8 +143,30 @@ class AdaptViews(DistilViews):
         return values
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """1 if the backbone is what it was when the adapters came in."""
-        return {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
+        """1 if the backbone is what it was when the adapters came in; of a gate, whose threshold is
+        set here, the shares of other views that it opens for."""
+        values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
+        for gate in self.gates:
+            gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
+            few = -(-self.held // 3)
+            logits, _ = self._judged(gate, FRESH, few, clean=True)
+            values["clean_opened"] = float((logits > 0).float().mean())
+            logits, hit = self._judged(gate, FRESH, few, clean=False)
+            values["corrupted_opened"] = float(share((logits > 0).float(), hit))
+        return values
+
+    def _judged(self, gate: FrameGate, step: int, count: int, clean: bool) -> tuple[Tensor, Tensor]:
+        """What a gate says of the views of ``count`` panoramas: logits, and which are corrupted."""
+        poses = copy.copy(self.poses)
+        poses.panoramas = count
+        logits, corrupted = [], []
+        for job in poses.jobs(step):
+            batch = poses.collate([poses.work(job)])
+            shown = batch["clean" if clean else "frames"].to(gate.threshold.device)
+            self.agent.see(self.modality, shown)
+            logits.append(gate.judged.logits.float())
+            corrupted.append(differ(shown, batch["clean"].to(shown.device)))
+        return torch.cat(logits), torch.cat(corrupted)
 
 
 def differ(frames: Tensor, clean: Tensor) -> Tensor:

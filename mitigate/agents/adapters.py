@@ -23,7 +23,7 @@ from torch import Tensor, nn
 from mitigate.agents.conv import ConvAdapter
 from mitigate.agents.gate import FrameGate
 from mitigate.agents.ring import RingAdapter
-from mitigate.agents.sites import MAP, Run, Site, channels_of, first, listed, look, named
+from mitigate.agents.sites import MAP, Run, Site, channels_of, first, inputs_of, listed, look, named
 from mitigate.agents.tokens import TokenAdapter
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text
@@ -68,8 +68,9 @@ def insert_adapters(
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
             ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
             views), with ``ring_reduction`` as reduction; of 1 view, a plain one. A module found
-            by both gets this one. gates: targets that get a :class:`FrameGate` in place of an
-            adapter; it counts for all adapters behind it in the module that holds its target.
+            by both gets this one. gates: targets that get a :class:`FrameGate`, which looks at
+            what goes into them, in place of an adapter, such as the first module of an encoder; it
+            counts for all adapters of the nearest module around its target that holds some.
     Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
     trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.
@@ -88,7 +89,7 @@ def insert_adapters(
     made: dict[str, nn.Module] = {}
     for name, module in model.named_modules():
         if name in gated:
-            made[name] = FrameGate(channels_of(name, module))
+            made[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
         elif name in ringed and views == 1:  # no neighbours
             made[name] = ConvAdapter(channels_of(name, module), ring_reduction, kernel)
         elif name in ringed:
@@ -247,6 +248,11 @@ def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
     return adapter(output)
 
 
+def _look(module: nn.Module, inputs: Any) -> None:
+    """Forward pre-hook: the gate of ``module`` on what goes into it."""
+    getattr(module, NAME).look(inputs[0])
+
+
 def _refuse_adapted(model: nn.Module) -> None:
     if adapted(model):
         raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
@@ -270,11 +276,20 @@ def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
 
 def _follow(made: dict[str, nn.Module]) -> None:
     """Tell each adapter of the gate in front of it: the one in the same encoder."""
-    gates = {n.rpartition(".")[0]: m for n, m in made.items() if isinstance(m, FrameGate)}
-    for name, adapter in made.items():
-        if not isinstance(adapter, (FrameGate, TokenAdapter)):
-            inside = [holder for holder in gates if not holder or name.startswith(f"{holder}.")]
-            adapter.gates = [gates[holder] for holder in inside[-1:]]
+    corrects = [n for n, m in made.items() if not isinstance(m, (FrameGate, TokenAdapter))]
+    held: dict[str, tuple[str, FrameGate]] = {}  # by adapter: the module around both, and the gate
+    for name, gate in made.items():
+        if not isinstance(gate, FrameGate):
+            continue
+        around, behind = name, list[str]()
+        while around and not behind:
+            around = around.rpartition(".")[0]
+            behind = [n for n in corrects if not around or n.startswith(f"{around}.")]
+        for n in behind:
+            if n not in held or len(around) > len(held[n][0]):
+                held[n] = (around, gate)
+    for name, (_, gate) in held.items():
+        made[name].gates = [gate]
 
 
 def _statistics(model: nn.Module) -> dict[str, Tensor]:
@@ -287,7 +302,9 @@ def _attach(module: nn.Module, adapter: nn.Module, usual: Tensor) -> None:
     """``usual``: whose device and dtype it gets where ``module`` has no weights."""
     like = next(module.parameters(), usual)
     module.add_module(NAME, adapter.to(like.device, like.dtype))
-    if type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
+    if isinstance(adapter, FrameGate):
+        setattr(module, _HOOK, module.register_forward_pre_hook(_look))
+    elif type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
         setattr(module, _HOOK, module.register_forward_hook(_adapt))
 
 

@@ -169,3 +169,14 @@ def channels_of(name: str, module: nn.Module) -> int:
             "Choose a module that ends in one."
         )
     return channels
+
+
+def inputs_of(name: str, module: nn.Module) -> int:
+    """Channels of what goes into the module: into its first convolution."""
+    for part in module.modules():
+        if isinstance(part, nn.Conv2d):
+            return part.in_channels
+    raise ValueError(
+        f"What goes into {name} cannot be told: it holds no Conv2d. Choose a module that begins "
+        "with one, such as the stem."
+    )

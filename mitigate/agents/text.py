@@ -17,14 +17,16 @@ SPECIAL = ("[PAD]", "[UNK]", "[MASK]")
 PAD, UNKNOWN, MASK = range(3)
 MAX_WORDS = 80
 _WORDS = """
-    a ahead all along and are armchair around at back bathroom bathtub bed bedroom blue
-    bookshelf brown by cabinet chair continue desk dining done door doorway enter exit find for
-    forward fridge front full go going green head in into it keep kitchen lamp leave left living
-    look machine make move near next of office on orange other painting pass past plant purple
-    reach red right room rug side sink sofa stop stove straight table take the then there
-    through to toilet turn tv up wait walk wardrobe washing way when white yellow you your
+    a after ahead all along an and are armchair around at back bathroom bathtub bear bed
+    bedroom beside beyond blue bookshelf brown by cabinet carry chair completely continue
+    cross desk dining done door doorway enter exit face find for forward fridge front full go
+    going green head in inside into it keep kitchen lamp leave left living locate look machine
+    make move near nearest next of office on once orange other out painting pass past plant
+    proceed purple reach red right room rug search side sink sofa stand step stop stove
+    straight swing table take that the then there through to toilet towards turn tv up wait
+    walk wardrobe washing way when white with yellow you your
 """
-WORDS = tuple(_WORDS.split())  # of the shipped agents: all of the apartments' training templates
+WORDS = tuple(_WORDS.split())  # all of the apartments' training templates
 _WORD = re.compile(r"\[MASK\]|[a-z]+")
 
 

@@ -90,21 +90,12 @@ class TrainingEpisodes(Protocol):
         by which worker processes that draw different pieces of a batch may split the scenes."""
 
 
-class Corrupted:
-    """A world whose frames meet a corruption, or what a schedule draws; itself a world.
+class WorldWrapper:
+    """A world whose observations are changed on their way to the agent; itself a world. A subclass
+    says how in ``_seen``."""
 
-    The draws are keyed by (seed, name, number of the look): an observation whose frames nobody
-    reads is no look. ``observation.clean`` is what it was before. ``name``: of the episode in the
-    keys; None: its id. Instructions are corrupted before the agent hears them
-    (``evaluation/episode.py``), not here.
-    """
-
-    def __init__(
-        self, world: World, by: Corruption | Schedule, seed: int, name: str | None = None
-    ) -> None:
-        self.world, self.by, self.seed, self.name = world, by, seed, name
-        self.looks = 0
-        self.last: dict[str, np.ndarray] | None = None  # frames that were read last
+    def __init__(self, world: World) -> None:
+        self.world = world
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") or name == "world":
@@ -120,8 +111,6 @@ class Corrupted:
         return self.world.done
 
     def reset(self, episode: Episode) -> Observation:
-        """Begin an episode, and the count of looks."""
-        self.episode, self.looks, self.last = episode, 0, None
         return self._seen(self.world.reset(episode))
 
     def step(self, action: int) -> Observation:
@@ -135,6 +124,33 @@ class Corrupted:
 
     def truth(self) -> Mapping[str, np.ndarray]:
         return getattr(self.world, "truth", dict)()
+
+    def _seen(self, met: Observation) -> Observation:
+        """What the agent gets for an observation of the world."""
+        raise NotImplementedError
+
+
+class Corrupted(WorldWrapper):
+    """A world whose frames meet a corruption, or what a schedule draws.
+
+    The draws are keyed by (seed, name, number of the look): an observation whose frames nobody
+    reads is no look. ``observation.clean`` is what it was before. ``name``: of the episode in the
+    keys; None: its id. Instructions are corrupted before the agent hears them
+    (``evaluation/episode.py``), not here.
+    """
+
+    def __init__(
+        self, world: World, by: Corruption | Schedule, seed: int, name: str | None = None
+    ) -> None:
+        super().__init__(world)
+        self.by, self.seed, self.name = by, seed, name
+        self.looks = 0
+        self.last: dict[str, np.ndarray] | None = None  # frames that were read last
+
+    def reset(self, episode: Episode) -> Observation:
+        """Begin an episode, and the count of looks."""
+        self.episode, self.looks, self.last = episode, 0, None
+        return super().reset(episode)
 
     def _seen(self, clean: Observation) -> Observation:
         def corrupted() -> dict[str, np.ndarray]:

@@ -11,7 +11,7 @@ from torch import nn
 from mitigate.agents import adapters
 from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
 from mitigate.agents.encoders import RGBEncoder
-from mitigate.agents.gate import FrameGate
+from mitigate.agents.gate import FrameGate, textures
 
 PLACES = {"target_modules": ["stages.0"], "ring": ["stages.[12]"], "gates": ["stem"]}
 
@@ -71,9 +71,43 @@ def test_it_comes_in_without_changing_anything_and_goes_without_a_trace(encoder,
 def test_it_learns_with_the_adapters(encoder, frames):
     insert_adapters(encoder, **PLACES)
     trained(encoder).train()
-    encoder(frames)[0].sum().backward()
+    loss = encoder(frames)[0].sum()
+    (loss + gate_of(encoder).judged.logits.sum()).backward()
     assert all(p.grad is not None for p in adapters.adapter_parameters(encoder))
     assert all(p.grad is None for p in encoder.stages[0].first.parameters())
+
+
+def test_adapters_that_train_correct_every_frame(encoder, frames):
+    insert_adapters(encoder, ["stages.[012]"], gates=["stem"])  # no neighbours
+    opened = centred(trained(encoder), frames)
+    in_use = encoder(frames)[0]
+    training = encoder.train()(frames)[0]
+    assert torch.equal(training[opened], in_use[opened])
+    assert not torch.equal(training[~opened], in_use[~opened])
+
+
+def test_its_threshold_lets_a_share_of_clean_frames_through(encoder, frames):
+    insert_adapters(encoder, **PLACES)
+    gate = gate_of(trained(encoder))
+    for _ in range(2):  # a second time changes nothing
+        encoder(frames)
+        gate.calibrate(gate.judged.logits, 0.25)
+        encoder(frames)
+        assert int((gate.judged.logits > 0).sum()) == 6
+
+
+def test_noise_blur_steps_and_dark_change_the_textures_of_a_view():
+    torch.manual_seed(0)
+    ramp = torch.linspace(-1, 1, 32).expand(1, 1, 32, 32)
+    clean = torch.where(torch.arange(32) % 8 < 4, ramp, -ramp)
+    changed = {
+        "noise": clean + 0.05 * torch.randn_like(clean),
+        "blur": torch.nn.functional.avg_pool2d(clean, 3, 1, 1),
+        "steps": (clean * 4).round() / 4,
+        "dark": clean * 0.3 - 0.7,
+    }
+    for name, frame in changed.items():
+        assert (textures(frame) - textures(clean)).abs().max() > 0.1, name
 
 
 def test_a_folder_and_a_copy_keep_it(encoder, frames, tmp_path):

@@ -165,6 +165,19 @@ def test_a_gate_learns_which_views_are_corrupted(tmp_path):
     assert not torch.equal(agent.rgb_encoder.stem.adapter.judge.weight, start)
 
 
+def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
+    agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
+    made = AdaptViews(agent, modality="rgb", **VIEWS, own=True, touched=0.25, held=4).eval()
+    assert agent.rgb_encoder.stem.adapter.threshold == 0
+    with torch.no_grad():
+        values = made.evaluate(0)
+        again = made.evaluate(0)
+    assert agent.rgb_encoder.stem.adapter.threshold != 0 and values == again
+    assert 0 <= values["clean_opened"] < 1 and 0 <= values["corrupted_opened"] <= 1
+    with pytest.raises(ValueError, match="touched=0 is a share"):
+        AdaptViews(agent, modality="rgb", **VIEWS, touched=0)
+
+
 def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
     clean = torch.ones(2, 2, 4, 4, 1)
     clean[0, 0, 0] = torch.nan

@@ -15,7 +15,7 @@ LONGEST_NAME, LONGEST_TEXT = 200, 2000  # characters (ours)
 MOST_AGENTS, MOST_SENSORS, MOST_CONDITIONS = 100, 20, 500  # of an entry (ours)
 MOST_ROWS = 10**8  # of an entry (ours)
 GREATEST_PRS = 100.0  # a PRS is a ratio; near the floor it grows without bound (ours)
-FORMATS = (1,)
+FORMATS = (2,)
 _CORRUPTION = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]{0,99}")
 _HASH = re.compile(r"[A-Za-z0-9_.-]{1,64}")
 _SCORES = (
@@ -23,6 +23,7 @@ _SCORES = (
     "like Mean SR and PRS-SR (RGB)"
 )
 _SHA256 = re.compile(r"[0-9a-f]{64}")
+_LISTED = re.compile(r"[0-9a-f]{12}")
 
 
 def titles() -> tuple[str, ...]:
@@ -129,6 +130,11 @@ def _rows(value: Any) -> str:
     return "" if good else 'an object of "file" (a path below this folder), "sha256" and "count"'
 
 
+def _listed(value: Any) -> str:
+    good = isinstance(value, str) and bool(_LISTED.fullmatch(value))
+    return "" if good else "12 hexadecimal digits"
+
+
 def _format(value: Any) -> str:
     good = type(value) is int and value in FORMATS
     return "" if good else f"one of {', '.join(map(str, FORMATS))}"
@@ -144,6 +150,7 @@ _CHECKS: dict[str, Callable[[Any], str]] = {
     "rule": _text(LONGEST_NAME),
     "severity": _number(0, 1),
     "episodes": _whole(1, MOST_ROWS),
+    "listed": _listed,
     "scores": _scores,
     "SR": _rates,
     "SPL": _rates,

@@ -18,7 +18,7 @@ from mitigate.core.json_files import read_json
 from mitigate.evaluation.leaderboard.checks import problem
 from mitigate.evaluation.page.model import Numbers
 
-FORMAT = 1
+FORMAT = 2  # 2: with ``listed``
 LARGEST = 1 << 18  # bytes of an entry's file; one of 34 corruptions has 5,000 (ours)
 _AGAIN = "Write it anew with `mitigate leaderboard add`."
 _NUMBERS = re.compile(r"\[\n\s+([\d\s.,eE+nul-]*?)\s*\n\s+\]")
@@ -31,8 +31,10 @@ class LeaderboardEntry:
     name: a heading. agents: hash (``core/identity.py``) of each training seed's agent, with the
     seed of its rows. sensors: a line each. training_data, link: in words of who submits. scores:
     clean, mean and PRS, [value, low, high] with 95 % intervals, None where it is undefined. SR,
-    SPL: the same of each condition. episodes: how many each condition has. rows: "file" (relative,
-    or empty), "sha256" (``from_rows.rows_sha``) and "count" of those that it was computed from.
+    SPL: the same of each condition. episodes: how many each condition has. listed: a hash of their
+    ids (``from_rows.listed_sha``), since a table compares entries over the same episodes. rows:
+    "file" (relative, or empty), "sha256" (``from_rows.rows_sha``) and "count" of those that it was
+    computed from.
     """
 
     name: str
@@ -44,6 +46,7 @@ class LeaderboardEntry:
     rule: str
     severity: float
     episodes: int
+    listed: str
     scores: dict[str, Numbers]
     SR: dict[str, Numbers]
     SPL: dict[str, Numbers]

@@ -63,6 +63,7 @@ def entry_of(
         rule=rule,
         severity=severity,
         episodes=len(found[0].grid.episodes),
+        listed=listed_sha(found[0].grid.episodes),
         scores=scores,
         SR=rates["SR"],
         SPL=rates["SPL"],
@@ -100,6 +101,11 @@ def rows_sha(rows: Iterable[Row]) -> str:
     for row in ordered:
         digest.update(json.dumps(row, sort_keys=True).encode() + b"\n")
     return digest.hexdigest()
+
+
+def listed_sha(episodes: Iterable[str]) -> str:
+    """Return the first 12 digits of the sha256 of episode ids in whatever order."""
+    return hashlib.sha256("\n".join(sorted(episodes)).encode()).hexdigest()[:12]
 
 
 def sensors_of(sensors: Mapping[str, Sensor]) -> tuple[str, ...]:

@@ -35,7 +35,8 @@ def render(entries: Sequence[LeaderboardEntry], title: str = "Leaderboard") -> s
         raise ValueError("There is no entry to show: add one with `mitigate leaderboard add`.")
     groups: dict[tuple, list[LeaderboardEntry]] = defaultdict(list)
     for entry in entries:
-        groups[entry.split, entry.suite, entry.rule, entry.severity].append(entry)
+        key = (entry.split, entry.suite, entry.rule, entry.severity, entry.listed)
+        groups[key].append(entry)
     ordered = sorted(groups.values(), key=lambda held: -len(held))
     return document.page(title, ABOUT, [_section(held) for held in ordered], notes=NOTES)
 
@@ -45,12 +46,12 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
     first = held[0]
     shown = [title for title in titles() if any(title in entry.scores for entry in held)]
     names = _conditions(held)
-    most = max(entry.episodes for entry in held)
-    values = [[_value(entry, title, most) for title in shown] for entry in held]
+    values = [[_value(entry, title) for title in shown] for entry in held]
     return {
         "title": f"{first.split}, severity {first.severity:g}, suite {first.suite}",
         "facts": [
             ["Split", first.split],
+            ["Episodes", f"{first.episodes:,}, list {first.listed}"],
             ["Success", first.rule],
             ["Corruption suite", first.suite],
             ["Severity", f"{first.severity:g}"],
@@ -67,7 +68,7 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
         "cells": [
             [[entry.SR.get(n), entry.SPL.get(n), entry.episodes] for n in names] for entry in held
         ],
-        "wanted": most,
+        "wanted": first.episodes,
         "pairs": {},
         "notes": _notes(values),
         "grid": None,
@@ -76,9 +77,8 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
 
 def _notes(values: list[list[Any]]) -> list[str]:
     marks = "".join(value[3] for line in values for value in line if value)
-    fewer = "* Over fewer episodes than others."
     other = "† k/K: over k corruptions, not the K that the score stands for; do not compare."
-    return [note for sign, note in (("*", fewer), ("†", other)) if sign in marks]
+    return [other] if "†" in marks else []
 
 
 def _rank(entry: LeaderboardEntry) -> float:
@@ -86,9 +86,9 @@ def _rank(entry: LeaderboardEntry) -> float:
     return found[0] - 2 * bool(_over(entry, "Mean SR")) if found else -2.0
 
 
-def _value(entry: LeaderboardEntry, title: str, most: int) -> list[Any] | None:
+def _value(entry: LeaderboardEntry, title: str) -> list[Any] | None:
     found = entry.scores.get(title)
-    return found and [*found, "*" * (entry.episodes < most) + _over(entry, title)]
+    return found and [*found, _over(entry, title)]
 
 
 def _over(entry: LeaderboardEntry, title: str) -> str:

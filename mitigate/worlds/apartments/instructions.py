@@ -19,29 +19,47 @@ if TYPE_CHECKING:  # the words are used where there is no simulator
 TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
     "train": {
         "ahead": ("walk straight ahead", "go straight", "head forward",
-            "keep going straight ahead", "move forward"),
-        "left": ("turn left", "take a left", "go to your left", "make a turn to the left"),
-        "right": ("turn right", "take a right", "go to your right", "make a turn to the right"),
-        "around": ("turn around", "make a full turn and go back", "turn back the other way"),
+            "keep going straight ahead", "move forward", "proceed straight", "go ahead",
+            "head straight on", "carry on straight ahead"),
+        "left": ("turn left", "take a left", "go to your left", "make a turn to the left",
+            "bear left", "turn to the left", "go left", "swing left"),
+        "right": ("turn right", "take a right", "go to your right", "make a turn to the right",
+            "bear right", "turn to the right", "go right", "swing right"),
+        "around": ("turn around", "make a full turn and go back", "turn back the other way",
+            "turn around and face the other way", "turn around completely"),
         "door": ("go through the doorway", "walk through the door",
-            "leave the {here} through the doorway", "exit the {here}", "pass through the door"),
+            "leave the {here} through the doorway", "exit the {here}", "pass through the door",
+            "walk out of the {here}", "leave the {here}", "step through the doorway",
+            "go out of the {here}"),
         "enter": ("enter the {room}", "go into the {room}", "walk into the {room}",
-            "head through the door into the {room}", "continue to the {room}"),
+            "head through the door into the {room}", "continue to the {room}",
+            "step into the {room}", "proceed into the {room}", "walk towards the {room} and enter",
+            "go inside the {room}", "cross into the {room}"),
         "past": ("walk past the {thing}", "go past the {thing}", "pass the {thing}",
-            "keep going past the {thing}", "move along the {thing}"),
+            "keep going past the {thing}", "move along the {thing}", "walk by the {thing}",
+            "pass by the {thing}", "proceed past the {thing}", "go beyond the {thing}"),
         "pass_left": ("walk past the {thing} on your left", "keep the {thing} on the left",
-            "pass the {thing} on your left side"),
+            "pass the {thing} on your left side", "pass the {thing} to your left",
+            "with the {thing} on your left go on"),
         "pass_right": ("walk past the {thing} on your right", "keep the {thing} on the right",
-            "pass the {thing} on your right side"),
+            "pass the {thing} on your right side", "pass the {thing} to your right",
+            "with the {thing} on your right go on"),
         "stop": ("stop next to the {thing}", "stop in front of the {thing}", "wait by the {thing}",
             "stop at the {thing}", "wait near the {thing}", "walk to the {thing} and stop",
-            "go to the {thing} and wait there", "you are done when you reach the {thing}"),
+            "go to the {thing} and wait there", "you are done when you reach the {thing}",
+            "stop beside the {thing}", "go all the way to the {thing} and stop",
+            "stop once you reach the {thing}", "go up to the {thing} and stop there",
+            "stand next to the {thing}", "stop right by the {thing}"),
         "stop_room": ("stop next to the {thing} in the {room}",
             "wait by the {thing} in the {room}", "go to the {thing} in the {room} and stop there",
-            "stop at the {thing} of the {room}", "in the {room} walk to the {thing} and wait"),
-        "find": ("find a {thing}", "go to a {thing}", "look for a {thing} and stop next to it",
-            "walk to the {thing} and wait"),
-        "join": (" and ", " , then ", ". ", ". then ", " , "),
+            "stop at the {thing} of the {room}", "in the {room} walk to the {thing} and wait",
+            "stop beside the {thing} in the {room}", "stand next to the {thing} of the {room}",
+            "once you are in the {room} stop at the {thing}"),
+        "find": ("find {a} {thing}", "go to {a} {thing}",
+            "look for {a} {thing} and stop next to it", "walk to the {thing} and wait",
+            "locate {a} {thing}", "search for {a} {thing} and stop beside it",
+            "find the nearest {thing} and stop there"),
+        "join": (" and ", ", then ", ". ", ". then ", ", ", ". after that ", ". once there "),
     },
     "val_seen": {
         "ahead": ("go straight ahead", "walk forward"),
@@ -56,7 +74,7 @@ TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
         "stop": ("wait at the {thing}", "go to the {thing} and stop", "stop near the {thing}"),
         "stop_room": ("stop near the {thing} in the {room}",
             "walk to the {thing} in the {room} and wait"),
-        "find": ("look for a {thing}", "go to the {thing} and stop"),
+        "find": ("look for {a} {thing}", "go to the {thing} and stop"),
         "join": (", then ", ". and then "),
     },
     "val_unseen": {
@@ -72,12 +90,12 @@ TEMPLATES: dict[str, dict[str, tuple[str, ...]]] = {
         "stop": ("stop by the {thing}", "walk up to the {thing} and wait there",
             "wait in front of the {thing}"),
         "stop_room": ("in the {room} stop by the {thing}", "wait near the {thing} of the {room}"),
-        "find": ("walk to a {thing} and stop", "look for the {thing} and wait next to it"),
-        "join": (" and then ", ". next , "),
+        "find": ("walk to {a} {thing} and stop", "look for the {thing} and wait next to it"),
+        "join": (" and then ", ". next, "),
     },
 }  # fmt: skip
-# words that only validation joins or adverbs use are put before training sentences now and then
-OPENERS = ("", "", "", "", "next , ", "all the way , ", "up , ")
+SAID_BEFORE = 0.25  # of the turns behind a doorway, in training: people say these both ways (ours)
+_BESIDE = 1.6  # metres before and behind a doorway within which a turn belongs to it (ours)
 _NEAR_PATH = 1.3  # metres from the path to a landmark that is worth naming
 
 
@@ -108,13 +126,13 @@ def describe(
     final = "stop_room" if rng.random() < 0.6 else "stop"
     room = apartment.rooms[apartment.furniture[target].room].kind
     clauses.append(_pick(words[final], rng).format(thing=name_of(apartment, target), room=room))
-    opener = str(rng.choice(OPENERS)) if apartment.split == "train" else ""
-    return _sentence(opener, clauses, words["join"], rng)
+    return _sentence(clauses, words["join"], rng)
 
 
 def find(apartment: Apartment, category: str, rng: np.random.Generator) -> str:
     """An object-goal instruction: "find a <category>"."""
-    text = _pick(TEMPLATES[apartment.split]["find"], rng).format(thing=category)
+    article = "an" if category[0] in "aeiou" else "a"
+    text = _pick(TEMPLATES[apartment.split]["find"], rng).format(a=article, thing=category)
     return text[0].upper() + text[1:] + "."
 
 
@@ -122,13 +140,10 @@ def _pick(options: tuple[str, ...], rng: np.random.Generator) -> str:
     return options[int(rng.integers(len(options)))]
 
 
-def _sentence(
-    opener: str, clauses: list[str], joins: tuple[str, ...], rng: np.random.Generator
-) -> str:
-    text = opener + clauses[0]
+def _sentence(clauses: list[str], joins: tuple[str, ...], rng: np.random.Generator) -> str:
+    text = clauses[0]
     for clause in clauses[1:]:
         text += _pick(joins, rng) + clause
-    text = text.replace(" ,", ",")
     sentences = [part.strip() for part in text.split(". ")]
     return ". ".join(part[0].upper() + part[1:] for part in sentences if part) + "."
 
@@ -148,21 +163,41 @@ def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str
 def _events(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> list[Event]:
-    """First turn, room changes with the turn before them, up to two landmarks, in order."""
+    """First turn, room changes with the turn beside them, up to two landmarks, in order."""
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     events = [Event(0.0, turn_word(_direction(path, along, 0.0), heading))]
     rooms = [apartment.room_at(p) for p in path]
     changes = [i for i in range(1, len(path)) if rooms[i] != rooms[i - 1]]
     for i in changes:
-        before, after = _direction(path, along, along[i] - 1.6), _direction(path, along, along[i])
-        turn = turn_word(after, before)
-        if turn in ("left", "right") and along[i] > 1.6:
-            events.append(Event(along[i] - 0.1, turn))
         kind = "enter" if rng.random() < 0.7 else "door"
         events.append(Event(along[i], kind, rooms[i], rooms[i - 1]))
+        turn = _turn_beside(path, along, along[i])
+        if turn is None:
+            continue
+        behind = turn.at > along[i] and not (
+            apartment.split == "train" and rng.random() < SAID_BEFORE
+        )
+        at = along[i] + 0.05 if behind else along[i] - 0.1
+        events.append(Event(at, turn.kind))
     events += _landmarks(apartment, path, along, target, rng)
     return sorted(events, key=lambda event: event.at)
+
+
+def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | None:
+    """The turn to the left or right that a path makes at the doorway ``door`` metres along it, at
+    the place where half of it is done; None if there is none, or the path has only begun."""
+    if door <= _BESIDE:
+        return None
+    before, after = (_direction(path, along, at) for at in (door - _BESIDE, door))
+    kind = turn_word(after, before)
+    if kind not in ("left", "right"):
+        return None
+    half = abs(_angle(after, before)) / 2
+    for at in np.arange(door - _BESIDE, door + _BESIDE, 0.1):
+        if abs(_angle(_direction(path, along, at, span=0.6), before)) >= half:
+            return Event(float(at) + 0.3, kind)
+    return Event(door, kind)
 
 
 def _direction(path: np.ndarray, along: np.ndarray, at: float, span: float = 1.2) -> float:
@@ -176,12 +211,17 @@ def _direction(path: np.ndarray, along: np.ndarray, at: float, span: float = 1.2
 
 def turn_word(to: float, heading: float) -> str:
     """The word for turning from one heading to another (counter-clockwise radians)."""
-    angle = np.degrees((to - heading + np.pi) % (2 * np.pi) - np.pi)
+    angle = np.degrees(_angle(to, heading))
     if abs(angle) < 35:
         return "ahead"
     if abs(angle) > 135:
         return "around"
     return "left" if angle > 0 else "right"
+
+
+def _angle(to: float, heading: float) -> float:
+    """From one heading to another, radians in [-pi, pi)."""
+    return (to - heading + np.pi) % (2 * np.pi) - np.pi
 
 
 def _landmarks(

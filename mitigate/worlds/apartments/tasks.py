@@ -31,6 +31,7 @@ from mitigate.worlds.episodes import (
 SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m over 10 m paths, scaled to ours (docs/base-agent.md)
 SHORTEST, LONGEST = 4.0, 12.0  # metres of geodesic distance
 TASKS = ("vln", "ogn")
+EDITION = 2  # of the lists and their texts, part of every id: rows of two editions never meet
 OGN_SHARE = 0.15  # of training episodes (ours)
 _TRIES = 60
 _POOL = 60  # training paths of one apartment
@@ -132,7 +133,7 @@ def _episode(
         "landmark": target,
     }
     return Episode(
-        episode_id=f"{apartment.seed:06d}-{task}-{index}" + (f"-{seed}" if seed else ""),
+        episode_id=f"{apartment.seed:06d}-{task}{EDITION}-{index}" + (f"-{seed}" if seed else ""),
         trajectory_id=f"{apartment.seed:06d}-{index}",
         scene_id=apartment.scene_id,
         start_position=to_vlnce(path[0]),
