@@ -44,7 +44,7 @@ WRONG: list[tuple[str, Any]] = [
     ("rows", {"file": "a\\..\\b", "sha256": "0" * 64, "count": 1}),
     ("rows", {"file": "rows.jsonl", "sha256": "0" * 64}),
     ("link", "\u202etxt.exe"),
-    ("format", 2),
+    ("format", 1),
     ("format", True),
 ]
 
