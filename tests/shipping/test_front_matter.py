@@ -40,7 +40,7 @@ def test_a_shipped_folder_is_a_model_repository(folder):
         assert results[title].metric_args["interval"] == [low, high]
     clean = results["Clean SR"]
     assert clean.metric_value == entry["clean"]["SR"][0] and clean.dataset_split == "val_unseen"
-    assert clean.dataset_args["episodes"] == 300 and clean.metric_args["level"] == 0.95
+    assert clean.dataset_args["episodes"] in (100, 300) and clean.metric_args["level"] == 0.95
     assert found.text.strip().startswith(f"# {card['name']}")
     assert (folder / "README.md").read_text(encoding="utf-8") == readme(card)
 
