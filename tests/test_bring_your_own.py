@@ -12,6 +12,9 @@ from pathlib import Path
 
 import pytest
 
+# one worker of pytest trains, not each its own
+pytestmark = pytest.mark.xdist_group("bring your own")
+
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
 CODE = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]

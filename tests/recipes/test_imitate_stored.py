@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.topological import TopologicalAgent
+from mitigate.agents.topological import TopologicalAgent, stored
 from mitigate.core import seeding
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate_stored import ImitateStored
@@ -26,6 +26,14 @@ def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -
     made = ImitateStored(agent, world, DrawnEpisodes(1), str(folder), steps=2, episodes=2)
     made.start()
     return made
+
+
+@pytest.fixture(autouse=True, scope="module")
+def few_poses():
+    """A quarter of those that a training stores."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stored, "SPACING", 1.0)
+        yield
 
 
 @pytest.fixture(scope="module")

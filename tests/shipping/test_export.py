@@ -27,6 +27,9 @@ from mitigate.evaluation import rows
 from mitigate.shipping import export, hardened, programs
 from mitigate.shipping.card import metrics
 
+# one worker of pytest exports, not each its own
+pytestmark = pytest.mark.xdist_group("export")
+
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/deployment.md"
 SIZE = 64

@@ -12,7 +12,8 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.shipping import export
 from mitigate.training import train
 
-SMALL = ["agent.size=16", "env.size=16", "init=null", "trainer.steps=1", "evaluation.enabled=false"]
+SMALL = ["agent.size=16", "env.size=16", "init=null", "trainer.steps=1", "workers=0"]
+SMALL.append("evaluation.enabled=false")
 KINDS = {
     "frontier": (FrontierAgent, ["stages.imitation=null", "agent.width=8"]),
     "recurrent_rgb": (RecurrentAgent, ["agent.rgb_width=8", "stages.perception_rgb=null"]),
