@@ -23,7 +23,7 @@ from mitigate.core.files import write_bytes
 from mitigate.core.workers import cores
 from tools.faults import evaluation, report, training
 
-FAMILIES = {  # recipes that between them use every file of recipes/ that trains an agent
+FAMILIES = {  # recipes that between them use every file of recipes/
     "da_per_episode": "imitate",
     "ts_distill": "distil",
     "conv_adapter": "adapt",
@@ -31,6 +31,8 @@ FAMILIES = {  # recipes that between them use every file of recipes/ that trains
     "dagger": "pretrain, dagger",
     "encoder": "encoder",
     "safeguard_lora": "safeguard_lora",
+    "safeguard_tagger": "safeguard_tagger",
+    "restore": "restore, restore_gate",
 }
 EVALUATION = "evaluation"
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "reliability.md"

@@ -26,6 +26,9 @@ OWN = {  # what a recipe needs to be small, or to run at all
     "encoder": ("stages.encoder.recipe.frames=48", "stages.encoder.recipe.batch=8",
                 "stages.encoder.recipe.micro_batch=8", "report=null"),
     "safeguard_lora": ("stages.lora.trainer.steps=4", "stages.lora.recipe.pairs=4"),
+    "safeguard_tagger": ("report=null",),
+    "restore": ("stages.gate_rgb.recipe.instants=8", "stages.gate_rgb.recipe.held=4",
+                "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4", "report=null"),
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
 BEGUN = "batches by"  # in the line with which a stage begins
@@ -105,8 +108,10 @@ class Training:
         return problem
 
     def weights(self) -> str:
-        """The sha256 of all weights of the result."""
+        """The sha256 of all weights of the result; empty if there are none."""
         files = sorted((self.folder / "agent").rglob("*.safetensors"))
+        if not files:
+            return ""
         return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
@@ -254,6 +259,8 @@ def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict
     if problem:
         return {SAME: f"the unbroken one: {problem}"}
     wanted = unbroken.weights()
+    if not wanted:
+        return {SAME: f"no weights in {unbroken.folder / 'agent'}"}
     found: dict[str, str] = {}
     with small_disk(out / recipe / "broken", DISK):
         broken = Training(recipe, out / recipe / "broken" / "run", rng, unbroken.seconds)
