@@ -173,16 +173,19 @@ class _Crew:
         return [worker for worker in self.crew if worker.pipe in readable]
 
     def _hear(self, worker: _Worker) -> Iterator[tuple[int, Any]]:
-        try:
-            while worker.pipe.poll():
+        while True:
+            try:
+                if not worker.pipe.poll():
+                    return
                 result, error = worker.pipe.recv()
-                if error is not None:
-                    raise error[0] from error[1]
-                worker.heard = worker.told = time.monotonic()
-                self.done += 1
-                yield worker.left.popleft()[0], result
-        except (EOFError, ConnectionError):
-            self._replace(worker)
+            except (EOFError, OSError):  # it died, maybe in the middle of a message
+                self._replace(worker)
+                return
+            if error is not None:
+                raise error[0] from error[1]
+            worker.heard = worker.told = time.monotonic()
+            self.done += 1
+            yield worker.left.popleft()[0], result
 
     def _replace(self, worker: _Worker) -> None:
         """Put a fresh process in the place of a dead one, if it is the first."""

@@ -172,7 +172,7 @@ class _Worker:
                 for_long = duration(time.monotonic() - waited)
                 say(f"worker {self.number} ({self.process.pid}) says nothing for {for_long}")
             kind, value = self.connection.recv()
-        except (EOFError, ConnectionResetError):
+        except (EOFError, OSError):  # also "got end of file during message": it died in a word
             self._replace()
             return self.receive()
         self.pending.popleft()

@@ -16,6 +16,7 @@ import pytest
 from mitigate.core import workers
 from mitigate.core.signals import Ended
 from mitigate.core.workers import WorkersDied, results
+from tests.deaths import die_in_a_message
 
 
 @dataclass
@@ -34,6 +35,9 @@ class Squares:
             if action == "die once" and not (self.folder / str(number)).exists():
                 (self.folder / str(number)).touch()
                 os.kill(os.getpid(), signal.SIGKILL)
+            if action == "die in a message" and not (self.folder / str(number)).exists():
+                (self.folder / str(number)).touch()
+                die_in_a_message()
             if action == "die":
                 os.kill(os.getpid(), signal.SIGKILL)
             if action == "fail":
@@ -78,9 +82,10 @@ def test_every_job_has_its_result_under_its_number(count, tmp_path):
     assert found == {n: n**2 for n in range(9)} and not said
 
 
-def test_one_dead_worker_is_noticed_at_once_and_its_jobs_run_again(tmp_path):
+@pytest.mark.parametrize("how", ["die once", "die in a message"])
+def test_one_dead_worker_is_noticed_at_once_and_its_jobs_run_again(how, tmp_path):
     began = time.monotonic()
-    found, said = run(Squares(tmp_path), groups("", "die once", ""))
+    found, said = run(Squares(tmp_path), groups("", how, ""))
     assert found == {n: n**2 for n in range(9)} and time.monotonic() - began < 10
     assert len(said) == 1 and "SIGKILL" in said[0] and "(2 jobs) starts again in a fresh" in said[0]
 

@@ -15,6 +15,7 @@ from mitigate.core.workers import WorkersDied
 from mitigate.training import batches
 from mitigate.training.batches import Workers
 from mitigate.training.trainer import Trainer
+from tests.deaths import die_in_a_message
 from tests.tiny import TinyRecipe
 
 
@@ -33,6 +34,8 @@ class Shared(TinyRecipe):
             raise ValueError("no such pose")
         if job == (2, 1) and os.path.exists(self.fatal):
             os.unlink(self.fatal)  # the next one that comes here lives
+            if self.fatal.endswith("message"):
+                die_in_a_message()
             os.kill(os.getpid(), signal.SIGKILL)
         if job == (2, 1) and self.fatal == "always":
             os.kill(os.getpid(), signal.SIGKILL)
@@ -69,9 +72,10 @@ def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
 
 
+@pytest.mark.parametrize("where", ["job", "message"])
 @pytest.mark.parametrize("ahead", [True, False])
-def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(ahead, tmp_path, capsys):
-    mark = tmp_path / "fatal"
+def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(ahead, where, tmp_path, capsys):
+    mark = tmp_path / where
     mark.touch()
     with Workers(2) as workers:
         found = trained(tmp_path / "killed", workers, ahead=ahead, fatal=str(mark))

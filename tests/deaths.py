@@ -1,0 +1,17 @@
+"""Ways for a process to die that tests make happen."""
+
+from __future__ import annotations
+
+import gc
+import os
+import signal
+import struct
+from multiprocessing.connection import Connection
+
+
+def die_in_a_message() -> None:
+    """Kill this process when its pipes have told the length of a message and not all of it."""
+    for pipe in gc.get_objects():
+        if isinstance(pipe, Connection) and not pipe.closed and pipe.writable:
+            os.write(pipe.fileno(), struct.pack("!i", 1000) + b"cut off")
+    os.kill(os.getpid(), signal.SIGKILL)
