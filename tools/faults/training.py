@@ -24,15 +24,14 @@ SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
 OWN = {  # what a recipe needs to be small, or to run at all
     "dagger": ("agent=recurrent", "stages.policy.recipe.every=2"),
     "encoder": ("stages.encoder.recipe.frames=48", "stages.encoder.recipe.batch=8",
-                "stages.encoder.recipe.micro_batch=8", "report=null"),
+                "stages.encoder.recipe.micro_batch=8"),
     "safeguard_lora": ("stages.lora.trainer.steps=4", "stages.lora.recipe.pairs=4"),
-    "safeguard_tagger": ("report=null",),
     "restore": ("stages.gate_rgb.recipe.instants=8", "stages.gate_rgb.recipe.held=4",
-                "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4", "report=null"),
+                "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4"),
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
 BEGUN = "batches by"  # in the line with which a stage begins
-NOTICED = 10.0  # seconds within which a dead worker must be noticed
+NOTICED = 10.0  # seconds within which a dead worker must be noticed, if no step takes longer
 TRIES = 4  # to come in before the training is done
 DISK = 800  # MB of the file system that is filled
 ROOM = 12 << 20  # bytes that a full disk has at most (ours: less than a checkpoint)
@@ -80,6 +79,9 @@ class Training:
         if not command.runs():
             self._is_done(command)
         command.process.send_signal(number)
+        command.status()
+        if "\ndone: " in command.said():  # it only had to end
+            raise TooLate
         problem = command.problem(STATUS[signal.Signals(number)], 0)
         problem = problem or self.misled(command)
         if problem or command.process.returncode == 0 or number == signal.SIGKILL:
@@ -195,8 +197,9 @@ def worker_killed(training: Training) -> str:
     if not found:
         raise TooLate
     os.kill(training.rng.choice(found), signal.SIGKILL)
-    told = command.wait_for(lambda: "a new one does its work" in command.said(), NOTICED)
-    late = "" if told or not command.runs() else f"not noticed within {NOTICED:g} s"
+    soon = max(NOTICED, training.seconds / 4)  # the step at hand is finished first
+    told = command.wait_for(lambda: "a new one does its work" in command.said(), soon)
+    late = "" if told or not command.runs() else f"not noticed within {soon:.0f} s"
     return training.ended_by(command, signal.SIGTERM) or late
 
 
