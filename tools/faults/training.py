@@ -24,7 +24,8 @@ SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
 OWN = {  # what a recipe needs to be small, or to run at all
     "dagger": ("agent=recurrent", "stages.policy.recipe.every=2"),
     "encoder": ("stages.encoder.recipe.frames=48", "stages.encoder.recipe.batch=8",
-                "stages.encoder.recipe.micro_batch=8"),
+                "stages.encoder.recipe.micro_batch=8", "agent=encoder",
+                "agent.model=tests.encoders.shapes:tiny", "agent.output=pool"),
     "safeguard_lora": ("stages.lora.trainer.steps=4", "stages.lora.recipe.pairs=4"),
     "restore": ("stages.gate_rgb.recipe.instants=8", "stages.gate_rgb.recipe.held=4",
                 "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4"),
@@ -195,7 +196,7 @@ def worker_killed(training: Training) -> str:
         return "not run: it has no workers"
     found = workers(command)
     if not found:
-        raise TooLate
+        training._is_done(command)
     os.kill(training.rng.choice(found), signal.SIGKILL)
     soon = max(NOTICED, training.seconds / 4)  # the step at hand is finished first
     told = command.wait_for(lambda: "a new one does its work" in command.said(), soon)
