@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from mitigate.core.files import write_bytes
+from mitigate.bench.pages import put
 from mitigate.core.progress import duration
 
 BEGIN = "<!-- table: make test-faults ARGS=--write -->"
@@ -50,9 +50,4 @@ def _cell(came: str | None) -> str:
 
 def write(page: Path, found: Found, families: Mapping[str, str], seed: int) -> None:
     """Put the table between the marks of ``page``."""
-    before, begin, rest = page.read_text(encoding="utf-8").partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"{page} has no lines {BEGIN!r} and {END!r} for the table to go between.")
-    text = f"{before}{BEGIN}\n{table(found, families, seed)}\n{END}{after}"
-    write_bytes(page, text.encode())
+    put(table(found, families, seed), page, BEGIN, END)
