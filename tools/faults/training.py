@@ -32,7 +32,7 @@ OWN = {  # what a recipe needs to be small, or to run at all
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
 BEGUN = "batches by"  # in the line with which a stage begins
-NOTICED = 10.0  # seconds within which a dead worker must be noticed, if no step takes longer
+NOTICED = 10.0  # seconds within which a dead worker must be noticed where its work is missed
 TRIES = 4  # to come in before the training is done
 DISK = 800  # MB of the file system that is filled
 ROOM = 12 << 20  # bytes that a full disk has at most (ours: less than a checkpoint)
@@ -198,10 +198,11 @@ def worker_killed(training: Training) -> str:
     if not found:
         training._is_done(command)
     os.kill(training.rng.choice(found), signal.SIGKILL)
-    soon = max(NOTICED, training.seconds / 4)  # the step at hand is finished first
-    told = command.wait_for(lambda: "a new one does its work" in command.said(), soon)
-    late = "" if told or not command.runs() else f"not noticed within {soon:.0f} s"
-    return training.ended_by(command, signal.SIGTERM) or late
+    told = command.wait_for(lambda: "a new one does its work" in command.said(), NOTICED)
+    if told:
+        return training.ended_by(command, signal.SIGTERM)
+    problem = command.problem(0)  # the trainer had its batches already, or hangs
+    return problem or "not run: all that it had to do was done"
 
 
 def worker_stopped(training: Training) -> str:
