@@ -32,7 +32,8 @@ OWN = {  # what a recipe needs to be small, or to run at all
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
 BEGUN = "batches by"  # in the line with which a stage begins
-NOTICED = 10.0  # seconds within which a dead worker must be noticed where its work is missed
+REPLACED = "a new one does its work"  # in the line that tells a worker's death
+NOTICED = 10.0  # seconds that this mostly takes; it comes when the worker's work is missed
 TRIES = 4  # to come in before the training is done
 DISK = 800  # MB of the file system that is filled
 ROOM = 12 << 20  # bytes that a full disk has at most (ours: less than a checkpoint)
@@ -198,11 +199,12 @@ def worker_killed(training: Training) -> str:
     if not found:
         training._is_done(command)
     os.kill(training.rng.choice(found), signal.SIGKILL)
-    told = command.wait_for(lambda: "a new one does its work" in command.said(), NOTICED)
+    told = command.wait_for(lambda: REPLACED in command.said(), NOTICED)
     if told:
         return training.ended_by(command, signal.SIGTERM)
-    problem = command.problem(0)  # the trainer had its batches already, or hangs
-    return problem or "not run: all that it had to do was done"
+    problem = command.problem(0)  # a long step was at hand, the batches were made, or it hangs
+    missed = REPLACED in command.said()
+    return problem or ("" if missed else "not run: all that it had to do was done")
 
 
 def worker_stopped(training: Training) -> str:
