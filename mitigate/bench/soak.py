@@ -1,9 +1,10 @@
 """Whether memory or open files grow: ``python -m mitigate.bench.soak --minutes 60``.
 
-Training, evaluation and bridge traffic (``loads.py``) run one after the other, each for so many
-minutes; every few seconds the memory (RSS) and the open file descriptors of all its processes are
-noted. Writes ``soak.csv``, ``soak.png`` and ``soak.md`` (slopes with 95 % intervals, a verdict) to
-the output folder, and exits with 1 if anything grows or a load ends by itself. Linux only.
+Training, evaluation and bridge traffic (``loads.py``) run one after the other (``--together``: side
+by side), each for so many minutes; every few seconds the memory (RSS) and the open file descriptors
+of all its processes are noted. Writes ``soak.csv``, ``soak.png`` and ``soak.md`` (slopes with 95 %
+intervals, a verdict) to the output folder, and exits with 1 if anything grows or a load ends by
+itself. Linux only.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
@@ -141,14 +143,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     add("--minutes", type=float, default=60.0, help="of each load (default 60)")
     add("--loads", nargs="+", default=list(LOADS), choices=list(LOADS))
     add("--every", type=float, default=2.0, help="seconds between two looks (default 2)")
+    add("--together", action="store_true", help="all loads at once, on the same cores")
     add("--out", type=Path, default=Path("runs/soak"))
     chosen = parser.parse_args(arguments)
     if chosen.minutes <= 0 or chosen.every <= 0:
         parser.error("--minutes and --every must be above 0.")
     chosen.out.mkdir(parents=True, exist_ok=True)
     samples, found, problems = {}, {}, []
-    for load in chosen.loads:
-        samples[load], last = watch(load, 60 * chosen.minutes, chosen.every, chosen.out)
+
+    def watched(load: str) -> tuple[list[Sample], str]:
+        return watch(load, 60 * chosen.minutes, chosen.every, chosen.out)
+
+    with ThreadPoolExecutor(len(chosen.loads) if chosen.together else 1) as pool:
+        made = list(pool.map(watched, chosen.loads))
+    for load, (seen, last) in zip(chosen.loads, made, strict=True):
+        samples[load] = seen
         problems += [f"{load} ended by itself: {last}"] if last else []
         try:
             found[load] = grown(samples[load])
