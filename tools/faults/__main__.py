@@ -24,13 +24,13 @@ from mitigate.core.workers import cores
 from tools.faults import evaluation, report, training
 
 FAMILIES = {  # recipes that between them use every file of recipes/
+    "safeguard_lora": "safeguard_lora",  # the longest is the first
     "da_per_episode": "imitate",
     "ts_distill": "distil",
     "conv_adapter": "adapt",
     "base": "pretrain, imitate_stored",
     "dagger": "pretrain, dagger",
     "encoder": "encoder",
-    "safeguard_lora": "safeguard_lora",
     "safeguard_tagger": "safeguard_tagger",
     "restore": "restore, restore_gate",
 }
