@@ -27,7 +27,8 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
 from mitigate.corruptions.registry import HALVES, modality, unseen_names
 from mitigate.evaluation.bootstrap import resampled_means
-from mitigate.evaluation.evaluate import load, name_of
+from mitigate.evaluation.columns import name_of
+from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.sections import label
 from mitigate.restoration.restorer import Restorer, restorer_of
 from mitigate.worlds.apartments.labels import free_directions, view_labels

@@ -10,7 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.core import build, conf, workers
-from mitigate.evaluation.evaluate import conditions, episodes, load
+from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.evaluator import EpisodeTask, Job, evaluate, run_episode
 
 CHECKPOINTS = ("checkpoints/base", "checkpoints/hardened/stacked")

@@ -38,7 +38,7 @@ SETTINGS = (  # options that a condition's result depends on
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
     """All conditions of a run, clean first, then repeated clean runs."""
-    from mitigate.evaluation.evaluate import conditions
+    from mitigate.evaluation.conditions import conditions
 
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     if cfg.corruption is not None:
@@ -99,7 +99,7 @@ def _settings(cfg: DictConfig, command: str, restorer: Restorer | None) -> dict[
 
 def _label(cfg: DictConfig, sha: str, name: str, restorer: Restorer | None) -> dict[str, Any]:
     """What the rows say of the agent: with a restorer in front of it, it is another one."""
-    from mitigate.evaluation.evaluate import name_of
+    from mitigate.evaluation.columns import name_of
 
     if cfg.safeguard != "none":
         from mitigate.safeguard.guard import label as front

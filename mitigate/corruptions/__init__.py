@@ -1,6 +1,6 @@
 """Corruptions: what can happen to a frame or an instruction, keyed and the same everywhere."""
 
-from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.instruction import (
     NotApplicable,
     corrupt_instruction,

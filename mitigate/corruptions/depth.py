@@ -7,14 +7,13 @@ neighbourhood. Valid depth becomes invalid only through missing data; the rest i
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numba import njit
 
-from mitigate.core import observation
+from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, flat, is_valid
+from mitigate.corruptions.echo import ECHO_GAP, ECHO_HERTZ, ECHO_REACH, ECHO_STRENGTH, multipath
 from mitigate.corruptions.keying import (
     Key,
     digest,
@@ -26,58 +25,15 @@ from mitigate.corruptions.keying import (
 )
 from mitigate.corruptions.record import Record
 
-NEAREST = np.float32(1e-3)  # metres: valid depth never falls below
 NOISE_BASE, NOISE_SQUARE = 0.02, 0.02  # D435: RMS grows with z^2; s = 0.1 is about a Kinect
 HOLE_CORRELATION = 0.025  # of min(H, W)
 HOLE_SHARE = 0.5  # of the pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
 FAR_SHARE = 0.25  # of the holes read z_max ("incorrectly large")
 HOLE_FRAMES = 5  # frames between two placements of the holes
-ECHO_REACH = 0.03  # of min(H, W): half side of the square in which an echo is found
-ECHO_GAP = 2.5  # metres
-ECHO_STRENGTH = 0.9
-ECHO_HERTZ = 20e6
-LIGHT_SPEED = 299_792_458.0  # metres a second
 STEP = 0.5  # metres at s = 1
 STEP_LEAST = 1e-30  # metres: depth over a smaller step would overflow float32
-BEYOND = 3.0  # times z_max: a frame with nothing nearer is not in metres (ours)
 
 _U = np.uint64
-
-
-@dataclass(frozen=True)
-class DepthSensor:
-    """A depth camera that normalises: range in metres and the value that means "no reading".
-
-    ``missing`` is what missing data writes, in metres, and it is part of the contract with the
-    agent: R2R-CE agents read 0 as a hole; VLFM reads it as far and L3MVN as the column maximum.
-    Raises ValueError for a range that is none.
-    """
-
-    z_min: float = 0.0
-    z_max: float = observation.Z_MAX
-    missing: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.z_min < self.z_max < math.inf:
-            raise ValueError(
-                f"{self} has no range in metres: it needs 0 <= z_min < z_max, such as "
-                "DepthSensor(0.0, 10.0) for R2R-CE or DepthSensor(0.5, 5.0) for RxR-CE."
-            )
-
-    def to_metres(self, normalised: np.ndarray) -> np.ndarray:
-        """[0, 1] float to metres; the sentinel 0 (no reading) stays 0."""
-        metres = self.z_min + normalised * np.float32(self.z_max - self.z_min)
-        return np.where(normalised == 0, 0, metres).astype(np.float32)
-
-    def from_metres(self, metres: np.ndarray) -> np.ndarray:
-        """Metres to [0, 1] float; the sentinel 0 (no reading) stays 0."""
-        unit = (metres - self.z_min) / np.float32(self.z_max - self.z_min)
-        return np.where(metres == 0, 0, np.clip(unit, 0, 1)).astype(np.float32)
-
-
-@njit(inline="always")
-def is_valid(z):
-    return (z > np.float32(0)) & (z < np.float32(np.inf))
 
 
 @njit(cache=True)
@@ -96,35 +52,6 @@ def _add_noise(views, streams, base, square, z_max, table, out):
                 z = source[i]
                 moved = min(max(z + (base + square * z * z) * draws[i], NEAREST), z_max)
                 target[i] = moved if is_valid(z) else z
-
-
-def flat(views: np.ndarray) -> np.ndarray:
-    return views.reshape(views.shape[0], -1)
-
-
-@njit(cache=True)
-def _comes_near(pixels, limit):
-    """Whether a valid pixel is at most ``limit``; the first one ends the search."""
-    i = 0
-    while i < pixels.size and not (is_valid(pixels[i]) and pixels[i] <= limit):
-        i += 1
-    return i < pixels.size
-
-
-def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
-    """Raise ValueError for depth [V, H, W] that cannot be metres: all of it is far beyond z_max.
-
-    Clipped to the sensor's range, it would be one flat wall.
-    """
-    if _comes_near(views.reshape(-1), np.float32(BEYOND * sensor.z_max)):
-        return
-    nearest = float(np.min(views, initial=np.inf, where=views > 0))
-    if nearest < math.inf:
-        raise ValueError(
-            f"Every valid pixel lies far beyond the sensor's z_max of {sensor.z_max:g} m (nearest "
-            f"{nearest:g}): is the depth in millimetres? Divide it by 1000, give unit=mm for a "
-            "folder of PNG, or a sensor with a greater z_max if these are metres."
-        )
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
@@ -180,97 +107,6 @@ def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     out = np.empty_like(views)
     missing, z_max = np.float32(sensor.missing), np.float32(sensor.z_max)
     _drop(views, holes, streams, missing, z_max, out)
-    return out
-
-
-def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
-    """Over-estimation in metres for ``gap`` metres to the farther surface (two-path phasor sum)."""
-    scale = LIGHT_SPEED / (4.0 * math.pi * ECHO_HERTZ)
-    beta, phase = ECHO_STRENGTH * severity, gap / scale
-    return scale * np.arctan2(beta * np.sin(phase), 1.0 + beta * np.cos(phase))
-
-
-@lru_cache(maxsize=32)
-def echo_polynomial(severity: float) -> np.ndarray:
-    """float32 [8]: p with echo_shift = gap p(gap) up to 0.01 mm, lowest power first.
-
-    It is the interpolation at Chebyshev's nodes of [0, 2.5] m, where the shift is smooth: a kernel
-    without table look-ups runs in vectors.
-    """
-    degree = 7
-    nodes = 0.5 * ECHO_GAP * (1.0 + np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
-    share = echo_shift(nodes, severity) / nodes
-    fit = np.polynomial.Polynomial.fit(nodes, share, degree, domain=[0.0, ECHO_GAP])
-    return fit.convert().coef.astype(np.float32)
-
-
-@njit(cache=True)
-def larger(row, other):
-    """In place: row = max(row, other), float32; the two do not overlap."""
-    for x in range(row.size):
-        row[x] = row[x] if row[x] > other[x] else other[x]
-
-
-@njit(cache=True)
-def farthest_along(row, spare, reach):
-    """In place: maximum over the 2 reach + 1 entries from each on (van Herk's doubling)."""
-    have, want, size = 1, 2 * reach + 1, row.size
-    while have < want:
-        step = min(have, want - have)
-        for x in range(size):
-            spare[x] = row[x]
-        larger(row[: size - step], spare[step:])
-        have += step
-
-
-@njit(cache=True)
-def _keep_valid(source, target):
-    for x in range(source.size):
-        z = source[x]
-        target[x] = z if is_valid(z) else np.float32(0)
-
-
-@njit(cache=True)
-def _add_echo(source, far, p, z_max, target):
-    for x in range(source.size):
-        z = source[x]
-        gap = min(max(far[x] - z, np.float32(0)), np.float32(ECHO_GAP))
-        share = ((p[7] * gap + p[6]) * gap + p[5]) * gap + p[4]
-        share = (((share * gap + p[3]) * gap + p[2]) * gap + p[1]) * gap + p[0]
-        moved = min(max(z + max(share * gap, np.float32(0)), NEAREST), z_max)
-        target[x] = moved if is_valid(z) else z
-
-
-@njit(cache=True)
-def _echo(views, reach, polynomial, z_max, out):
-    count, height, width = views.shape
-    far = np.empty((height + 2 * reach, width + 2 * reach), np.float32)
-    spare = np.empty(width + 2 * reach, np.float32)
-    for v in range(count):
-        for y in range(height + 2 * reach):
-            row = far[y]
-            for x in range(row.size):
-                row[x] = np.float32(0)
-        for y in range(height):
-            row = far[y + reach]
-            _keep_valid(views[v, y], row[reach : reach + width])
-            farthest_along(row, spare, reach)
-        have, want, rows = 1, 2 * reach + 1, height + 2 * reach
-        while have < want:
-            step = min(have, want - have)
-            rows -= step
-            for y in range(rows):
-                larger(far[y, :width], far[y + step, :width])
-            have += step
-        for y in range(height):
-            _add_echo(views[v, y], far[y, :width], polynomial, z_max, out[v, y])
-
-
-def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Over-estimate depth beside farther surfaces, as a second light path does."""
-    reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
-    out = np.empty_like(views)
-    _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)
     return out
 
 

@@ -13,7 +13,7 @@ from tqdm import tqdm
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import Z_MAX
 from mitigate.corruptions import frame_files
-from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.frame_files import MOST, RGB
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import check_sensor

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from mitigate.core import observation
-from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.suite import SENSOR, Corruption, corrupt_observation
 

@@ -13,8 +13,8 @@ import numpy as np
 
 from mitigate.core import observation
 from mitigate.core.names import unknown
-from mitigate.corruptions import depth, registry
-from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions import registry
+from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.record import MODALITIES
 
@@ -165,7 +165,7 @@ def _depth_views(frame: np.ndarray, sensor: DepthSensor) -> np.ndarray:
         )
     views = frame.reshape((1, *shape) if len(shape) == 2 else shape)
     views = _one_instant(np.ascontiguousarray(views))
-    depth.check_unit(views, sensor)
+    check_unit(views, sensor)
     return views
 
 

@@ -20,7 +20,7 @@ from mitigate.encoders.model import Encoder
 from mitigate.encoders.probe import Score, average, measure
 from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.evaluate import conditions
+from mitigate.evaluation.conditions import conditions
 from mitigate.training.parts import without_adapters
 
 BEFORE, AFTER = "before", "after"

@@ -22,7 +22,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import run_episode
-from mitigate.evaluation.evaluate import episodes
+from mitigate.evaluation.episode_lists import episodes
 from mitigate.worlds.world import World, expert_of
 
 _STOP_SHARE = 0.01  # of random actions; about 100 actions an episode

@@ -6,9 +6,7 @@ command again only fills what is missing.
 
 from __future__ import annotations
 
-import re
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,7 +20,9 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from mitigate.core import conf, seeding
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.locks import FolderLock
-from mitigate.core.names import unknown
+from mitigate.evaluation.columns import changed, column_of, name_of
+from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.episode_lists import episodes
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
 
@@ -33,26 +33,6 @@ ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 LIST = "episodes.sha256"  # of the file that the episodes came from
 MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
-GOLDEN = (5**0.5 - 1) / 2
-
-
-def suite_of(*modalities: str) -> list[str]:
-    """What ``${suite:rgb,depth}`` is in a config: clean, and the suite's corruptions of these."""
-    from mitigate.corruptions.registry import names
-
-    return ["clean", *names(*modalities)]
-
-
-def unseen_of(half: str, *modalities: str) -> list[str]:
-    """What ``${unseen:test,rgb,depth}`` is in a config: clean, and the unseen corruptions of these,
-    of the half "validation" or "test", or of "both"."""
-    from mitigate.corruptions.registry import unseen_names
-
-    return ["clean", *unseen_names(*modalities, half="" if half == "both" else half)]
-
-
-OmegaConf.register_new_resolver("suite", suite_of, replace=True)
-OmegaConf.register_new_resolver("unseen", unseen_of, replace=True)
 
 
 @dataclass
@@ -184,39 +164,6 @@ def _check_list(note: Path, source: str) -> None:
         file.writelines(f"{d}  {name}\n" for name, d in {**held, source: found}.items())
 
 
-def name_of(weights: str) -> str:
-    """Return the name of weights by their path: of the run, for a run's ``agent`` folder; of the
-    kind of agent, for its shipped weights (``checkpoints/frontier/base``: frontier, and
-    ``.../teacher``: frontier_teacher)."""
-    path = Path(weights.removesuffix(".safetensors"))
-    while path.name in ("model", "agent", "run"):
-        path = path.parent
-    if path.parent.parent.name == "checkpoints" and path.parent.name != "hardened":
-        kind = path.parent.name
-        return kind if path.name == "base" else f"{kind}_{path.name}"
-    return path.name or "agent"
-
-
-def changed(overrides: Sequence[str]) -> list[str]:
-    """Return the options of a command line that change the agent or what it sees, as parts of a
-    column's name."""
-    own = [option.lstrip("+") for option in overrides]
-    own = [option for option in own if option.startswith(("agent.", "env.size="))]
-    return [_plain(option.removeprefix("agent.")).strip("-") for option in own]
-
-
-def column_of(cfg: DictConfig, folder: Path) -> str:
-    """Return the column of a training: the recipe, and the options that its folder's name holds, so
-    that other settings are no other seeds of it."""
-    options = folder.name.partition(f"-seed{cfg.seed}-")[2]
-    return f"{cfg.name}+{options}" if options else cfg.name
-
-
-def _plain(text: str) -> str:
-    """Return ``text`` with a dash for all that a file's name should not hold."""
-    return re.sub(r"[^A-Za-z0-9.@-]+", "-", text)
-
-
 def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
     by ``node``. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
@@ -259,66 +206,6 @@ def report_before_after(
     write_table([folder / ROWS], folder)
     written = write_pictures(agents, world(), chosen, rows, folder / "pictures", seed=cfg.seed)
     print("\n".join(f"wrote {path}" for path in written), flush=True)
-
-
-def episodes(env: DictConfig, split: str, count: int | None) -> list:
-    """Return ``count`` episodes of a split's shipped list (all, if None), spread evenly over it.
-
-    A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
-    whose multiples of the golden section have the smallest fractional parts are spread for any
-    count, and fewer are always among more: rows of 40 episodes count towards 100.
-    Raises ValueError for an unknown split, a count below 1, and a list that is empty, names an
-    episode twice or has one without an instruction.
-    """
-    from mitigate.worlds.episodes import read_episodes
-
-    if count is not None and count < 1:
-        raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
-    if split not in env.episodes:
-        raise ValueError(unknown("split", split, env.episodes))
-    listed = list(read_episodes(find(env.episodes[split])))
-    _check_episodes(env.episodes[split], listed)
-    chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
-    return [listed[i] for i in sorted(chosen)]
-
-
-def _check_episodes(source: str, listed: list) -> None:
-    """Raise ValueError for a list that cannot be scored: rows name an episode by its id alone."""
-    twice = [name for name, n in Counter(e.episode_id for e in listed).items() if n > 1]
-    silent = [e.episode_id for e in listed if not e.instruction.text.strip()]
-    if not listed:
-        raise ValueError(f"{source} lists no episode.")
-    if twice:
-        raise ValueError(f"{source} has the episode {twice[0]} twice: give each an id of its own.")
-    if silent:
-        raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
-
-
-def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
-    """Return one Corruption for each name or pair of names; ``clean`` has severity 0.
-
-    Raises ValueError for an unknown name, and for two severities of a pair.
-    """
-    from mitigate.corruptions import CLEAN, Corruption
-    from mitigate.corruptions.registry import known, parts
-    from mitigate.corruptions.suite import check_severity
-
-    allowed = ("clean", *known("rgb", "depth", "instruction"))
-    for part in (part for name in names for part in parts(name)):
-        if part not in allowed:
-            raise ValueError(unknown("condition", part, allowed))
-    severity = check_severity(severity)  # also where all conditions are clean
-    depth = severity if severity_depth is None else check_severity(severity_depth)
-    found = [CLEAN if name == "clean" else Corruption(name, severity) for name in names]
-    for place, corruption in enumerate(found):
-        if corruption.modality == "depth":
-            found[place] = Corruption(corruption.name, depth)
-        elif "depth" in corruption.modalities and depth != severity:
-            raise ValueError(
-                f"The pair {corruption.name} has one severity, but severity is {severity:g} and "
-                f"severity_depth {depth:g}. Leave severity_depth out, or the pair."
-            )
-    return found
 
 
 def write_table(rows: list[Path], out: Path) -> None:

@@ -55,7 +55,7 @@ def run(cfg: DictConfig, out: Path) -> list[Path]:
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress
-    from mitigate.evaluation.evaluate import episodes
+    from mitigate.evaluation.episode_lists import episodes
 
     if cfg.form not in FORMS:
         raise ValueError(unknown("form", cfg.form, FORMS))

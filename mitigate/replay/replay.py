@@ -84,7 +84,7 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
         raise ValueError("agents=[] are none: name folders of weights.")
     if not 16 <= cfg.size <= 1024:
         raise ValueError(f"size={cfg.size} must be 16 to 1024 pixels.")
-    from mitigate.evaluation.evaluate import conditions
+    from mitigate.evaluation.conditions import conditions
 
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     others = [name for name in names if name != "clean"]
@@ -144,7 +144,7 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
 
 def load_agents(weights: Sequence[str]) -> dict[str, Any]:
     """The agents of folders of weights, by names that differ."""
-    from mitigate.evaluation.evaluate import name_of
+    from mitigate.evaluation.columns import name_of
 
     if len(set(weights)) < len(weights):
         raise ValueError(f"agents=[{','.join(weights)}] names one folder twice.")

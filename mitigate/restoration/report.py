@@ -31,7 +31,7 @@ from mitigate.corruptions.registry import title
 from mitigate.encoders.frames import collect
 from mitigate.encoders.sources import UNSEEN
 from mitigate.evaluation.bootstrap import Estimate, mean, share
-from mitigate.evaluation.evaluate import conditions
+from mitigate.evaluation.conditions import conditions
 from mitigate.restoration.restorer import Restorer, load_restorer
 from mitigate.worlds.episodes import read_episodes
 

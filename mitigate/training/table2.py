@@ -22,7 +22,8 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import Progress
-from mitigate.evaluation.evaluate import ROWS, episodes, load
+from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.evaluate import ROWS, load
 from mitigate.scale import programs
 
 COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"

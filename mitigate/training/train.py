@@ -31,14 +31,9 @@ from mitigate.core.locks import FolderLock
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
 from mitigate.corruptions import Corruption
-from mitigate.evaluation.evaluate import (
-    EvaluationConfig,
-    FinetuneConfig,
-    WeightsConfig,
-    conditions,
-    episodes,
-    load,
-)
+from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.evaluate import EvaluationConfig, FinetuneConfig, WeightsConfig, load
 from mitigate.training import limits
 from mitigate.training.batches import MOST, Workers
 from mitigate.training.ranks import Ranks

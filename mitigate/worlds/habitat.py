@@ -16,7 +16,7 @@ import numpy as np
 
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.corruptions import registry
-from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.corruptions.suite import NAMES, SENSOR, Corruption, corrupt_observation

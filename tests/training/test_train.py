@@ -13,7 +13,7 @@ from safetensors.torch import load_file
 
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
-from mitigate.evaluation.evaluate import column_of
+from mitigate.evaluation.columns import column_of
 from mitigate.training import train
 from tests.tiny import TinyAgent
 

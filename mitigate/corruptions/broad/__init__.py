@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mitigate.corruptions.depth import DepthSensor
+from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.record import Record
 

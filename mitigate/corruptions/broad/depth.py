@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from mitigate.corruptions.broad.composition import composed, displaced, field, log_uniform, shapes
-from mitigate.corruptions.depth import NEAREST, DepthSensor
+from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key
 
 NAME = "broad_depth"

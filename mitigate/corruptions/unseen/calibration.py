@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from mitigate.corruptions.depth import LIGHT_SPEED, NEAREST, DepthSensor
+from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 

@@ -12,7 +12,8 @@ import numpy as np
 from numba import njit
 
 from mitigate.core.observation import HFOV_DEGREES
-from mitigate.corruptions.depth import NEAREST, DepthSensor, farthest_along, is_valid, larger
+from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
+from mitigate.corruptions.echo import farthest_along, larger
 from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 

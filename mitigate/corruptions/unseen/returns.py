@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from mitigate.corruptions.depth import NEAREST, DepthSensor, is_valid
+from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import (
     Key,
     digest,

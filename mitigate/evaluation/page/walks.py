@@ -20,7 +20,7 @@ from mitigate.core.pictures import strip
 from mitigate.corruptions import Corruption, Key, corrupt_observation
 from mitigate.corruptions.gallery import depth_picture
 from mitigate.evaluation.episode import instruction
-from mitigate.evaluation.evaluate import GOLDEN
+from mitigate.evaluation.episode_lists import GOLDEN
 from mitigate.evaluation.page.choosing import KINDS, choose
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label

@@ -27,7 +27,7 @@ from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 NEAR = 0.5  # metres from a free cell that a start or goal may lie (ours): furniture may be a goal
 
 
-@lru_cache(maxsize=30_000)
+@lru_cache(maxsize=256)  # of 20 kB each; another takes half a millisecond
 def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> np.ndarray:
     """Geodesic metres from every free cell of a scene to the nearest goal."""
     space = apartment_of(scene_id).space

@@ -7,6 +7,7 @@ fixed validation lists; training episodes are generated on the fly from (seed, i
 from __future__ import annotations
 
 import argparse
+import pickle
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -193,9 +194,11 @@ def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
         yield make_episode(Apartment(low + number // _PER_APARTMENT), task, number % _PER_APARTMENT)
 
 
-@lru_cache(maxsize=30_000)
-def _pooled(seed: int, task: str, index: int) -> Episode:
-    return make_episode(apartment_of(f"apartments/train/{seed:06d}"), task, index, seed=1)
+@lru_cache(maxsize=100_000)
+def _pooled(seed: int, task: str, index: int) -> bytes:
+    """An episode of the pool, pickled: as objects the many that are kept take ten times as much."""
+    scene = f"apartments/train/{seed:06d}"
+    return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
 
 
 def draw_training_episode(
@@ -209,7 +212,7 @@ def draw_training_episode(
     seeds = range(apartments) if isinstance(apartments, int) else apartments
     seed, index = seeds[int(rng.integers(len(seeds)))], int(rng.integers(_POOL))
     task = "ogn" if rng.random() < ogn_share else "vln"
-    episode = _pooled(seed, task, index)
+    episode: Episode = pickle.loads(_pooled(seed, task, index))
     if task == "vln":
         path = np.stack([from_vlnce(p) for p in episode.reference_path])
         heading = heading_of(episode.start_rotation)

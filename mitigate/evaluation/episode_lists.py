@@ -1,0 +1,45 @@
+"""Which episodes of a shipped list an evaluation takes."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from omegaconf import DictConfig
+
+from mitigate.core.files import find
+from mitigate.core.names import unknown
+
+GOLDEN = (5**0.5 - 1) / 2
+
+
+def episodes(env: DictConfig, split: str, count: int | None) -> list:
+    """Return ``count`` episodes of a split's shipped list (all, if None), spread evenly over it.
+
+    A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
+    whose multiples of the golden section have the smallest fractional parts are spread for any
+    count, and fewer are always among more: rows of 40 episodes count towards 100.
+    Raises ValueError for an unknown split, a count below 1, and a list that is empty, names an
+    episode twice or has one without an instruction.
+    """
+    from mitigate.worlds.episodes import read_episodes
+
+    if count is not None and count < 1:
+        raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
+    if split not in env.episodes:
+        raise ValueError(unknown("split", split, env.episodes))
+    listed = list(read_episodes(find(env.episodes[split])))
+    _check_episodes(env.episodes[split], listed)
+    chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
+    return [listed[i] for i in sorted(chosen)]
+
+
+def _check_episodes(source: str, listed: list) -> None:
+    """Raise ValueError for a list that cannot be scored: rows name an episode by its id alone."""
+    twice = [name for name, n in Counter(e.episode_id for e in listed).items() if n > 1]
+    silent = [e.episode_id for e in listed if not e.instruction.text.strip()]
+    if not listed:
+        raise ValueError(f"{source} lists no episode.")
+    if twice:
+        raise ValueError(f"{source} has the episode {twice[0]} twice: give each an id of its own.")
+    if silent:
+        raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
