@@ -36,7 +36,7 @@ PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8
 RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text
 ASIDE = 0.3  # weight of what a voice says beside the route
 PRIOR = 0.5  # of a word, in the weight of examples
-TOTAL, SHARE = 2000.0, 1 / 3  # weight of all examples, and of the attacks among them (ours)
+TOTAL, SHARE = 2000.0, 0.25  # weight of all examples, and of the attacks among them (ours)
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,7 @@ def _routes() -> list[Example]:
         for told in trials.told("tune", task):
             fold = trials.TUNE_VOICES.index(told.voice) % FOLDS
             found += [(part, 1.0, fold) for part in told.parts] + [(told.plain, 1.0, fold)]
-    lines = [(routes.draw_route(generator(0, "fit", i)), 0.5) for i in range(600)]
+    lines = [(routes.draw_route(generator(0, "fit", i)), 1.5) for i in range(600)]
     lines += [(line["text"], 6.0) for line in trials.half("near_misses", "tune")]
     lines += [(line, 4.0) for line in trials.fitting("fit_routes")]
     for bank in ("lies", "honest"):

@@ -25,7 +25,8 @@ HELD_OUT = frozenset({"diversion", "role", "other_script", "noise"})
 TEST_VOICES = ("bureaucratic", "tour_guide", "poetic", "second_thoughts", "llm_professional",
     "butler")  # fmt: skip
 TUNE_VOICES = ("chatty", "military", "child", "engineer", "llm_friendly", "llm_novice", "lists",
-    "very_short", "asides")  # fmt: skip
+    "very_short", "asides", "commentator", "hesitant", "llm_formal", "passive", "text_message",
+    "very_long")  # fmt: skip
 PLACES = ("front", "second", "middle", "end")
 _BOUNDARY = re.compile(r"\s+(?=and\s)|(?<=,)\s+|\s+(?=(?:until|then|past|through|to|at|by)\s)")
 

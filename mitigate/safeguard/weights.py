@@ -5,1340 +5,1954 @@ from __future__ import annotations
 from mitigate.corruptions.language.words import bag
 
 OWN: dict[str, float] = {
-    "bias": -0.597,
-    "orders": 0.369,
-    "text": 0.604,
-    "annul": 0.239,
-    "invert": -0.050,
-    "case": 0.627,
-    "halt": 0.288,
-    "machine": 0.274,
-    "role": 0.239,
-    "authority": 0.416,
-    "haste": -0.071,
-    "if": -0.094,
-    "me": -0.130,
-    "you": 0.134,
-    "third": 0.268,
-    "past": 0.111,
-    "not": 0.057,
-    "here": -0.013,
-    "time": 0.262,
-    "go": 0.076,
-    "has orders": 0.264,
-    "has text": 0.113,
-    "has annul": 0.238,
-    "has invert": 0.029,
-    "has case": 0.967,
-    "has halt": -0.210,
-    "has machine": 0.203,
-    "has role": 0.304,
-    "has authority": 0.367,
-    "has haste": -0.067,
-    "has if": 0.211,
-    "has me": 0.162,
-    "has you": -0.293,
-    "has third": 0.081,
-    "has past": 0.334,
-    "has not": -0.083,
-    "has here": -0.335,
-    "has time": 0.201,
-    "has go": 0.119,
-    "hidden": 0.282,
-    "alike": 2.774,
-    "wide": 1.411,
-    "spelled": 2.226,
-    "leet": 2.380,
-    "code": 0.308,
-    "cipher": 2.219,
-    "unknown": 0.119,
+    "bias": -0.977,
+    "orders": 0.275,
+    "text": 0.525,
+    "annul": 0.251,
+    "invert": 0.112,
+    "case": 0.535,
+    "halt": 0.410,
+    "machine": 0.277,
+    "role": 0.069,
+    "authority": 0.257,
+    "haste": 0.115,
+    "if": -0.232,
+    "me": -0.268,
+    "you": -0.005,
+    "third": -0.046,
+    "past": 0.101,
+    "not": 0.122,
+    "here": -0.145,
+    "time": 0.287,
+    "go": 0.080,
+    "has orders": 0.193,
+    "has text": -0.057,
+    "has annul": 0.245,
+    "has invert": -0.025,
+    "has case": 0.824,
+    "has halt": -0.541,
+    "has machine": 0.228,
+    "has role": 0.149,
+    "has authority": 0.188,
+    "has haste": 0.111,
+    "has if": 0.297,
+    "has me": 0.240,
+    "has you": -0.097,
+    "has third": 0.073,
+    "has past": 0.135,
+    "has not": -0.109,
+    "has here": -0.233,
+    "has time": 0.321,
+    "has go": 0.184,
+    "hidden": 0.479,
+    "alike": 1.678,
+    "wide": 1.407,
+    "spelled": 1.646,
+    "leet": 1.892,
+    "code": 0.375,
+    "cipher": 1.503,
+    "unknown": 0.123,
     "alien": 0.037,
-    "foreign letters": 0.255,
-    "late verb": 0.103,
-    "no verb": 0.248,
-    "on route": -0.022,
-    "other things": 0.286,
-    "nothing": 0.278,
-    "turns": 0.073,
-    "places": -0.047,
-    "no place": 0.789,
-    "length": 0.411,
-    "short": -0.365,
-    "commas": -0.469,
-    "asks": 0.243,
-    "exclaims": 0.331,
-    "quoted": 1.225,
-    "quote in": -0.167,
-    "markup": 2.927,
-    "role of": -0.026,
-    "reported": 0.059,
-    "self": 0.349,
-    "about": 1.024,
-    "back to text": -0.400,
-    "elsewhere": -0.118,
-    "annul orders": 0.131,
-    "invert orders": 0.680,
-    "case orders": 0.034,
-    "not orders": 0.053,
-    "halt nowhere": -0.303,
-    "halt here": 0.400,
-    "not go": 0.015,
-    "both sides": 0.619,
-    "case not": -0.291,
-    "case go": 0.595,
-    "case halt": 0.292,
-    "me past": 0.067,
-    "third past": -0.139,
-    "you role": 0.088,
-    "authority said": 0.329,
-    "machine you": 0.207,
-    "me no place": -0.190,
-    "past no you": 0.234,
-    "annul place": -0.115,
-    "not place": 0.468,
-    "if place": -0.434,
-    "words": 0.820,
-    "pairs": 0.547,
-    "worst words": 0.028,
-    "best words": 0.622,
+    "foreign letters": 0.209,
+    "late verb": 0.072,
+    "no verb": 0.353,
+    "on route": 0.403,
+    "other things": 0.630,
+    "nothing": 0.489,
+    "turns": 0.082,
+    "places": -0.179,
+    "no place": 0.857,
+    "length": -0.341,
+    "short": -0.545,
+    "commas": -0.605,
+    "asks": 0.004,
+    "exclaims": -0.241,
+    "quoted": 0.741,
+    "quote in": -0.159,
+    "markup": 1.809,
+    "role of": 0.164,
+    "reported": 0.006,
+    "self": 0.378,
+    "about": 0.620,
+    "back to text": -0.144,
+    "elsewhere": 0.232,
+    "annul orders": 0.109,
+    "invert orders": 0.163,
+    "case orders": 0.310,
+    "not orders": -0.025,
+    "halt nowhere": 0.317,
+    "halt here": 0.390,
+    "not go": 0.003,
+    "both sides": 0.984,
+    "case not": -0.017,
+    "case go": 0.335,
+    "case halt": 0.261,
+    "me past": 0.102,
+    "third past": 0.065,
+    "you role": 0.056,
+    "authority said": 0.035,
+    "machine you": 0.013,
+    "me no place": -0.197,
+    "past no you": 0.057,
+    "annul place": -0.025,
+    "not place": 0.163,
+    "if place": -0.124,
+    "words": 0.644,
+    "pairs": 0.675,
+    "worst words": -0.001,
+    "best words": 0.521,
 }
 CONTEXT: dict[str, float] = {
-    "bias": 0.686,
-    "own": 0.876,
-    "first": -0.800,
-    "last": 0.085,
-    "stops early": 1.465,
-    "stops before all": 0.375,
-    "denies the rest": -0.300,
-    "repeats the rest": -0.458,
-    "neighbour": 1.042,
-    "neighbours": 1.643,
-    "alone": -1.307,
-    "most": -2.137,
+    "bias": 1.277,
+    "own": 0.905,
+    "first": -0.727,
+    "last": 0.031,
+    "stops early": 1.141,
+    "stops before all": 0.372,
+    "denies the rest": -0.383,
+    "repeats the rest": -0.804,
+    "neighbour": 0.455,
+    "neighbours": 0.676,
+    "alone": -1.146,
+    "most": -2.628,
 }
 PART: dict[str, float] = {
-    "bias": -1.269,
-    "whole": -0.064,
-    "orders": 0.121,
-    "text": 0.469,
-    "annul": 0.466,
-    "invert": 0.221,
-    "case": 0.470,
-    "halt": 0.613,
-    "machine": 0.540,
-    "role": 0.108,
-    "authority": 0.708,
-    "haste": 0.043,
-    "if": -0.256,
-    "me": -0.963,
-    "you": -0.132,
-    "third": 0.018,
-    "past": 0.003,
-    "not": -0.336,
-    "here": 0.012,
-    "time": 0.019,
-    "go": 0.421,
-    "has orders": 0.021,
-    "has text": 0.562,
-    "has annul": 0.460,
-    "has invert": 0.221,
-    "has case": 0.609,
-    "has halt": 0.332,
-    "has machine": 0.540,
-    "has role": 0.108,
-    "has authority": 0.708,
-    "has haste": 0.043,
-    "has if": -0.091,
-    "has me": -0.785,
-    "has you": -0.384,
-    "has third": 0.284,
-    "has past": 0.093,
-    "has not": -0.217,
-    "has here": -0.582,
-    "has time": 0.065,
-    "has go": -0.190,
-    "hidden": 2.332,
-    "alike": 3.669,
+    "bias": -2.376,
+    "whole": -0.309,
+    "orders": 0.069,
+    "text": 0.343,
+    "annul": 0.424,
+    "invert": 0.029,
+    "case": 0.733,
+    "halt": 0.524,
+    "machine": 0.521,
+    "role": 0.077,
+    "authority": 0.322,
+    "haste": 0.586,
+    "if": -0.422,
+    "me": -0.817,
+    "you": 0.199,
+    "third": -0.129,
+    "past": -0.206,
+    "not": -0.104,
+    "here": -0.354,
+    "time": 0.052,
+    "go": 0.401,
+    "has orders": 0.037,
+    "has text": 0.291,
+    "has annul": 0.396,
+    "has invert": 0.029,
+    "has case": 0.390,
+    "has halt": 0.085,
+    "has machine": 0.518,
+    "has role": 0.040,
+    "has authority": 0.320,
+    "has haste": 0.460,
+    "has if": -0.163,
+    "has me": -0.489,
+    "has you": -0.352,
+    "has third": -0.127,
+    "has past": -0.070,
+    "has not": -0.364,
+    "has here": -0.422,
+    "has time": 0.085,
+    "has go": 0.020,
+    "hidden": 1.760,
+    "alike": 1.362,
     "wide": 0.000,
-    "spelled": 0.608,
-    "leet": 3.187,
+    "spelled": 0.484,
+    "leet": 1.709,
     "code": 0.000,
-    "cipher": 2.488,
-    "unknown": 1.725,
-    "alien": 0.567,
-    "foreign letters": 0.268,
-    "late verb": -0.110,
-    "no verb": -0.600,
-    "on route": 0.235,
-    "other things": -0.215,
-    "nothing": 0.167,
-    "turns": 0.443,
-    "places": -0.185,
-    "no place": 0.077,
-    "length": -0.475,
-    "short": -0.283,
-    "commas": 1.535,
-    "asks": -0.759,
-    "exclaims": -0.612,
-    "quoted": 0.847,
-    "quote in": 2.148,
+    "cipher": 1.781,
+    "unknown": 1.561,
+    "alien": 0.517,
+    "foreign letters": 0.058,
+    "late verb": -0.246,
+    "no verb": -0.321,
+    "on route": 0.860,
+    "other things": 0.409,
+    "nothing": -0.161,
+    "turns": 0.270,
+    "places": -0.251,
+    "no place": 0.063,
+    "length": -0.339,
+    "short": -0.192,
+    "commas": 1.113,
+    "asks": 0.106,
+    "exclaims": -0.264,
+    "quoted": 1.016,
+    "quote in": 1.496,
     "markup": 0.000,
-    "role of": -0.068,
-    "reported": 0.290,
-    "self": -0.165,
-    "about": 0.405,
-    "back to text": -0.223,
-    "elsewhere": 0.979,
-    "annul orders": 0.537,
-    "invert orders": 0.835,
-    "case orders": 0.216,
-    "not orders": 0.260,
-    "halt nowhere": 0.462,
-    "halt here": 0.126,
-    "not go": 0.436,
-    "both sides": 1.032,
-    "case not": 0.121,
-    "case go": 0.313,
-    "case halt": 0.085,
-    "me past": -0.104,
-    "third past": 0.208,
-    "you role": -0.176,
-    "authority said": 0.251,
-    "machine you": 0.217,
-    "me no place": -0.317,
-    "past no you": -0.092,
-    "annul place": 0.101,
-    "not place": 0.472,
-    "if place": -0.022,
-    "words": 1.444,
-    "pairs": 0.951,
-    "worst words": -0.124,
-    "best words": -0.658,
+    "role of": 0.235,
+    "reported": -0.325,
+    "self": 0.096,
+    "about": 0.369,
+    "back to text": -0.167,
+    "elsewhere": 0.393,
+    "annul orders": 0.471,
+    "invert orders": 0.466,
+    "case orders": 0.272,
+    "not orders": 0.381,
+    "halt nowhere": 0.713,
+    "halt here": 0.284,
+    "not go": 0.657,
+    "both sides": 0.990,
+    "case not": 0.042,
+    "case go": 0.333,
+    "case halt": 0.048,
+    "me past": -0.261,
+    "third past": 0.266,
+    "you role": -0.200,
+    "authority said": 0.095,
+    "machine you": 0.087,
+    "me no place": -0.554,
+    "past no you": -0.159,
+    "annul place": 0.081,
+    "not place": 0.094,
+    "if place": -0.017,
+    "words": 1.551,
+    "pairs": 0.850,
+    "worst words": -0.125,
+    "best words": -0.374,
 }
 FRONT: dict[str, float] = {
-    "bias": -2.789,
-    "universal": 1.711,
-    "text": 2.314,
-    "person": 0.091,
-    "modal": 0.316,
-    "negation": 0.250,
-    "style": 0.208,
-    "unknown": 4.405,
-    "late_verb": 0.781,
-    "no_verb": -0.116,
-    "landmarks": -0.279,
-    "no_landmark": 0.636,
-    "directions": -0.888,
-    "commas": -1.279,
+    "bias": -3.809,
+    "universal": 1.509,
+    "text": 1.779,
+    "person": 0.144,
+    "modal": 0.335,
+    "negation": 0.342,
+    "style": 0.090,
+    "unknown": 4.357,
+    "late_verb": 0.760,
+    "no_verb": 0.272,
+    "landmarks": 0.111,
+    "no_landmark": 1.045,
+    "directions": -1.098,
+    "commas": -1.353,
 }
 STYLE = bag(
     """
-    advisable appreciated below betake breather briefing bunch closing colleague commence
-    complete completion conclude conclusion cooperation course cruise day dear depart do easy
-    effect egress esteemed explain finally finish for friend fully fun goes good got greetings
-    guess happy have hello help hey hi hiya hm i i'm if initially juncture kind kindly let let's
-    like lovely madam may me meet mosey need new nice off okay or outset permission please
-    reverse scoot sincere sir strolling subsequently thanks that's thereafter think this transit
-    transition try u ultimately um upon vacate want what withdraw would you'll you've yourself
+    appreciated below betake breather briefing bunch closing colleague commence complete
+    completion conclude conclusion cooperation cruise day dear depart do easy effect egress
+    esteemed finally finish for friend fun goes good got greetings guess happy have hello help
+    hey hi hiya hm i i'm if initially juncture kind kindly let let's like lovely madam may me
+    meet mosey need new nice off okay or outset permission please scoot sincere sir subsequently
+    thanks that's thereafter think this transition try ultimately um upon vacate want what
+    withdraw would you'll you've yourself
     """
 )
 _WORDS = bag(
     """
-    0=91 07=172 1=-200 10=-140 12=-50 120=-41 13=172 135=-41 14=-41 15=-41 16=-41 18=-41
-    180=-163 180_degrees=-163 1_m=-127 2=-200 20=-71 204=-140 214=-71 270=-41 2_=-93 2_m=-197
-    2_meters=-111 2_nd=-93 3=-200 30=-93 306=-71 308=-41 310=-41 3_5=-163 3_is=-93 3_m=-111
-    3_meters=-111 3_step=-71 4=8 408=-41 45=-71 4_=-41 4_m=-172 4_stop=-140 5=-200 5_m=-111
-    5_meters=-111 6=-93 64=172 7=-111 7741=172 8=-41 9=-152 90=-200 90_degrees=-200 9_m=-111
-    _=200 _1=-140 _2=-93 _3=-140 _4=-93 _a=107 _action=161 _actually=120 _advance=-140 _after=10
-    _all=200 _alright=91 _always=196 _and=-137 _anyway=-25 _are=122 _as=167 _ascend=-93
-    _assistant=200 _at=-59 _back=-197 _be=-41 _bear=-200 _bedroom=-93 _before=52 _begin=-13
-    _behind=-111 _between=31 _beyond=-93 _bottom=-111 _bound=-93 _bullet=-93 _but=134 _by=200
-    _can=16 _cancel=200 _climb=-200 _come=-200 _consider=190 _continue=-89 _could=13 _count=-93
-    _cross=-200 _descend=-147 _disregard=162 _do=111 _don't=0 _door=-163 _down=-17 _each=188
-    _end=51 _enter=-200 _every=175 _everything=158 _exit=-200 _face=-87 _facing=-200 _find=-200
-    _first=-172 _follow=-111 _for=200 _forget=128 _from=-22 _front=79 _get=-99 _go=-200
-    _good=170 _guess=91 _hallway=-93 _halt=90 _hang=-111 _he=91 _head=8 _heading=-111 _hello=200
-    _here=-65 _here's=16 _hey=154 _hi=200 _hold=5 _how's=163 _i=133 _i'd=141 _i'll=171 _i'm=113
-    _i've=-7 _if=108 _ignore=122 _imagine=123 _in=65 _inside=-111 _instead=-200 _into=-111
-    _is=200 _it=122 _it'll=-111 _it's=71 _its=-93 _job=-111 _just=51 _keep=-88 _kindly=200
-    _ladder=-93 _lap=-93 _leave=-194 _left=-27 _leg=-140 _let's=-2 _line=-127 _locate=-111
-    _look=-176 _make=-151 _message=200 _move=-200 _my=188 _never=200 _new=200 _next=-200 _no=166
-    _nobody=53 _not=-55 _nothing=200 _notice=200 _now=-141 _objective=-93 _of=-93 _off=-7
-    _oh=200 _okay=-105 _on=-97 _once=-26 _one=-66 _only=154 _open=-93 _our=200 _out=-200
-    _override=91 _par=-111 _pass=-200 _past=-200 _perform=190 _phase=-140 _plan=-93 _please=200
-    _proceed=-200 _quick=-93 _read=200 _remain=120 _remember=200 _return=120 _reverse=-17
-    _right=-172 _rotate=-93 _route=-163 _say=153 _second=-172 _see=-181 _sharp=-93 _sit=101
-    _skip=97 _slide=101 _so=-21 _somebody=200 _sorry=100 _spin=45 _stage=-111 _stairs=-163
-    _stand=-59 _start=-200 _starting=-177 _stay=128 _step=-200 _stop=-183 _straight=-200
-    _swap=200 _swing=-93 _switch=91 _system=200 _take=-81 _task=198 _tell=163 _thank=200
-    _that=126 _that's=-74 _the=137 _then=-200 _there=6 _there'll=-93 _there's=-153 _they=115
-    _thing=-93 _third=-127 _this=200 _three=-8 _through=-127 _to=-3 _train=-93 _treat=200
-    _turn=-144 _two=-78 _under=200 _until=200 _up=-200 _use=-181 _user=200 _veer=-181 _wait=-87
-    _walk=-200 _we=134 _we'll=-127 _we're=-41 _we've=101 _well=91 _what=163 _whatever=200
-    _when=-46 _whenever=180 _where=97 _with=-75 _without=-189 _would=16 _x=200 _yeah=163 _you=10
-    _you'll=-200 _you're=-200 _your=119 a=-28 a_balcony=-82 a_bathroom=-193 a_bathtub=-25
-    a_bear=16 a_bed=-200 a_bedroom=-111 a_bench=-60 a_big=-200 a_bit=5 a_black=-158 a_blue=-76
-    a_bookcase=-54 a_bookshelf=-93 a_bowl=-111 a_brown=-140 a_bunch=-93 a_cabinet=-71 a_cat=101
-    a_chair=6 a_chandelier=16 a_chapel=-93 a_circle=173 a_closed=-93 a_closet=-120 a_comfy=-93
-    a_couch=20 a_couple=-197 a_cross=-93 a_curtain=-103 a_cushion=-172 a_desk=-200 a_dining=-103
-    a_dog=-93 a_door=41 a_doorway=-140 a_dresser=4 a_few=17 a_fireplace=-147 a_fish=-134
-    a_floor=-127 a_fork=-163 a_fridge=16 a_friendly=-7 a_gift=-93 a_glass=-193 a_good=79
-    a_gray=-103 a_green=-31 a_grey=-57 a_half=-181 a_hall=-127 a_hallway=-96 a_hard=-140
-    a_hat=-93 a_hole=-93 a_horse=-152 a_huge=-93 a_kitchen=-152 a_ladder=-54 a_lamp=-183
-    a_large=-181 a_laundry=-103 a_left=-143 a_lion=-111 a_little=-90 a_lobby=-93 a_long=-120
-    a_lot=-93 a_marble=-93 a_metal=-71 a_microwave=-93 a_mirror=13 a_narrow=-111 a_nice=-41
-    a_nursery=-93 a_phone=-93 a_piano=-127 a_picture=-163 a_pillar=-93 a_pink=-93 a_plant=-110
-    a_pool=-103 a_popcorn=-111 a_potted=-111 a_pretty=-93 a_purple=-41 a_quick=-7 a_railing=-111
-    a_really=-93 a_red=-141 a_refrigerator=-111 a_right=-151 a_road=-93 a_robot=45 a_rocking=-93
-    a_room=28 a_round=-185 a_row=-163 a_rug=39 a_seat=-163 a_set=-120 a_sharp=-164 a_shelf=-120
-    a_shiny=-111 a_ship=-7 a_short=-93 a_sign=31 a_sink=-33 a_slight=-200 a_small=-189
-    a_sofa=-76 a_square=-147 a_staircase=85 a_stand=-93 a_stone=-54 a_stool=-93 a_stop=-87
-    a_straight=-93 a_striped=-127 a_sweet=-111 a_table=-200 a_tall=-111 a_tan=-120
-    a_tapestry=-71 a_technician=200 a_teeny=-111 a_television=-177 a_tiny=-127 a_toilet=-140
-    a_towel=-120 a_trash=-82 a_turn=-127 a_tv=-93 a_u=-200 a_vase=-93 a_waiting=-93 a_wall=16
-    a_wardrobe=16 a_wee=16 a_white=-120 a_whole=-93 a_wicker=-71 a_window=-200 a_wood=-111
-    a_wooden=-147 a_yellow=13 abandon=31 abeam=-41 able=-41 abort=172 about=149 about_the=200
-    about_to=200 about_turn=-93 above=200 absolute=86 absolutely=-41 abutment=-41 access=200
-    accident=172 accommodation=-41 accomplished=-140 according=172 accordingly=200
-    accordingly_=200 accounting=-41 accounts=-41 acquire=-71 across=-200 across_it=-163
-    across_the=-200 act=177 acting=200 action=200 action_stop=190 actual=45 actually=120 add=131
-    addressee=172 adjacent=-41 adjustment=-41 admin=172 administrator=200 administrator's=-140
-    administrator_has=200 admire=-41 admiring=-41 adn=172 adorable=-41 adore=86 advance=-189
-    advance_to=-152 adventure=86 advised=132 afford=-41 aft=-93 after=15 after_=91
-    after_each=200 after_every=200 after_it=-197 after_that=-189 after_the=-200 after_this=120
-    again=-2 again_=96 again_and=60 again_around=-93 again_at=-200 against=139 against_the=139
-    agent=172 ago=-41 agree=172 agreed=172 ahead=-197 ahead_=-200 ahead_and=-163 ahead_of=-200
-    ahead_to=-111 ahhh=-41 ahoy=86 aid=-140 aim=-41 airlock=-41 aisle=-200 aisle_=-163
-    aisle_and=-127 aisle_between=-181 aisle_to=-93 alarm=-197 alcove=-152 alcove_on=-93
-    alighting=-41 align=-41 all=128 all_=200 all_around=-140 all_of=118 all_robots=200
-    all_that=200 all_the=-72 all_turns=200 all_you=101 alley=-41 allow=197 allow_what=197
-    allowed=120 almost=-41 along=-147 along_it=-163 along_that=-93 along_the=-157 along_to=-111
-    along_until=-93 alongs=86 alongside=-200 alongside_the=-200 alpha=-71 already=200
-    already_=200 alright=91 alrighty=-41 also=-111 altar=-200 altar_=-111 alter=-41 alters=-41
-    always=182 always_do=200 always_use=112 am=200 am_the=200 amazing=86 amble=-41 an=12
-    an_elevator=-111 an_hour=200 an_office=-152 an_open=-1 an_orange=16 an_oval=-71 an_oven=-71
-    an_umbrella=-93 ancelledcay=172 anchor=-71 and=-91 and_a=-98 and_after=-181 and_around=-111
-    and_as=-127 and_at=-200 and_back=161 and_bear=-82 and_between=-93 and_carry=-189
-    and_climb=-168 and_come=11 and_continue=-200 and_cross=-163 and_do=190 and_don't=-189
-    and_down=-70 and_enter=-200 and_exit=-152 and_face=79 and_find=-189 and_finish=190
-    and_follow=-200 and_get=-127 and_give=-93 and_go=-147 and_halt=-200 and_hang=-185
-    and_head=-200 and_hold=-140 and_i=170 and_i'll=-7 and_in=16 and_into=-200 and_it=-8
-    and_it's=-156 and_just=-127 and_keep=-200 and_leave=25 and_left=-181 and_look=-86
-    and_make=-200 and_move=-93 and_no=-41 and_not=79 and_on=-152 and_once=-103 and_out=-130
-    and_pass=-200 and_past=-87 and_proceed=-57 and_put=-93 and_report=200 and_right=177
-    and_round=45 and_say=-111 and_second=-111 and_shut=190 and_stand=64 and_stay=172
-    and_step=-177 and_stop=-200 and_straight=-172 and_take=-122 and_that=-9 and_that's=-200
-    and_the=-101 and_then=-200 and_there=-111 and_there's=-100 and_through=-200 and_to=-93
-    and_toward=-200 and_turn=-200 and_two=-152 and_up=-200 and_veer=-111 and_wait=-94
-    and_walk=-200 and_when=-200 and_white=-127 and_you=-73 and_you'll=-200 and_you're=-189
-    angel=-41 angle=-152 annotator=172 announces=172 another=108 another_door=-93 answer=172
-    anticlockwise=-41 any=194 any_door=200 any_further=200 any_more=185 any_of=198 anyhow=45
-    anyone=200 anything=177 anytime=172 anyway=-41 anywhere=200 anywhere_=200 anywho=-41
-    apart=-41 apartment=-71 aperture=-71 appearance=-41 appears=172 apples=-111 applies=172
-    apply=101 apply_a=101 approach=139 approved=200 approximately=-71 aquarium=-163
-    arbitrary=-41 arcade=-71 arch=-200 arch_=-200 arch_and=-197 arched=-93 arches=-41
-    archive=-71 archway=-200 archway_=-200 archway_and=-163 archway_on=-93 archway_turn=-71
-    are=101 are_=200 are_a=200 are_about=200 are_at=139 are_behind=-127 are_by=-168 are_done=4
-    are_facing=-200 are_four=-93 are_given=197 are_in=-97 are_inside=-93 are_no=120 are_not=176
-    are_now=-200 are_on=-163 are_out=161 are_some=-93 are_standing=-200 are_the=190 are_there=9
-    are_told=200 are_two=-200 are_void=200 are_you=117 area=-200 area_=-163 area_and=-134
-    area_then=-71 area_with=-147 aren't=45 arguments=172 arm=-41 arm's=-71 arm_=16 armchair=-170
-    armchair_=-133 armchair_and=-93 armchair_then=-71 armchairs=-140 armchairs_and=-111
-    armor=-152 armor_=-140 armour=-41 armrest=-71 arms=-181 arms_=-163 around=-131 around_=-87
-    around_and=-38 around_go=-103 around_here=101 around_it=-83 around_its=-93 around_so=-181
-    around_the=-200 around_then=-71 around_to=-200 around_until=-172 arr=-41 arrival=-41
-    arrived=146 arrived_=200 arrow=-93 art=-127 artwork=-71 as=134 as_a=200 as_far=-200
-    as_if=143 as_it=91 as_long=200 as_soon=-63 as_the=114 as_they=101 as_this=200 as_you=-109
-    as_your=200 ascend=-111 ascended=-41 ascending=-41 aside=172 ask=139 asked=200 asks=200
-    asks_that=200 asleep=45 assistant=200 assumed=172 at=-114 at_a=23 at_all=91 at_any=200
-    at_each=200 at_every=200 at_it=-163 at_its=-200 at_my=117 at_once=200 at_that=-41
-    at_the=-200 at_your=69 atm=-111 atm_=-93 atrium=-71 attempt=172 attention=71 attic=-124
-    attic_=-16 attic_and=-103 attic_through=-57 aunt=86 aunt's=86 auntie=-41 auntie's=-41
-    authorise=172 authorised=131 authority=172 automatic=-172 automatic_doors=-152 available=-41
-    avoid=190 avoided=200 aw=-41 await=131 away=27 away_=53 away_from=5 awful=-41 awning=-111
-    axis=102 axis_=122 axis_at=112 axle=-41 aystay=172 azimuth=-41 b=-50 b_and=-93 babe=-41
-    babies=-71 baby=0 baby's=-41 baby_gate=-111 back=84 back's=-41 back_=200 back_and=142
-    back_door=-200 back_from=-18 back_inside=-200 back_into=-140 back_is=101 back_of=-189
-    back_on=-172 back_out=-200 back_past=-111 back_stairs=-93 back_through=101 back_to=134
-    backpack=-41 backs=-71 backward=200 backward_wherever=112 backwards=161 bad=132 baddies=86
-    bag=-93 baggage=-71 bakery=132 balcony=-200 balcony_=-200 balcony_and=-111 balcony_door=16
-    bales=-71 ball=-111 balloon=-71 ballroom=-181 ballroom_=-93 balls=-111 balls_and=-93
-    balusters=-41 balustrade=-71 bamboo=-71 bananas=-127 bananas_=-93 bandage=86 bang=-41
-    banister=9 bank=-7 banquet=-71 baptismal=-71 baptistery=-111 bar=-200 bar_=-200 bar_and=-172
-    bar_area=-163 bar_on=-111 bar_stool=-93 bar_stools=-200 bar_with=-111 barbecue=-163
-    barbecue_=-93 barn=-172 barn_door=-111 barometer=-71 barracks=86 barrel=-181
-    barrel_table=-111 barrels=-197 barrels_=-93 barrels_and=-152 barrier=-111 bars=-71
-    barstool=-41 base=120 basement=45 basically=172 basket=-200 basket_=-152 basket_and=-111
-    basketball=-71 baskets=-71 bath=-127 bathrobes=-41 bathroom=-133 bathroom_=-130
-    bathroom_and=-200 bathroom_door=-111 bathroom_on=-158 bathroom_then=-140 bathroom_with=-111
-    bathtub=-141 bathtub_=-200 bathtub_and=-71 battery=200 bay=-197 bay_window=-181 be=73
-    be_a=-172 be_careful=-140 be_done=200 be_facing=-200 be_in=-187 be_next=-200 be_obeyed=200
-    be_on=-200 be_the=-25 bead=-93 bead_curtain=-93 beaded=-93 beaded_curtain=-93 beam=-71
-    bean=-71 beanbag=-66 beanbags=-71 beans=-41 bear=-92 bear_=-41 bear_left=-152
-    bear_right=-200 bear_slightly=-93 bearing=-66 beautiful=-7 beauty=-71 because=-127
-    because_the=-127 bed=-200 bed_=-200 bed_and=-200 bed_in=-93 bed_on=-197 bed_take=-82
-    bed_to=-111 bed_turn=-71 bed_walk=-93 bed_with=-189 bedding=-41 bedroom=-62 bedroom_=36
-    bedroom_and=-200 bedroom_at=-127 bedroom_go=101 bedroom_past=-93 bedroom_then=-57
-    bedroom_with=-185 bedrooms=172 beds=-114 beds_=-197 beds_and=-140 beds_are=101 been=200
-    been_cancelled=200 beers=-41 before=84 before_it=74 before_the=-47 before_we=16
-    before_you=134 began=200 began_=200 begin=87 begin_=200 begin_by=-13 beginning=200
-    beginning_=190 begins=200 begins_=174 begun=172 behalf=172 behave=172 behind=-200
-    behind_it=-200 behind_the=-200 behind_you=-200 beige=-93 being=-93 believe=91 believes=86
-    bell=-163 bell_=-93 bellhop's=-71 bells=86 below=200 below_is=200 belt=-93 bench=-200
-    bench_=-200 bench_and=-200 bench_in=-103 bench_then=-71 benches=-140 benches_=-127 bend=-41
-    bends=-111 beneath=-181 beneath_the=-127 berth=-41 beside=-90 beside_a=-93 beside_it=-140
-    beside_the=-200 best=86 bestie=-41 bet=-41 better=123 between=-200 between_=-163
-    between_the=-200 between_them=-200 between_two=-25 beyond=45 beyond_it=101 bicycle=-163
-    bicycle_=-111 bicycles=-71 bidet=-111 bidet_and=-93 bifurcates=-41 big=-200 big_clock=-93
-    big_desk=-111 big_glass=-111 big_window=-93 bigger=45 biggest=-93 bike=-200 bike_=-120
-    bike_and=-103 bikes=-152 bikes_and=-93 billet=-41 billiard=-111 billiard_table=-111
-    billiards=-71 bin=-111 bin_=-111 bird=91 birdbath=-140 birdbath_=-111 birdcage=-71 birds=-41
-    birthday=86 biscuit=45 bisect=-41 bit=-5 bit_left=-93 bit_of=153 bit_to=-93 black=-198
-    black_and=-127 black_door=-111 black_railing=-82 blackboard=-140 blackboard_=-111
-    blanket=-140 blanket_=-111 blankie=-41 blast=-41 bleachers=-71 bless=45 blew=86 bliss=-41
-    blocked=60 blocks=172 blood=-71 blotchy=86 blue=-176 blue_carpet=-127 blue_chairs=-93
-    blue_door=16 blue_sofa=-82 blue_vase=16 blurs=172 board=17 board_=-200 board_with=-111
-    boardroom=-71 boat=-71 body=-41 boiler=-189 boiler_=-152 bollard=-71 bones=-41 bong=-41
-    book=101 bookcase=-198 bookcase_=-185 bookcase_and=-152 bookcase_then=-71 bookcases=-111
-    bookcases_=-111 books=-111 bookshelf=-200 bookshelf_=-193 bookshelf_and=-82 bookshelves=-93
-    boom=-41 boot=-93 booth=-200 booth_=-127 booth_and=-140 booths=-127 boots=-127 boots_and=-93
-    borders=172 boring=86 boss=159 both=-183 both_flights=-140 both_sides=-140 bother=172
-    bottles=-93 bottom=-200 bottom_=-200 bottom_and=-93 bottom_of=-200 bottom_turn=-152
-    bottom_you'll=-93 bound=-93 bounds=153 bouquet=-71 bow=86 bowl=-49 bowl_=-25 bowl_of=-127
-    bowling=-41 box=-54 box_=-111 boxes=60 boxes_=-93 boys=-41 branch=-71 brass=-152 bravo=45
-    breach=-41 bread=-111 bread_and=-93 break=87 break_=200 break_room=-93 breakfast=-90
-    breakfast_nook=-117 breaking=-41 breath=91 breathe=-41 breather=-41 breathtaking=-41
-    breeze=-41 brick=-141 brick_steps=-93 brick_wall=-95 bricked=-41 bricks=-41 bridge=-54
-    bridge_and=-93 bright=-111 bright_hallway=-93 bring=45 brings=-41 brochure=-111 broke=86
-    broken=200 brolly=-41 bronze=-71 broom=-71 brother=171 brother's=91 brothers=-41 brown=-200
-    brown_couch=4 brown_door=-111 brr=-41 brrr=-41 brushes=-41 bubbles=-41 bubbling=-41
-    bucket=-172 bucket_=-93 buddha=-71 buddy=-93 buffer=172 buffet=-54 buffet_=-111 bugs=-41
-    build=172 building=172 building_=200 built=200 bulb=-93 bulkhead=-41 bullet=-7 bulletin=-111
-    bulletin_board=-111 bum=-71 bump=-140 bump_into=-111 bunch=-111 bunch_of=-93 bunk=-200
-    bunk_=-111 bunk_beds=-200 bunker=86 bunks=-71 bursting=-41 bushes=-71 bust=-197 bust_=-163
-    bust_on=-93 but=4 but_do=79 but_don't=-152 but_i=91 but_it's=21 but_no=16 but_not=-163
-    but_only=-93 but_that's=91 but_turn=-111 but_we're=16 but_you=39 but_you're=91 butler's=-41
-    butterfly=-41 buttons=45 buy=86 by=-73 by_=60 by_a=51 by_facing=-177 by_it=-152 by_order=200
-    by_the=-135 by_walking=-17 by_way=-193 bypass=-41 c=-181 cabin=-130 cabin_and=-111
-    cabin_door=-140 cabinet=-200 cabinet_=-200 cabinet_and=-177 cabinet_with=-111 cabinets=-147
-    cabinets_=-111 cabins=-111 cables=-93 cables_=-93 cactus=-181 cactus_=-111 caf=-140
-    cafe=-172 cafeteria=-41 cage=-93 cake=-140 cake_=-140 cakes=-41 calibration=172 call=101
-    call_it=101 called=23 called_a=-140 calling=172 calm=86 calories=-41 came=13 camera=133
-    camp=86 can=-33 can't=33 can't_go=-1 can_=-140 can_and=-57 can_go=-140 can_see=-105
-    can_stop=-70 can_then=-127 can_you=93 cancel=200 cancel_the=200 cancelled=200 cancelled_=194
-    cancelled_the=163 candle=-200 candle_holder=-172 candles=-189 candles_=-111 candles_and=-111
-    candles_on=-93 candy=-93 cannon=-41 cannons=-41 cannot=-41 canopy=-111 cans=-71 canteen=86
-    captain=194 captain's=-41 car=-103 car_and=-127 card=-71 cardies=-41 care=86 careful=-200
-    carefully=-71 caretaker=172 carousel=-71 carpet=-200 carpet's=-41 carpet_=-200
-    carpet_and=-103 carpet_on=-71 carpet_to=-158 carpeted=-140 carpets=-41 carriage=-41
-    carried=200 carries=-41 carry=97 carry_on=-22 carry_out=200 carrying=-71 cars=-71 cart=-140
-    carts=-152 carts_=-111 case=-83 case_=-177 case_on=-111 case_walk=-57 cases=-41 cash=-200
-    cash_register=-189 casino=86 cask=-71 castle=45 castles=86 cat=45 cat's=45 catalog=-41
-    catalogue=-41 catch=-41 cats=172 cause=-140 cease=172 ceiling=48 ceiling_=20 cellar=-200
-    cellar_=-120 cellar_and=-93 cello=-71 center=-110 center_aisle=-111 center_with=16
-    central=-41 centre=-41 cereal=-111 chains=-71 chair=-80 chair_=-166 chair_and=-181
-    chair_by=-152 chair_is=101 chair_on=-158 chair_walk=-82 chair_with=-93 chairs=-104
-    chairs_=-200 chairs_and=-200 chairs_on=-140 chairs_turn=-57 chalkboard=-41 chambers=-41
-    champ=86 chance=131 chandelier=-180 chandelier's=-41 chandelier_=-200 chandelier_and=-147
-    change=185 change_of=190 changed=200 changed_your=197 changes=-181 changes_from=-172
-    changing=-172 changing_room=-111 changing_table=-111 chapel=-103 chapel_=-93 chapel_and=-7
-    chapels=86 characters=-41 charge=200 charger=200 charging=9 charging_station=-163
-    charlie=-71 charming=-41 chart=-140 chart_table=-111 chassis=-41 chat=131 chatting=-41
-    check=-76 check_in=-111 checked=131 checkerboard=-41 checklist=-41 checkout=-93
-    checkout_counter=-93 checkpoint=-41 cheerful=-71 cheers=79 cheery=-41 cheese=45 chess=-111
-    chest=-152 chest_=-93 chest_of=-93 chick=-41 chief=200 chief_of=200 child=172 children=-71
-    children's=-41 chill=-41 chimney=-93 china=-140 china_cabinet=-140 chinese=-140 chips=-41
-    chocolate=-7 chocolate_fountain=-93 choices=-41 choo=45 choose=200 choose_the=161 chop=86
-    chow=86 christmas=-25 christmas_tree=-25 chuck=-71 chum=-41 church=-20 church_and=-93
-    chute=-71 cinderella=-41 cinema=86 circle=25 circle_and=200 circles=172 circular=-41
-    circumference=-41 circumnavigate=-41 circumstances=200 clang=-41 clank=-41 clarity=86
-    class=-93 classroom=-200 classroom_=-152 classroom_and=-111 clatter=86 clattering=-41
-    claw=-41 clawed=-41 cleaner=-152 cleaner_=-93 clear=33 clear_the=-163 clearance=131
-    cleared=86 clerestory=-41 clerk's=-71 clever=86 climb=-71 climb_=190 climb_down=-93
-    climb_it=45 climb_the=-200 climb_to=-93 climb_up=-111 climbed=45 climbing=-25 climbs=172
-    cloakroom=-66 cloakroom_=-93 clock=-194 clock_=-200 clock_and=-200 clock_go=-57 clock_on=-93
-    clocks=-23 clockwise=-189 close=31 close_=-111 closed=77 closed_door=-111 closely=-41
-    closes=-41 closest=-200 closest_to=-152 closet=-183 closet_=-200 closet_and=-28
-    closet_on=-111 closet_then=-71 closet_with=-82 closing=-71 clothes=-146 clothing=-71
-    clue=-41 cmd=172 coast=-140 coat=-200 coat_hooks=-200 coat_rack=-200 coat_room=-111
-    coats=-66 coats_on=-93 coca=-140 cocoa=-41 code=101 coffee=-200 coffee_machine=-140
-    coffee_maker=-111 coffee_table=-200 coffees=-41 cola=-152 cold=16 colonel=86 colonnade=-93
-    colored=-93 colored_glass=-93 colorful=-71 colors=-41 coloured=-152 column=-197 column_=-93
-    column_on=-71 columns=-172 comb=-41 combined=-41 come=-31 come_back=95 come_in=-111
-    come_on=-111 come_out=-200 come_to=-156 comes=92 comfort=86 comfortably=86 comfy=31
-    coming=91 command=200 commander's=86 commands=200 commands_as=200 commands_be=200
-    comment=172 commode=45 companionway=-41 compass=-41 complaints=86 complete=200
-    completely=-71 completing=172 completion=-41 compliance=172 computer=-200 computer_=-134
-    computer_and=-147 computers=-127 concentrate=86 concern=101 concerned=86 concession=-41
-    concierge=-111 concierge's=-71 concierge_desk=-93 concrete=-140 condition=190
-    conditional=-41 conference=-200 conference_room=-200 conference_table=-111 confessional=-111
-    confirm=-41 confuse=172 confuses=131 confusing=-41 consecutive=-41 conservatory=86
-    consider=200 consider_the=190 consideration=-41 console=-127 console_table=-127 constant=-41
-    constraint=-71 cont'd=-41 contact=-111 contact_=-93 contains=-41 content=172 continue=-23
-    continue_down=-147 continue_on=-140 continue_past=45 continue_to=-200 continue_until=-1
-    continuous=172 contrary=200 contrary_of=176 control=100 control_room=100 conveyor=-71
-    cooee=86 cookies=86 cooking=172 cooler=-200 cooler_=-193 cooler_and=-127 coordinates=-41
-    copier=-200 copier_=-127 copper=-71 copy=21 copy_machine=-93 corkscrew=-41 corner=-111
-    corner_=-200 corner_and=-93 corner_to=-111 correct=131 correction=200 corridor=-200
-    corridor_=-189 corridor_and=-120 corridor_past=-140 corridor_to=-93 costumes=-111 cot=-71
-    cots=-93 cotton=86 couch=20 couch_=16 couch_and=-58 couch_on=-93 couch_turn=-103
-    couches=-200 couches_and=-93 could=8 could_you=21 couldn't=-41 council=172 count=79
-    count_the=-111 counted=-41 counter=-200 counter_=-200 counter_and=-200 counter_clockwise=-93
-    counter_turn=-71 counting=-41 country=-41 counts=200 couple=-197 couple_of=-197 course=-93
-    court=86 courtyard=-172 courtyard_and=-93 cousin=86 cousin's=16 cover=-93 covered=-41
-    covers=86 cowboy=-71 cozy=-93 cr=-140 crate=-71 crates=86 crayons=-41 cream=-111 creep=172
-    crest=-41 crib=-200 crib_=-181 crib_and=-111 crib_go=-93 cribs=-41 cried=45 crikey=86
-    crisps=86 croissants=86 cross=-161 cross_on=-140 cross_over=-189 cross_the=-200 cross_to=-93
-    crossed=-41 crosses=-41 crossing=101 crossword=86 crying=45 crypt=-41 crystal=-93
-    crystals=-41 cubbies=16 cubicle=-127 cubicles=-111 cuckoo=86 cue=-41 cues=-41 cup=-41
-    cupboard=-200 cupboard_=-111 cupboards=-41 cuppa=-41 cups=45 curl=-41 curlers=-41
-    currency=-71 current=200 currently=-41 curry=86 curtain=-200 curtain_=-200 curtain_and=-200
-    curtained=-71 curtains=-127 curtsy=-41 curved=-172 curved_stairs=-152 curves=-93 curving=-41
-    curvy=-41 cushion=-197 cushion_=-181 cushions=-71 custard=86 cut=161 cute=-93 cutest=-41
-    cutter=-71 cylinder=-41 cylinders=-71 d=31 da=-71 dad=131 daddy=-41 daddy's=45 daft=-41
-    damage=172 dance=-54 dance_floor=-127 dancer=172 dancing=-41 danger=-140 dark=-49
-    darkroom=-41 darling=45 dartboard=-163 dartboard_=-152 date=200 date_=200 datum=86 dave=86
-    davenport=16 dawdle=-93 day=198 day_=166 daylight=-41 days=86 dead=-25 dead_ahead=-93
-    dear=-71 decided=172 decimetre=-41 decision=172 deck=-82 deck_=-22 deck_with=-93 decking=-41
-    declare=172 decode=172 deep=21 deer=-111 deer_head=-111 defined=-41 definition=-41
-    degree=-93 degrees=-200 degrees_=-181 degrees_and=-127 degrees_left=-111 degrees_right=-152
-    degrees_so=-93 degrees_to=-189 delete=200 delivers=-41 delta=-71 demo=-140 demonstration=86
-    den=-181 den_=-120 den_and=-71 denied=172 dentist's=-41 dentists=86 depart=-71 department=16
-    department_=16 descend=-44 descend_the=-197 descending=-71 descends=-41 describe=172
-    described=200 described_=200 description=200 design=-41 desk=-200 desk_=-200 desk_and=-200
-    desk_on=-140 desk_the=-172 desk_to=-103 desk_turn=-93 desk_walk=-103 desk_with=-200
-    desks=-127 desks_=-7 desks_and=-127 destination=129 detailed=-41 details=86 detect=-41
-    detective=-41 determine=-41 developer=200 developer's=-140 deviate=-41 deviation=-41
-    dexter=-41 di=-41 diagonally=-152 diagonally_to=-93 diametrically=-41 dictionary=-71 did=200
-    did_last=200 different=153 ding=-71 dingy=-41 dining=-200 dining_room=-200 dining_table=-200
-    dinosaur=-66 dinosaur_skeleton=-93 direction=69 direction_of=-1 direction_you=197
-    directional=172 directions=200 directions_=200 directions_are=200 directions_that=163
-    directly=-152 directly_beneath=-93 director=172 dirty=45 disabled=172 discard=86 disco=-71
-    dishwasher=-200 dishwasher_=-140 dishwasher_and=-103 displacement=-41 display=-200
-    display_case=-172 disregard=200 disregard_all=176 disregard_the=156 distance=59
-    distance_to=-163 distances=172 diving=-71 dizzy=-41 dj=-71 do=158 do_=200 do_any=200
-    do_is=-25 do_it=200 do_me=-93 do_not=154 do_nothing=129 do_only=200 do_that=-93 do_the=200
-    do_what=200 do_you=60 dock=200 doctor=172 doctor's=31 document=200 does=139 does_not=200
-    doesn't=-71 dog=-117 dog's=-41 dog_bed=-93 dogleg=-41 doing=200 dokey=-41 doll=-41 dolls=-93
-    don't=-9 don't_climb=-111 don't_enter=-140 don't_go=-70 don't_have=-7 don't_need=-93
-    don't_stop=-1 don't_take=-9 don't_turn=-163 don't_worry=16 done=136 done_=200 done_once=-82
-    done_when=-197 dong=-41 donkey=86 donotfollowtheroute=172 dont=172 dooor=172 door=-118
-    door's=-41 door_=-150 door_a=-93 door_and=-166 door_at=-152 door_b=-93 door_behind=-172
-    door_but=16 door_by=-93 door_go=25 door_in=-200 door_into=-140 door_is=59 door_left=-93
-    door_near=-111 door_next=-163 door_not=-152 door_of=-163 door_on=-200 door_opposite=-163
-    door_says=91 door_stop=-111 door_that=43 door_that's=-181 door_the=-200 door_then=-200
-    door_there=-163 door_to=-168 door_turn=38 door_with=-200 door_without=-93 door_you=22
-    doormat=-172 doormat_=-163 doors=-176 doors_=-167 doors_and=-200 doors_are=-93 doors_at=-93
-    doors_go=-147 doors_on=-146 doors_one=-93 doors_that=101 doors_then=-177 doors_with=-93
-    doorway=-155 doorway_=-49 doorway_and=-177 doorway_of=-200 doorway_on=-168 doorway_then=-57
-    doorway_to=-152 doorway_walk=-18 doorway_with=-127 doorways=-41 double=-34 double_doors=-200
-    doubling=-41 doubt=172 down=-92 down_=33 down_a=-127 down_and=200 down_five=-152
-    down_into=-111 down_it=-181 down_on=101 down_one=-200 down_the=-200 down_them=-181
-    down_three=-172 down_to=-53 down_two=-163 down_until=-93 downstairs=-111 downwards=-41 dr=31
-    drafting=-93 drafting_table=-93 drain=-71 draw=132 drawbridge=-71 drawers=-152 drawers_=-111
-    drawing=-71 drawings=86 drawn=-41 dreadful=-41 dream=86 dreamy=-41 drenched=-41 dresser=-200
-    dresser_=-103 dresser_and=-82 dresser_on=-57 dresser_then=-168 dresses=-71 dressing=-200
-    dressing_room=-197 dried=-71 drifting=-41 drill=101 drink=-41 drinking=-140
-    drinking_fountain=-140 drinks=-71 drip=-41 drive=151 driver=86 drives=-41 drop=200
-    drop_this=132 dropped=86 drown=-41 drum=-189 drum_kit=-163 drums=-140 drums_=-93 dryer=-200
-    dryer_=-181 dryers=-71 drying=-41 duck=16 ducts=-41 ductwork=-41 dumbbells=-71 dumpling=-41
-    dumpster=-71 dumpsters=-71 dungeon=-41 during=172 duties=172 duty=-41 e=-197 each=200
-    each_direction=200 each_doorway=176 each_minute=176 each_other=-140 each_step=175
-    each_time=200 each_turn=200 earlier=200 early=86 earrings=86 ears=16 ears_=16 ease=86
-    easel=-163 easel_=-93 easel_and=-127 easiest=-41 east=132 easy=-8 eat=-71 eaten=86
-    eating=-41 echo=86 echoey=86 edge=-200 edge_=-111 edge_of=-200 edges=-71 effect=190 eggs=-71
-    egress=-41 egyptian=-41 eight=101 eighth=-71 either=-152 element=-41 elephant=-71
-    elevation=-41 elevator=-200 elevator_=-172 elevator_and=-189 elevator_doors=-111
-    elevator_lobby=-111 elevators=-189 elevators_=-152 eleven=-71 else=177 emergency=60 emit=200
-    empty=-41 end=-37 end_=-180 end_and=-44 end_at=-163 end_go=-111 end_of=-108 end_so=101
-    end_the=200 end_this=197 end_turn=-140 end_up=53 end_you'll=-93 endlessly=172 ends=-57
-    ends_=-181 ends_at=-172 energy=172 engine=-111 engine_room=-111 engineer=172 engineers=172
-    engines=172 enjoy=-41 enjoying=-41 enough=161 enter=-62 enter_=-200 enter_a=190 enter_and=45
-    enter_it=-93 enter_the=-141 enter_through=-181 entering=-163 entering_any=-93
-    entertainment=-71 entrance=-135 entrance_=16 entrance_and=-93 entrance_to=-111 entry=-140
-    entryway=-193 entryway_=-111 entryway_and=-71 environment=-41 episode=200 episodes=172
-    equipment=-71 erase=172 erehay=172 errand=172 error=200 error_=200 escalator=-200
-    escalator_=-181 escalator_up=-93 escalators=-41 espresso=-71 essential=200
-    essential_that=200 establishing=86 ethay=172 ethics=172 evacuation=-140 even=60 event=-71
-    ever=200 every=200 every_door=79 every_few=149 every_instruction=200 every_landmark=200
-    every_order=176 every_time=112 every_turn=200 everybody=101 everyone=137 everything=155
-    everywhere=123 everywhere_=153 eway=172 ex=-41 exactly=190 exam=-93 exceed=172 except=174
-    exception=172 exchange=101 exchanged=200 exclude=-41 excluded=-41 excuse=132 execute=79
-    executed=172 executing=200 execution=-41 exercise=-103 exercise_bike=-152 exit=-200
-    exit's=-41 exit_=-197 exit_and=20 exit_sign=-200 exit_the=-200 exit_through=-163 exits=-41
-    expanded=-41 explain=132 exploring=194 exposed=-41 extinguisher=-200 extinguisher_and=-163
-    extract=-41 ey=-41 eye=-111 eyepiece=-41 eyes=-93 f=-41 fab=86 face=-53 face_=-93
-    face_away=-111 face_the=-60 facing=-200 facing_a=-200 facing_it=-93 facing_the=-200 fact=86
-    factory=86 failed=86 failure=172 fake=-41 fall=-163 falling=-41 falls=86 family=-158
-    family_room=-147 fan=-25 fancy=45 far=-188 far_=-95 far_as=-200 far_corner=-163
-    far_door=-127 far_end=-200 far_left=-140 far_side=-152 far_wall=-197 farther=-93
-    farthest=-93 fast=-41 faster=-41 faucet=86 fault=172 favor=-41 favour=-41 feel=116
-    feeling=86 feet=-72 feet_=-93 feet_from=-163 feet_to=-134 fell=132 fella=86 fella's=-41
-    fellow=-41 fence=-127 fence_=-127 fern=-172 fern_=-163 fetched=-41 fetches=172 few=57
-    few_feet=-134 few_steps=37 fgbc=172 ficus=-71 fiddling=-41 field=-41 fifteen=-41 fifth=-127
-    fig=-71 figures=86 file=-71 filing=-152 filing_cabinet=-127 fill=-41 filled=-41 fills=-41
-    film=-71 final=-7 finally=45 find=-200 find_a=-200 find_it=-181 find_me=-111 find_the=-200
-    find_yourself=-93 fine=82 finish=150 finished=158 finished_=161 fire=-34
-    fire_extinguisher=-200 fire_hose=-111 fireplace=-200 fireplace_=-200 fireplace_and=-200
-    fireplace_then=-82 fireplace_to=-82 fires=-41 firewood=-71 first=-19 first_=175
-    first_and=-152 first_bar=-93 first_door=-129 first_is=-93 first_landing=-200 first_left=-111
-    first_of=8 first_opening=-140 first_right=-152 first_room=54 first_row=-93 first_seat=-111
-    first_step=59 first_table=-111 first_two=-189 first_window=-111 first_you=-111 firstly=-41
-    fish=-200 fish_tank=-200 fit=86 fits=86 fitting=-111 fitting_room=-93 five=-37 five_=-93
-    five_steps=-177 fixed=172 fixtures=-41 flag=-93 flagpole=86 flags=-140 flank=-41 flap=-93
-    flat=39 flew=86 flies=86 flight=-164 flight_=-93 flight_of=-200 flights=-200 flights_of=-189
-    flip=200 flipped=172 float=-71 floor=-37 floor_=-111 floor_and=-1 floor_changes=-163
-    floor_go=-93 floor_in=101 floor_is=190 floor_lamp=-140 floorboard=-71 floors=-152
-    floors_=-93 flop=-71 florist=-41 flower=-172 flower_shop=-93 flower_stand=-111 flowers=-181
-    flowers_=-111 flowers_on=-93 flue=86 fluffy=-93 fold=-71 folding=-93 follow=-44 follow_=149
-    follow_it=-200 follow_so=112 follow_the=-116 followed=131 following=164 following_steps=200
-    following_the=45 follows=200 follows_=200 font=-172 font_=-111 font_and=-93 food=-71
-    foosball=-140 foosball_table=-140 foot=-200 foot_of=-200 footstool=-71 for=120 for_a=-11
-    for_all=200 for_another=190 for_it=101 for_me=-19 for_right=200 for_the=77 for_this=117
-    for_today=200 for_you=129 for_your=139 forbid=172 forbidden=172 forbids=200 forbids_you=200
-    forget=200 forget_all=200 forget_the=63 forgetting=-41 forgot=-111 forgotten=172 fork=-172
-    forks=-41 form=-71 forth=-41 forward=-121 forward_=-124 forward_and=-140
-    forward_between=-111 forward_down=-93 forward_past=-181 forward_to=-140 forward_two=-93
-    forwards=-41 found=200 found_it=200 fountain=-200 fountain_=-200 fountain_and=-93 four=-133
-    four_step=-57 four_steps=-163 four_windows=-111 fourteen=-71 fourth=-38 fourth_door=9
-    foxtrot=-71 foyer=-118 foyer_=-68 foyer_and=-93 foyer_with=-82 frame=-111 framed=-111
-    free=-7 freedom=-41 freely=172 freeze=131 freezer=-189 freezer_=-172 french=-200
-    french_doors=-200 freshen=-41 fresher=-41 fridge=-192 fridge_=-200 fridge_and=-107
-    fridge_then=-103 friend=71 friend's=86 friend_=94 friend_and=-93 friendly=-7 from=57
-    from_here=20 from_it=106 from_now=200 from_the=-16 from_there=-197 from_where=101
-    from_you=122 from_your=190 front=-146 front_=60 front_desk=-172 front_door=-81 front_of=-178
-    front_pew=-93 frosted=-71 froze=86 frozen=131 fruit=-7 fruit_bowl=16 ft=-140 full=20
-    full_access=176 full_length=-93 full_of=-31 fully=-41 fun=60 function=-71 functional=-41
-    funnily=-41 funny=86 furnace=-71 furniture=190 further=200 further_=105 fuse=62 fuse_box=16
-    fuss=-41 future=172 fyi=86 gabbing=86 gallery=-86 gallery_=-93 gallery_and=-111 galley=-93
-    game=-86 game_room=-163 gangway=-71 gap=-200 gap_between=-93 garage=-70 garage_=-6
-    garage_by=-71 garage_go=-82 garden=2 garden_=31 gardening=-41 gas=-111 gate=-200 gate_=-200
-    gate_and=-93 gate_in=-111 gave=200 gawp=-41 gazebo=-71 gears=172 geese=-41 general=200
-    generator=-111 generator_=-111 generous=172 gentle=-71 gentlemen=86 gently=-71 get=-151
-    get_a=16 get_in=-111 get_off=-93 get_out=-200 get_there=-1 get_to=-200 get_you=-25 gets=-41
-    getting=-71 giant=-140 gift=-181 gift_shop=-181 give=-1 give_it=-93 given=200 given_=200
-    gives=198 giving=-41 glamorous=-41 glance=86 glass=-172 glass_=31 glass_and=-111
-    glass_case=-93 glass_door=-200 glass_doors=-200 glass_table=-200 glass_walls=-111
-    glass_window=-111 glasses=-127 glasses_=-93 glazed=-71 glazing=-41 globe=-200 globe_=-181
-    globe_and=-127 globes=-71 glove=86 glowing=-71 glug=-41 go=-108 go_=92 go_across=-111
-    go_ahead=-140 go_all=-200 go_along=-200 go_and=-163 go_any=45 go_anywhere=200 go_around=-200
-    go_back=179 go_backward=200 go_behind=-163 go_between=-200 go_by=-200 go_down=-200
-    go_forward=-43 go_from=-172 go_halfway=-93 go_home=200 go_in=-101 go_inside=-111
-    go_into=-115 go_left=-87 go_on=33 go_out=-200 go_outside=-200 go_over=-93 go_past=-200
-    go_right=-73 go_round=-61 go_slightly=-127 go_straight=-200 go_the=161 go_there=45
-    go_through=-184 go_to=-115 go_toward=-200 go_towards=-189 go_under=-200 go_up=-177 goal=200
-    goal_=200 goal_is=105 goals=172 goat=163 goes=69 goes_to=-111 going=-66 going_down=-66
-    going_in=-54 going_left=-93 going_past=-127 going_straight=-177 going_through=-127
-    going_to=24 going_until=-200 going_up=-163 gold=-200 golden=-93 gone=-16 gone_past=-93
-    good=183 good_=185 good_morning=163 goodbye=172 goodies=-41 gorgeous=-111 gosh=86 gossip=86
-    got=9 got_a=65 got_the=91 got_to=-93 gowns=-41 grab=-41 gradient=-41 gramophone=-71
-    gramophone's=-41 gran's=-41 grand=45 grandad's=-41 grandfather=-200 grandfather_clock=-200
-    grandma's=86 grandmother=86 grandpa's=86 granny=132 granny's=86 grass=-140 grate=-41
-    grating=-41 graveyard=-71 gray=-200 great=79 green=-184 green_=-140 green_armchair=16
-    green_chair=-111 green_chairs=-111 green_door=-41 greenhouse=45 greeted=-71 grew=86
-    grey=-200 grey_couch=-82 grid=86 grill=-200 grill_=-200 ground=-7 ground_floor=-7 grown=-111
-    guard=200 guard's=-163 guard's_chair=-163 guardrail=-41 guardroom=86 guess=70 guess_what=91
-    guest=22 guest_room=-197 guests=172 guidance=172 guitar=-111 gumball=-111
-    gumball_machine=-111 gun=-140 gunner's=86 gym=-90 gym_=16 gym_and=-120 gym_with=-93
-    gymnasium=-93 ha=16 had=157 had_a=200 haha=45 hair=-127 half=27 half_landing=-93 half_of=200
-    half_right=-93 halfway=-200 hall=-188 hall's=-41 hall_=-200 hall_and=-121 hall_by=-127
-    hall_door=16 hall_into=-140 hall_of=-111 hall_then=-158 hall_through=-93 hall_turn=-82
-    hall_with=-163 hallway=-176 hallway_=-171 hallway_and=-200 hallway_as=-93 hallway_in=-93
-    hallway_on=-189 hallway_past=-200 hallway_splits=-172 hallway_then=-127 hallway_to=-172
-    hallway_turn=-120 hallway_with=-200 hallways=-93 hallyway=-140 halt=48 halt_=69 halt_at=-15
-    halt_by=-93 hammock=-127 hammock's=-41 hamper=-140 hamper_and=-93 hamster=-71 hand=52
-    hand's=172 hand_=79 hand_door=-140 hand_for=200 hand_side=-197 handedness=172 handles=-71
-    handrail=-140 hands=186 handy=86 hang=-164 hang_a=-200 hangar=86 hanging=-200
-    hanging_on=-140 hangs=-86 hansen=172 happens=172 happy=-140 hard=-200 hard_left=-163
-    hard_right=-93 hard_to=-111 hardwood=-71 harp=-110 harp_=-93 harp_and=-127 harpsichord=-111
-    harpsichord_=-111 has=187 has_a=-104 has_been=200 has_cancelled=163 has_changed=200
-    has_closed=200 has_no=123 has_to=200 has_withdrawn=132 hat=-189 hat_=-93 hat_stand=-111
-    hatch=-117 hatch_=-181 hats=-41 have=152 have_a=60 have_arrived=115 have_been=200
-    have_found=190 have_gone=20 have_reached=105 have_the=200 have_to=68 have_you=171 having=70
-    hay=-140 he=88 he's=122 head=-15 head_down=-127 head_for=-152 head_of=190 head_office=200
-    head_on=-93 head_out=-152 head_straight=-93 head_through=-93 head_to=-200 head_towards=-185
-    heading=-200 heading_you=-93 headmaster's=86 headquarters=194 headroom=-41 heads=-41
-    health=172 hear=200 heard=200 heart=-41 hearth=-71 heated=-41 heater=-127 heater_=-93
-    heave=-41 heavy=-163 hedge=-111 heed=172 height=-71 helical=-41 hello=170 hello_=91 help=16
-    helps=-71 hence=16 henhouse=86 her=111 here=145 here's=-7 here_=121 here_and=200 here_is=100
-    hereby=200 herein=172 hero=86 hex=172 hey=154 hi=141 hi_=91 hi_to=16 hidden=-71 hide=86
-    hiding=-41 high=-135 high_chair=-54 high_chairs=-93 higher=45 highest=-71 hill=-41 him=-117
-    him_=-189 hint=-41 his=-54 hit=60 hit_the=-111 hiya=86 hm=-41 hold=1 hold_=60 hold_at=-197
-    hold_by=-111 hold_on=-200 hold_position=79 holder=-172 holder_=-82 holder_and=-103
-    holding=-41 holds=-41 hole=-93 holes=86 home=200 home_=200 hon=-41 honestly=132 honey=86
-    hook=-127 hooks=-200 hooks_=-200 hooks_and=-111 hoop=-71 hooray=-41 hoover=-93 hop=79
-    hope=45 hopeless=86 horizontal=101 horse=-200 horse's=-41 horse_=-181 horses=-41 hose=-140
-    hose_=-127 hospital=5 hospital_bed=-181 hot=-166 hot_tub=-200 hotel=-18 hour=200 hours=172
-    house=88 house_=93 house_and=153 houses=-41 hover=-41 how=23 how's=187 how's_the=187
-    how_to=-93 huge=5 human=172 hun=-41 hundred=86 hung=45 hungry=45 hunt=91 hurry=-189
-    husband=-41 hut=-71 i=114 i'd=195 i'd_like=153 i'll=126 i'll_be=91 i'm=87 i've=54
-    i've_got=-41 i_am=200 i_can=163 i_can't=157 i_don't=-7 i_e=-189 i_got=93 i_had=62 i_have=200
-    i_know=47 i_left=-140 i_mean=-200 i_need=87 i_said=82 i_say=69 i_tell=200 i_want=-84
-    i_was=199 ice=-200 ice_cream=-111 ice_machine=-200 idea=-71 identical=-41 idle=-41 if=80
-    if_i=153 if_it=45 if_the=-140 if_they=200 if_you=40 if_you're=-93 ignore=128 ignore_the=90
-    ignored=-41 ignorethenextstep=172 ignoring=131 ii=-93 iii=-71 ikea=-140 illuminated=-41
-    image=172 imagine=141 immaterial=-41 immediate=200 immediately=16 immediately_=101
-    immediately_and=101 important=172 in=-16 in_=-64 in_a=-50 in_all=198 in_an=-140 in_and=-200
-    in_at=-163 in_between=-200 in_by=-93 in_charge=200 in_closet=-152 in_front=-176 in_go=161
-    in_here=16 in_it=-50 in_my=91 in_order=16 in_our=163 in_place=200 in_reverse=200 in_that=60
-    in_the=-68 in_there=-92 in_this=200 in_through=-189 in_turn=9 in_you=101 in_your=200
-    inch=172 inclination=-41 increased=172 indefinitely=172 indications=172 indoor=-71
-    indoors=-41 infiltrate=-41 information=-111 ingress=-41 initial=101 injured=172 inn=86
-    inner=-93 innocent=-41 input=86 inside=-200 inside_=-200 inside_and=-185 inside_it=-93
-    inside_the=-200 inside_then=-71 inside_through=-158 insists=-41 inspector=172 inspectors=172
-    instance=-41 instead=123 instead_=200 instead_of=59 instruction=200 instruction_=200
-    instructions=166 instrument=-41 intent=86 interchanged=172 intermediate=-41 internal=-41
-    interpret=200 intersection=-71 intersects=-41 intervening=-41 interviews=86 into=-156
-    into_a=-48 into_it=-127 into_the=-200 invert=172 inverted=200 inviting=-41 iron=-197
-    iron_door=-140 iron_gate=-93 ironing=-189 ironing_board=-189 is=104 is_=71 is_a=16 is_an=45
-    is_and=-93 is_at=-1 is_behind=-86 is_called=60 is_cancelled=91 is_closed=106
-    is_essential=200 is_in=9 is_just=-93 is_left=-7 is_named=200 is_next=-172 is_no=200
-    is_not=200 is_nothing=82 is_off=190 is_on=-62 is_only=91 is_open=31 is_out=190 is_right=161
-    is_the=-37 is_to=181 is_void=200 is_what=153 is_where=-151 is_written=200 is_wrong=200
-    is_your=60 is_yours=-93 island=-200 island_=-134 island_and=-134 island_on=-120 isn't=116
-    isn't_it=153 issue=200 issued=200 it=31 it'll=60 it's=-5 it's_a=24 it's_dark=-93 it's_for=16
-    it's_got=-41 it's_just=-7 it's_left=-7 it's_like=21 it's_not=-7 it's_the=-135 it_=7
-    it_a=-111 it_and=-134 it_by=-93 it_curves=-93 it_down=-93 it_ends=31 it_go=-111 it_goes=-7
-    it_has=63 it_in=101 it_into=-93 it_is=78 it_looks=-76 it_on=-200 it_right=79 it_says=200
-    it_stop=-93 it_tells=112 it_the=174 it_then=-93 it_there's=-111 it_through=-140 it_to=-72
-    it_turn=-127 it_until=-111 it_was=200 it_with=60 it_you=-93 it_you'll=-93 item=-41
-    itinerary=172 its=-43 its_end=-200 its_far=-172 its_left=-181 its_near=-93 its_right=-200
-    its_tail=-93 itself=-93 iv=-127 jackets=-140 jackets_=-111 jacuzzi=-158 jacuzzi_and=-93
-    jacuzzis=-23 jeez=86 jelly=86 jigsaws=-41 job=123 job_=200 job_is=79 jog=-41 join=86
-    joke=172 journey=101 journey_ends=101 judge's=-41 jug=-71 juice=-93 jukebox=-152
-    jukebox_=-111 juliet=86 jump=-41 jumper=86 junction=79 just=-29 just_a=-86 just_after=-93
-    just_before=-200 just_go=-65 just_inside=-200 just_like=91 just_outside=-177 just_past=-93
-    just_stop=-127 just_to=-93 just_turn=-93 just_walk=-111 k=-71 karaoke=86 karate=86 keep=-31
-    keep_going=-136 keep_on=-189 keep_out=79 keep_right=-93 keep_the=-200 keep_to=-200
-    keep_turning=200 keep_walking=-50 keeper=86 keeping=-200 keeping_it=-181 keeping_the=-140
-    keeping_them=-93 keeping_to=-127 keeps=-7 kept=16 kettle=-41 kevin=-41 key=-41 keyboard=-25
-    keypad=-71 keys=-152 kick=-41 kiddies=-41 kidding=131 kids=-41 kill=-140 killing=-71
-    kiln=-71 kilo=86 kind=67 kind_of=-93 kindly=200 kindness=-41 king=-71 king's=-41 kiosk=-71
-    kit=-200 kit_=-172 kitchen=-79 kitchen_=-114 kitchen_and=-10 kitchen_door=79
-    kitchen_doorway=-93 kitchen_is=-140 kitchen_island=-200 kitchen_now=-140 kitchen_past=-93
-    kitchen_sink=-111 kitchen_through=-134 kitchen_with=-93 kitchen_you=-189 kitchenette=-25
-    knee=45 knees=-41 knife=-71 knight=-41 knitted=86 knob=-71 knock=16 knocker=-71 know=99
-    know_=91 know_it's=16 know_that=82 know_what=122 knows=194 l=-124 l_=-163 la=-41 lab=-111
-    label=200 labelled=-140 lad=-41 ladder=-200 ladder_=-189 ladder_and=-200 ladder_on=-111
-    ladder_to=-93 ladies=-41 lady=-93 lady's=-41 lake=86 lamp=-200 lamp_=-200 lamp_and=-200
-    lamp_on=-163 lamps=-197 landing=-200 landing_=-190 landing_and=-181 landing_turn=-152
-    landings=-41 landlord=172 landmark=200 landmark_is=190 landmarks=-41 landscape=-71 lane=-41
-    lantern=-71 lap=-111 large=-200 largest=-41 laser=86 last=69 last_=200 last_door=-103
-    last_every=112 last_one=-44 last_step=105 last_stool=-111 last_thing=-189 last_year=163
-    lasts=200 lasts_=163 late=132 later=194 lateral=131 lathe=-71 latin=-41 laugh=194
-    laughing=86 laundry=-200 laundry_basket=-172 laundry_room=-200 lava=-71 law=172 lawful=172
-    lawn=-71 lawyers=172 layman=-41 lead=43 leading=-111 leads=-127 leaf=-41 leaning=-71
-    learn=45 least=172 leather=-200 leather_chair=-82 leather_couch=-93 leave=-11 leave_=79
-    leave_by=-197 leave_it=101 leave_the=-76 leave_this=106 leave_through=-181 leaves=-71
-    leaving=-200 leaving_the=-200 left=-136 left_=-147 left_90=-140 left_across=-93
-    left_after=-200 left_again=-193 left_along=-111 left_and=-159 left_around=-197 left_as=-54
-    left_at=-200 left_before=-127 left_by=-54 left_corner=-140 left_down=-140 left_enter=-134
-    left_for=93 left_go=-200 left_halfway=-93 left_hall=-93 left_hand=5 left_in=-197
-    left_into=-121 left_is=137 left_just=-93 left_left=16 left_my=-152 left_not=-111 left_of=-86
-    left_one=-181 left_out=45 left_pass=-93 left_past=-193 left_side=-200 left_so=-54
-    left_staircase=-93 left_the=-152 left_then=-200 left_there=-200 left_through=-197
-    left_to=-48 left_towards=-111 left_turn=74 left_until=-152 left_up=-93 left_walk=-111
-    left_wall=-127 left_when=79 left_where=-127 left_which=16 left_with=45 leftmost=-111
-    lefts=-41 leftward=-41 leg=-110 legend=-41 lego=-140 legs=62 legs_=91 leisurely=-41
-    lemon=-71 length=-189 length_of=-127 lent=-41 less=-41 let=119 let's=-7 let's_get=-140
-    let's_go=122 let's_start=-111 letter=151 letters=-140 level=-127 librarian=-41 library=-112
-    library_=-140 library_and=-111 lie=-71 lied=172 lies=172 lieu=-41 life=69 life_jackets=-140
-    lifeboat=-111 lifeboat_=-93 lifeboats=-111 lifebuoy=-111 lifebuoy_=-111 lifeguard=-93
-    lifeguard's=-41 lift=-2 lift_=-25 lifts=-41 light=-189 lighted=-41 lighthouse=-71 lights=-93
-    like=49 like_a=92 like_the=-76 like_you're=-172 limb=-41 limit=-41 limits=131 line=-114
-    line_on=-152 lined=-41 linen=-200 linen_closet=-189 linen_cupboard=-93 lines=-152 lintel=-41
-    lion=-140 lions=16 list=200 listen=-7 lit=-93 literally=-71 little=-128 little_=-163
-    little_and=-140 little_bit=-93 little_hallway=-93 little_table=-93 lives=86 living=-44
-    living_room=-59 lizard=86 load=-41 loading=-71 lobby=-200 lobby's=-41 lobby_=-200
-    lobby_and=-200 lobby_to=-93 lobby_with=-93 lobster=86 locate=-197 locate_a=-140
-    locate_the=-93 location=131 locked=133 locker=-93 locker_room=-93 lockers=-200 lockers_=-197
-    lockers_and=-152 locomotion=172 loft=-103 loft_=-152 login=-140 lol=172 long=-51 long_as=200
-    long_hallway=-111 long_part=-93 long_table=-82 long_wooden=-93 longer=200 loo=16 loo's=-41
-    look=-72 look_at=49 look_down=-93 look_for=-144 look_to=-93 looking=64 looking_at=-189
-    looking_for=161 looks=15 looks_like=69 loom=-71 loop=172 loose=-41 lose=-41 lost=95 lot=-76
-    lot_of=-127 lots=-152 lots_of=-152 loud=45 loudspeakers=-41 lounge=-200 lounge_=-127
-    lounge_and=-127 lounge_chairs=-127 lounge_go=-57 lounger=-71 loungers=-127 loungers_=-93
-    love=94 lovely=-172 loves=-41 low=151 lower=-111 lowest=-41 luck=45 lucky=-41 luggage=-111
-    lunch=-111 lying=194 m=-200 m_=-172 m_and=-93 machine=-200 machine's=-41 machine_=-200
-    machine_and=-200 machine_on=-140 machine_then=-120 machine_with=-93 machines=-193
-    machines_=-127 made=41 made_it=153 made_of=-163 made_out=-93 magazine=-71 magazines=-111
-    magazines_=-93 magnificent=-41 magnitude=-41 mail=86 mailbox=-163 mailbox_=-127
-    mailboxes=-181 main=-140 maintain=-41 majesty=-41 make=-164 make_a=-200 make_for=-163
-    make_your=-200 maker=45 makers=172 makes=-54 makeup=-93 making=-7 man=92 management=200
-    manager=200 manager's=-111 mannequin=-140 mannequin_=-93 mannequins=-71 manoeuvre=172
-    mantelpiece=-41 manufacturer=200 many=-7 map=143 map's=-41 map_=-152 maps=86 marble=-200
-    marble_bust=-111 marble_stairs=-111 marble_statue=-111 march=-71 margin=172 mark=-93
-    marked=-163 market=-41 marquee=-41 married=-41 marshal=200 marta=172 masks=-71 massage=-117
-    massage_room=-111 massage_table=-152 massages=-41 massive=-41 master=-152
-    master_bedroom=-152 mat=-180 mat_=-200 match=86 mate=16 mats=-71 matter=200 may=200
-    maybe=-41 maze=86 me=102 me_=88 me_a=-66 me_to=200 mean=-10 mean_the=-25 meaning=-71
-    means=129 meant=88 measure=172 measured=86 measuring=-41 meet=131 meeting=-163 meetings=-41
-    memo=86 memory=200 mended=86 mention=172 mentioned=200 mentioned_=200 mere=-41 mess=-127
-    message=200 message_from=200 metal=-200 metal_stairs=-163 meteor=-41 meteorite=-93
-    meter=-111 meters=-200 meters_=-111 meters_and=-140 metre=-41 metres=176 mezzanine=-71
-    microfilm=-71 microphone=-71 microwave=-200 microwave_=-185 microwave_and=-82 microwaves=-23
-    middle=-143 middle_=-111 middle_aisle=-111 middle_and=-93 middle_between=-111 middle_of=-58
-    middle_one=-111 midpoint=-41 might=-66 milk=-93 miller's=-140 million=45 mind=118 mind_=123
-    mind_the=20 mine=16 mine's=45 minerals=-71 mini=-71 minimise=-41 minimum=-41 ministry=172
-    mint=-41 minus=-71 minute=200 minute_=200 minutes=194 mirror=-109 mirror_=-200
-    mirror_and=-185 mirror_on=-111 mirror_then=-93 mirror_with=-93 mirrored=156 mirrored_=200
-    mirrored_wall=-111 mirrors=-200 mirrors_=-93 mirrors_on=-163 misc=-140 misreading=-41
-    miss=171 misses=-41 missing=-41 mission=59 mistake=161 mister=45 mistletoe=-71 mix=200
-    mode=200 model=86 moment=190 money=-71 monitors=-71 mood=-41 mop=-152 mops=86 more=67
-    more_=198 more_step=-111 more_steps=-140 more_than=190 morning=122 mosey=-111 most=-41
-    mother=67 mother's=-41 motion=200 motionless=172 motors=172 mount=-41 mountains=-71
-    mounted=-71 mouse=86 moustache=132 move=108 move_=200 move_away=-193 move_forward=-163
-    move_toward=-177 moved=132 movement=200 moves=153 movie=-41 moving=134 moving_=149
-    moving_walkway=-163 much=200 mud=-177 mud_room=-177 mudroom=-71 mum=153 mum's=-41
-    mummies=-71 mummy=-54 mummy's=-41 mummy_and=-111 murder=86 museum=-41 museum_in=-93
-    music=-140 music_room=-140 must=200 must_be=16 must_go=200 must_not=200 my=122
-    my_brother=153 my_brother's=91 my_cousin's=16 my_friend=82 my_mother=67 my_old=200 myself=86
-    n=172 nag=-41 nah=172 nail=-71 name=101 named=200 named_=200 nan's=86 narrator=172
-    narrow=-200 narrow_hallway=-111 narrow_passage=-93 naturally=-41 nave=-93 navigation=200
-    nb=86 nd=139 near=-53 near_it=-111 near_the=-129 nearer=-41 nearest=-67 nearest_mirror=-93
-    nearest_the=-172 nearest_toilet=-181 nearly=16 necessary=172 need=92 need_a=71 need_is=-17
-    need_not=200 need_to=18 needed=-41 needn't=-41 needs=187 negate=172 negative=101
-    neighbor=-41 neighbor's=86 neighborhood=-41 neighbour=172 neither=45 nemo=-41 neon=-93
-    nephew=-41 net=132 never=200 never_mind=115 new=194 newel=-71 news=200 newspaper=-71
-    newspapers=-111 newspapers_=-93 newsstand=-71 next=-67 next_=182 next_door=-200
-    next_left=-82 next_one=59 next_room=-163 next_to=-200 nice=-57 nicer=172 niche=-71 night=91
-    nightmare=86 nightstand=-189 nightstand_=-111 nil=86 nine=-25 ninety=-181
-    ninety_degrees=-111 nip=-71 no=135 no_=200 no_further=-152 no_longer=200 no_more=-140
-    no_need=200 nobody=196 nomenclature=86 nominal=-41 none=200 none_of=200 nonsense=172
-    nook=-141 nook_=-158 nook_and=-111 nook_with=-82 nor=86 normal=-111 north=-111
-    northbound=-41 nose=-93 not=132 not_a=79 not_allow=197 not_do=200 not_enter=190 not_go=62
-    not_going=16 not_in=-93 not_move=200 not_pass=31 not_right=-93 not_stop=35 not_take=124
-    not_that=31 not_the=-152 not_to=69 not_turn=105 not_up=-93 not_use=142 not_walk=200
-    not_where=91 note=200 notes=86 nothing=129 nothing_=200 nothing_in=45 notice=190 notice_a=45
-    notice_board=-93 notice_the=200 notice_your=149 noticeboard=-41 noting=-41 november=-41
-    novice=86 now=41 now_=200 now_and=161 now_go=-140 now_in=-200 now_on=200 now_so=-140
-    now_there=101 now_turn=-163 now_walk=-140 now_you=-200 now_you're=-172 nowhere=-41
-    nulling=-41 number=45 number_three=-111 numbers=-41 nurse=190 nurse's=-172 nursery=-200
-    nursery_=-158 nursery_and=-177 nursery_then=-71 nurses=-140 nurses_station=-93 o=-140
-    o'clock=-197 o'clock_and=-93 obey=200 obeyed=200 obeyed_=200 object=200 objective=-93
-    oblique=-71 observation=45 obsolete=86 obstacle=-71 obstacles=-41 obvious=-41 obviously=-71
-    occupies=-41 occurs=-41 ocean=-41 octagonal=-71 of=-28 of_3=-93 of_90=-111 of_a=-132
-    of_all=130 of_an=-93 of_apples=-93 of_armor=-152 of_black=-93 of_chairs=-71 of_doors=-9
-    of_drawers=-93 of_each=200 of_every=200 of_feet=-163 of_flags=-111 of_green=-111 of_it=-81
-    of_management=163 of_one=-93 of_seats=-140 of_stairs=-200 of_steps=-152 of_tables=-93
-    of_that=59 of_the=-72 of_them=-91 of_these=200 of_this=200 of_those=-111 of_three=-93
-    of_what=200 of_which=-93 of_white=-111 of_windows=-111 of_you=-81 of_your=193 off=91
-    off_=200 off_from=-93 off_the=-9 off_to=-111 offer=-41 office=-48 office_=-103
-    office_and=-200 office_does=112 office_has=194 office_with=-120 officer=200 official=200
-    offline=172 offset=-41 oh=200 oi=86 ok=200 ok_=200 okay=-49 okay_=123 okay_so=-41 okey=-41
-    old=108 old_man=-93 older=-41 ollie=-41 on=-92 on_=-13 on_a=-36 on_and=-32 on_both=-127
-    on_by=-93 on_down=-93 on_going=-127 on_it=-106 on_its=-200 on_left=-140 on_my=16 on_out=-93
-    on_past=-172 on_right=-163 on_straight=-93 on_the=-112 on_this=31 on_through=-111 on_to=-200
-    on_top=-93 on_treat=194 on_until=60 on_up=-93 on_wheels=-111 on_your=-188 once=68 once_=200
-    once_and=67 once_every=149 once_so=112 once_the=-93 once_there=-93 once_you=-46
-    once_you're=-111 once_you've=-93 one=-45 one's=-25 one_=-58 one_after=-93 one_and=-61
-    one_at=93 one_by=91 one_deck=-93 one_door=-93 one_flight=-200 one_floor=-20 one_in=-140
-    one_is=82 one_more=-111 one_of=-127 one_on=-200 one_side=60 one_step=-200 one_that=-76
-    one_too=101 one_two=-93 one_up=-93 one_who=190 one_with=-200 one_you=-200 ones=59 ones_=79
-    only=113 only_=200 only_and=20 only_one=-197 only_the=146 onto=-200 onto_the=-200 ooh=-71
-    oops=-152 open=-140 open_=-152 open_door=-200 open_doorway=-181 open_it=-25 open_the=-172
-    opening=-200 opening_=-93 opening_and=-93 opening_in=-127 opening_on=-127 opens=-200
-    opens_on=-93 opera=-41 operational=172 operator=200 operator's=172 operator_has=112
-    operators=172 opposite=127 opposite_=105 opposite_of=200 opposite_the=-197 optical=-41
-    optional=172 options=-41 or=-10 or_down=45 or_the=-93 or_what=-111 orange=-133 orchids=-41
-    order=200 order_=200 order_of=200 ordered=172 orders=200 orders_=200 orders_so=132
-    orders_you=132 organ=-140 organ_pipes=-111 orientation=-41 origin=-41 other=76 other_=142
-    other_end=20 other_hand=200 other_one=-152 other_side=-75 other_way=166 others=131
-    otherwise=172 ottoman=-193 ottoman_=-152 ought=200 our=167 ours=-71 out=-68 out_=58
-    out_and=-197 out_at=-93 out_by=-181 out_from=-93 out_in=-111 out_into=20 out_of=-119
-    out_on=-152 out_onto=-200 out_past=-93 out_so=-93 out_the=8 out_there=-152 out_through=-200
-    out_to=-200 out_turn=-152 outdoor=-71 outer=-41 outeray=172 outline=172 output=194
-    outrank=172 outside=-113 outside_=-38 outside_and=-134 outside_it=-111 outside_of=-127
-    outside_on=-140 outside_room=-93 outside_the=-200 outside_then=-82 outside_through=-111
-    outvoted=86 oval=-158 oven=-138 oven_=-200 oven_and=-16 oven_on=-93 over=-45 over_by=16
-    over_the=-147 over_to=-83 override=156 overview=86 overwrite=172 owes=86 own=200
-    own_axis=200 owner=200 owner's=-111 owner_of=200 paces=-41 page=172 paint=-93 painted=53
-    painting=-200 painting_=-158 painting_and=-82 painting_of=-127 paintings=-181
-    paintings_=-163 pair=-152 pair_of=-127 pairs=-41 pajamas=-41 pal=16 pale=-41 pallet=-71
-    pallets=-41 palm=-152 palms=86 pane=-41 panel=-197 panic=86 pantry=-170 pantry's=86
-    pantry_=-158 pantry_and=-71 pantry_door=-25 pantry_with=-82 pants=86 papa=86 paper=-111
-    papers=-41 par=-111 paragraph=172 parallel=-71 parish=-41 park=-140 parked=16 parking=-71
-    parlor=45 parlour=-41 part=129 part_of=142 party=-41 pass=-157 pass_2=-103 pass_a=-200
-    pass_between=-111 pass_four=-93 pass_it=9 pass_one=-111 pass_something=163 pass_the=-182
-    pass_three=-181 pass_through=-111 pass_to=-140 pass_two=-200 pass_under=-93 passage=-197
-    passage_and=-111 passed=45 passes=-93 passing=-152 past=-200 past_=45 past_a=-200
-    past_all=-197 past_both=-140 past_every=-189 past_four=-127 past_it=-98 past_six=-111
-    past_the=-200 past_them=-172 past_three=-111 past_two=-200 pat=-41 patch=-41 path=-23
-    path_=-93 path_that=79 patience=172 patio=-200 patio_=-158 patio_and=-200 patio_turn=-71
-    patrol=45 pause=45 pay=31 pea=-41 peanuts=-71 pears=-41 peasy=-41 pebbles=-41 pedestal=-71
-    peek=-71 peel=-71 pegs=-111 penguin=-25 penguin_=16 people=-2 people_put=16
-    people_sitting=-172 percent=172 perfect=-41 perform=190 pergola=-71 perimeter=172
-    permission=172 permit=131 permitted=172 perpendicular=-41 persian=-71 person=200
-    person_in=200 person_who=158 personnel=172 pet=86 petal=-41 pete=86 peter=172 pew=-189
-    pew_=-111 pews=-197 pews_=-93 pews_on=-93 phase=-163 phone=-110 phone_=-25 phone_booth=-127
-    photo=-71 photographs=-71 photos=-140 photos_on=-111 piano=-200 piano_=-200 piano_and=-147
-    piano_then=-71 pianos=-120 pick=91 pick_the=-93 picture=-100 picture_=-147 picture_of=-181
-    pictures=-111 piece=-71 pieces=-41 pillar=-200 pillar_=-172 pillar_and=-111 pillar_turn=-82
-    pillars=-168 pillars_and=-127 pillows=-71 pinball=-111 pinball_machine=-111 pinch=-41
-    ping=-172 ping_pong=-172 pink=-189 pins=-41 pipes=-163 pit=-111 pitch=-41 pivot=101
-    place=200 place_=182 place_is=200 place_where=200 places=86 plan=200 plan_=200 plane=-71
-    planetarium=-71 planets=-71 planned=172 plant=-200 plant_=-200 plant_and=-200 plant_in=-111
-    plant_on=29 plant_take=-57 plant_turn=-134 planters=-71 plaque=-163 plaster=-41 plastic=-93
-    plate=131 plates=-111 play=-71 player=-127 player_=-93 playhouse=-41 playing=-41
-    playroom=-163 please=157 please_=16 please_do=200 please_don't=190 please_return=200
-    please_walk=45 plinth=-41 plonk=-71 plotter=-71 pls=172 plunge=-172 plunge_pool=-172
-    plus=-41 po's=-140 pocket=-41 podium=-111 point=66 point_=31 pointing=86 points=-7
-    pointy=-41 poke=-41 pole=-41 poles=-41 police=200 policy=172 polish=-71 pommel=-71 pond=-7
-    pong=-172 pong_table=-172 pool=-200 pool_=-163 pool_and=-200 pool_table=-200 pool_with=-93
-    poor=45 pop=-111 popcorn=-172 poppet=-41 porch=-196 porch_=-124 porch_and=-158 porches=172
-    port=-71 portable=-41 porthole=-111 porthole_=-93 portholes=-71 portrait=-189 portrait_=-111
-    portraits=-71 portside=-41 pose=101 posh=86 position=106 post=-66 post_=-93 postcard=86
-    postcards=-71 postcondition=-41 poster=10 pot=-152 pot_=-93 pots=45 pots_hanging=-93
-    potted=-200 potted_palm=-127 potted_plant=-200 potted_tree=-127 pottery=-111 potting=-71
-    pouffe=-41 poultry=-41 pouring=86 powder=-41 power=144 prams=-41 prayer=-71
-    preconditions=-41 prep=-41 present=200 presents=-41 press=-71 pressure=-71 pretend=171
-    prettiest=86 pretty=-172 previous=200 principal's=-71 principle=172 print=101 printed=200
-    printer=-172 printer_=-93 printer_and=-111 printers=-71 prior=-41 priority=45 privacy=172
-    private=-111 privileges=172 prize=-41 probably=86 proceed=-118 proceed_past=-177
-    proceed_to=-1 projection=-41 projects=-41 pronto=-41 proof=-71 proud=-71 psst=172 pub=-41
-    pucker=-41 pull=-41 pulled=-41 pulpit=-152 pulpit_=-93 pump=-71 pup's=-41 pupils=86
-    puppet=-111 puppet_theater=-93 purple=-162 purposes=172 pursuant=172 push=-200 put=141
-    put_=200 puts=-71 putting=-71 pyjamas=-41 q=-71 qty=-41 quarter=-71 quarters=86 query=-41
-    questions=153 queue=153 quick=-66 quickly=-111 quiet=-152 quietly=-71 quilt=-71 quilts=-41
-    quite=-41 r=-200 rack=-200 rack_=-200 rack_and=-200 rack_of=-140 rack_on=-111 rack_with=-111
-    racks=-60 racks_=-93 racks_of=16 radiator=-163 radiator_=-140 radiators=-111 radio=132
-    rail=-189 railing=-200 railing_=-181 railing_and=-140 railing_on=-181 railing_to=-152
-    railings=-93 rails=-93 railway=86 rain=16 rainbow=-41 raining=-41 rally=86 ramp=-200
-    ramp_=-200 ramp_and=-124 ramp_on=-93 range=-71 rather=200 rather_than=190 ray=-71 rd=-41
-    reach=-100 reach_it=-111 reach_the=-122 reached=190 reached_the=158 reaching=-111
-    reaching_it=-111 read=200 read_is=200 read_the=158 read_this=200 readable=86 reader=101
-    reading=20 reads=115 ready=62 real=49 really=-152 rear=60 rear_door=-93 rearward=-41
-    rearwards=-41 reason=200 reasons=172 recall=172 receive=172 received=86 reception=-200
-    reception_=-120 reception_desk=-200 recessed=-41 recipe=-41 reciprocal=-41 recliner=-71
-    recliners=-71 recon=86 record=-111 record_player=-111 recovered=86 recruit=86 red=-184
-    red_carpet=-181 red_curtain=-152 red_door=-66 red_fridge=-93 red_line=-93 red_sofa=-25
-    reduce=-41 reference=-41 reflection=172 reflective=-93 refrain=200 refrigerator=-200
-    refrigerator_=-200 refrigerator_and=-82 refrigerator_turn=-57 refuse=172 refused=172
-    regardless=172 register=-200 register_=-152 regulation=172 reinstate=172 reject=172
-    relaid=-41 relax=131 relaying=86 released=172 relief=86 relieved=-71 relocation=86
-    remain=194 remainder=200 remaining=45 remains=131 remark=86 remember=200 remember_to=200
-    remind=-41 reminds=86 remove=172 repeat=79 repeated=131 replace=200 replaced=200
-    replacement=172 report=200 reported=86 request=200 requested=172 requesting=-41 requests=172
-    require=-41 required=16 requirement=-41 requires=200 rescinded=172 research=172 respect=172
-    rest=200 rest_=176 rest_of=200 restaurant=-111 restaurant_and=-93 restroom=-71 restrooms=-71
-    result=-71 results=86 retrace=108 retrace_your=37 return=200 return_to=200 reverse=158
-    reverse_of=200 reversed=172 revert=172 revoked=172 revolution=-41 revolving=-181
-    revolving_door=-181 rewarded=-41 ride=-127 riding=-41 right=-121 right's=-41 right_=-120
-    right_a=-93 right_after=-200 right_again=-197 right_along=-111 right_and=-200
-    right_angle=-93 right_around=-147 right_as=-49 right_at=-157 right_before=-38
-    right_beside=119 right_by=-189 right_corner=-163 right_down=-93 right_go=-200
-    right_hand=-151 right_immediately=-111 right_in=22 right_instead=45 right_into=-200
-    right_is=20 right_just=-200 right_now=-127 right_of=-137 right_off=-93 right_on=-127
-    right_one=-181 right_past=-185 right_right=-163 right_side=-200 right_so=-9 right_stop=-71
-    right_take=-93 right_then=-200 right_there=-68 right_to=16 right_towards=-163 right_turn=-25
-    right_until=-163 right_up=-127 right_wait=-152 right_walk=-200 right_wall=-140
-    right_when=-140 right_with=-111 right_you=16 righto=-41 rights=-41 rightwards=-41 righty=-41
-    rim=-41 ring=39 rink=-41 riser=-41 risers=-41 rises=-41 riverside=-197 road=-7 robes=-71
-    robot=82 robot_=-8 robotics=172 robots=200 robots_must=200 rock=-41 rocking=-200
-    rocking_chair=-197 rocking_horse=-93 rocks=-111 roger=86 role=172 roll=79 rolled=-127
-    rolled_up=-93 roller=-71 rolling=-41 rolls=-41 roman=-71 romeo=86 roof=-31 roof_=-111
-    room=-107 room's=-71 room_=-113 room_after=-29 room_and=-200 room_before=113
-    room_between=-93 room_by=-127 room_door=-127 room_for=79 room_go=-127 room_has=42 room_is=31
-    room_on=-200 room_opposite=-163 room_past=-93 room_straight=-127 room_that=120 room_the=-163
-    room_then=-200 room_through=-134 room_to=-110 room_turn=-193 room_using=-185 room_where=-163
-    room_which=-93 room_with=-179 room_you=-197 rooms=101 rooms_=141 root=172 rope=-141
-    rope_barrier=-111 rot=172 rotate=62 rotate_twice=176 rotating=172 rotation=60 roughly=-71
-    round=-20 round_=200 round_and=31 round_dining=-93 round_it=-111 round_table=-140
-    round_tables=-111 round_the=-200 round_to=-111 round_window=16 rounded=-41 rounding=-41
-    route=200 route_=200 route_and=200 route_is=200 routes=172 row=-200 row_=-140 row_and=-111
-    row_of=-200 rowing=-111 rows=-189 rows_of=-163 rt=-41 rubber=-71 rubbish=45 rug=-200
-    rug_=-200 rug_and=-200 rug_ends=-93 rug_in=-76 rug_to=-82 rule=190 rules=200 rumbling=86
-    run=200 run_lasts=200 runner=-140 runner_rug=-111 running=-71 runs=-111 rush=-41 s=-41
-    sacristy=86 saddle=-127 saddle_=-93 safe=-93 safest=172 safety=200 safety_officer=163
-    said=200 said_=101 sailor=45 salad=-111 salon=-111 saloon=-71 same=-33 sandbox=-93
-    sandwich=45 sanitary=-41 saturn=-71 sauna=-200 sauna_=-134 sauna_and=-120 sauna_go=-82
-    sausage=-41 saw=153 say=127 say_hi=-7 say_it=200 say_that=200 saying=71 says=200 says_=200
-    says_left=200 says_stop=-189 says_that=200 scale=-200 scale_=-181 scales=-93 scary=45
-    scavenger=86 school=21 science=16 sconces=-71 scoot=-93 scrap=200 scratch=172 screen=-200
-    screen_=-200 screen_door=-152 screens=-163 scroll=-140 scullery=-111 sculpture=-168
-    sculpture_=-82 sculpture_and=-71 sculptures=-23 sea=86 sealed=172 search=153 seashells=-71
-    seat=-200 seat_=-111 seat_on=-93 seating=-71 seats=-189 seats_=-111 sec=-71 second=-112
-    second_=-79 second_door=-42 second_floor=-111 second_left=-111 second_one=-200
-    second_right=-147 second_set=-111 second_turn=101 secondly=-41 seconds=172 secret=132
-    secs=86 section=194 sectional=-93 sector=-41 secure=-93 security=136 see=-128 see_a=-106
-    see_an=-158 see_if=-7 see_stairs=-93 see_that=-163 see_the=-200 see_two=-111 see_you=91
-    see_yourself=-93 seek=86 seen=16 sees=86 segment=-71 select=-93 self=86 sell=86 sells=-41
-    send=200 sendorfer=-140 sense=131 sensor=-41 sent=200 sentence=200 sentences=200 sentry=86
-    separating=-41 separation=-41 sequence=-41 serious=86 seriously=172 served=172 server=194
-    serves=-41 service=158 service_=190 serving=-41 session=172 set=-29 set_of=-200 sets=-127
-    sets_of=-127 seven=-25 seventh=-71 sewing=-152 sewing_machine=-152 shade=-93 shade_=-93
-    shall=198 shaped=-111 shaped_like=-93 sharp=-100 sharp_left=-200 sharp_right=-148
-    sharply=-71 she=200 she's=91 shed=-7 sheets=-41 shelf=-200 shelf_=-181 shelf_and=-185
-    shelf_of=-111 shelf_with=-111 shells=-41 shelves=-200 shelves_=-127 shelving=-41 shhh=-71
-    shift=-93 shiny=-181 shiny_black=-93 shiny_floor=-111 ship=5 ship's=-41 ship_=16
-    shipping=172 shoe=-200 shoe_display=-111 shoe_rack=-127 shoe_store=-93 shoes=-76 shoes_=-127
-    shooting=-41 shop=-183 shop_=-140 shop_and=-7 shop_past=-93 shop_turn=-93 shopping=-111
-    shopping_carts=-111 short=-117 short_of=-93 shorter=86 should=82 should_be=-51 should_go=200
-    should_not=200 should_now=-140 should_see=-200 should_stop=-140 shoulder=172 shout=-41
-    shouted=200 shouts=172 shove=-41 show=79 shower=-200 shower_=-111 shower_and=-120
-    shower_room=-163 shower_turn=-71 showers=-152 shows=-41 shredder=-71 shush=86 shut=200
-    shut_down=200 shutdown=172 shutters=-71 shy=-41 side=-136 side_=-152 side_and=-200
-    side_as=-93 side_chapel=-111 side_door=-163 side_of=-180 side_to=-111 sideboard=-93 sides=65
-    sierra=-41 sight=86 sign=-87 sign_=-79 sign_and=-172 sign_with=-111 signal=172 signed=172
-    signs=-54 sill=-93 sill_=-93 silly=45 silver=-93 simple=-71 simplified=86 since=-54
-    since_the=-127 sing=86 singing=-41 single=120 single_step=161 sink=-192 sink_=-200
-    sink_and=-152 sink_in=50 sinks=-197 sinks_=-111 sinks_and=-152 sir=172 sister=91 sit=38
-    sit_down=101 sit_on=-7 site=176 sitrep=86 sits=-140 sitting=-123 sitting_area=-111 six=-47
-    six_=-7 sixth=-111 sixty=-41 size=-71 skeleton=-163 skeleton_=-93 ski=-71 skinny=-111
-    skip=114 skip_the=69 skipped=172 skirt=-111 skirting=172 skis=-71 skylight=-76 skylight_=-54
-    sleep=200 sleeping=45 sleeps=-41 slept=163 slide=116 slider=-140 slides=-41 sliding=-200
-    sliding_door=-197 sliding_doors=-200 sliding_glass=-93 slight=-200 slight_left=-200
-    slight_right=-200 slightly=-200 slightly_left=-200 slightly_right=-200 slip=-93 slope=-41
-    sloping=-41 slot=-71 slow=45 slowly=-163 small=-167 small_door=-163 small_hallway=-93
-    small_office=-93 small_room=-93 small_table=-185 smalls=-41 smell=-41 smells=91 smelly=-41
-    smidge=-71 smile=-93 smooth=-41 snack=-111 snail=-71 snake=86 sneak=-71 snuggled=-41 so=54
-    so_be=-93 so_do=178 so_find=-111 so_get=-93 so_go=-200 so_i=163 so_it's=21 so_just=-189
-    so_keep=82 so_let's=-111 so_please=200 so_rotate=112 so_stop=-1 so_take=101 so_that=-160
-    so_that's=-93 so_the=-163 so_turn=9 so_use=112 so_walk=-31 so_you=-39 so_you're=-163
-    soak=-41 soccer=-41 socks=16 sofa=-88 sofa_=-200 sofa_and=-200 sofa_is=82 sofa_on=-82
-    sofas=-25 sofas_=16 soffit=-41 soft=-25 software=172 soldier=-71 some=-15 some_stairs=16
-    somebody=105 someone=190 someone's=-41 someone_else=200 something=200 something_=200
-    sometimes=-41 somewhere=-111 song=-41 soon=-12 soon_as=-63 sooner=-41 soonest=86 sooo=132
-    sore=86 sorry=15 sort=-41 sound=45 sounds=86 soup=86 soup's=86 source=-41 spa=-36 spa_=-16
-    space=67 space_between=-93 span=-41 sparkling=-41 speaker=123 speaker_=16 speakers=-41
-    speaking=200 special=172 species=-41 specifically=-41 speed=131 spiders=-71 spin=170
-    spin_around=120 spin_on=200 spinning=-93 spiral=-200 spiral_staircase=-189 split=86
-    splits=-197 spoken=172 sports=-41 spot=69 spot_=39 spot_a=-93 spring=86 squad=-71 square=-5
-    square_table=-82 squares=-41 squeaks=-41 squeeze=-127 squirts=-41 squishy=-41 st=-71
-    stable=-71 stack=-127 stack_of=-127 stacked=-140 staff=9 staff_only=-163 stage=-193
-    stage_=-140 stage_and=-111 stage_up=-93 stain=-71 stained=-111 stained_glass=-111 stair=-172
-    stair_=-93 staircase=-135 staircase_=-200 staircase_and=-163 staircase_on=-93 staircases=16
-    stairs=-93 stairs_=-62 stairs_all=-111 stairs_and=-128 stairs_are=-111 stairs_beside=-93
-    stairs_but=-111 stairs_down=20 stairs_go=-127 stairs_going=-7 stairs_next=-163
-    stairs_not=-127 stairs_on=-127 stairs_take=-140 stairs_that=31 stairs_then=-172
-    stairs_to=-200 stairs_turn=-200 stairs_up=-111 stairs_which=-93 stairs_with=-181
-    stairway=-200 stairway_=-172 stairway_and=-134 stairway_on=-82 stairwell=-163 stall=-93
-    stalls=-71 stand=-12 stand_=41 stand_and=-71 stand_by=48 stand_in=45 stand_next=-158
-    stand_still=158 stand_then=-57 stand_turn=-93 stand_with=-200 standard=-41 standing=-100
-    standing_in=-200 standing_on=-111 stands=-71 star=-111 star_=-93 starboard=-111 staring=-41
-    stars=-71 start=80 start_=200 start_at=-127 start_by=-200 start_in=-172 start_there=-93
-    start_with=101 started=200 starting=-21 starting_at=-177 state=-41 station=-200 station_=-93
-    station_and=-163 stationary=-41 statue=-200 statue_=-200 statue_and=-147 statue_of=-189
-    status=172 stay=189 stay_=200 stay_here=200 stay_in=106 stay_on=-152 stay_put=200
-    stay_there=106 stay_where=200 stayed=86 staying=-93 stays=-41 steady=-41 steam=-181
-    steam_room=-163 steel=-181 steeply=-41 steer=86 steering=131 step=-17 step_=42 step_and=55
-    step_away=-163 step_inside=-93 step_into=-200 step_of=161 step_out=-81 step_over=-200
-    step_stop=-82 step_turn=-127 stepping=-111 steps=-56 steps_=-1 steps_and=-177
-    steps_down=-200 steps_forward=-140 steps_go=-111 steps_going=-93 steps_into=-111
-    steps_on=-158 steps_then=-193 steps_to=-200 steward=-41 stick=-41 sticks=-93 still=175
-    still_=200 stinky=-41 stn=-41 stone=-200 stone_bench=-93 stone_floor=-111 stone_stairs=-93
-    stone_steps=-163 stones=-71 stool=-200 stool_=-200 stool_and=-127 stool_then=-71
-    stool_with=-93 stools=-200 stools_=-181 stools_and=-127 stools_to=-71 stools_turn=-82
-    stoolss=-23 stop=-148 stop_=-100 stop_1=-172 stop_a=-172 stop_and=-15 stop_as=79
-    stop_at=-200 stop_before=-117 stop_behind=-200 stop_beside=-200 stop_between=-200
-    stop_by=-200 stop_facing=-177 stop_here=86 stop_in=-200 stop_inside=-197 stop_is=190
-    stop_just=-200 stop_near=-44 stop_next=-200 stop_now=200 stop_on=-200 stop_once=-163
-    stop_outside=-200 stop_right=-200 stop_there=-200 stop_to=-163 stop_under=-200
-    stop_when=-141 stop_where=43 stop_with=-152 stopped=101 stopping=43 stopping_=190 stops=-71
-    store=-172 store_=-127 storeroom=-41 storey=-41 story=172 stove=-172 stove_=-124
-    stove_and=-185 stove_in=-93 stove_past=-93 straight=-200 straight_=-79 straight_across=-200
-    straight_ahead=-200 straight_and=-152 straight_between=-193 straight_down=-200
-    straight_into=-163 straight_on=-17 straight_out=-200 straight_past=-200 straight_then=-82
-    straight_through=-132 straight_to=-200 straight_until=-200 straight_with=-93 stranger=86
-    streamers=-71 street=-140 stretcher=-71 stretching=-41 string=131 stringed=-41 strings=-71
-    strip=-41 striped=-200 striped_blanket=-93 striped_rug=-111 strips=-41 stripy=-93 stroll=-41
-    stroll_through=16 strollers=-41 stuck=200 student=16 studio=-7 studio_=-93 study=-200
-    study_=-163 study_and=-189 stuff=194 stuffed=-111 stuffed_bear=-111 stuffy=-41
-    subheading=-93 subj=86 subject=45 submarine=86 success=200 successive=-41 such=-93 sugar=-41
-    suit=-152 suit_of=-152 suitcase=-41 suitcases=-41 summer=-41 sump=-41 sun=-193 sun_room=-158
-    sunburn=86 sundays=86 sundial=-71 sunflowers=-71 sunken=-25 sunken_living=16 sunny=-41
-    sunroom=-181 sunroom_=-93 sunshine=-41 super=-71 supersedes=172 superstar=-41 supervisor=200
-    supplies=86 support=172 sure=82 surface=-71 sushi=-41 suspended=172 swan=-71 swap=200
-    swap_left=200 swapped=-140 sway=-41 swear=132 sweep=-41 sweet=-127 sweet_little=-93
-    sweetheart=-41 sweetie=-41 swimming=16 swimming_pool=16 swing=-200 swing's=-41 swing_=-163
-    swing_and=-111 swinging=-163 swinging_doors=-127 swings=-41 swingy=-41 switch=91
-    switched=172 switches=-140 swivel=-93 swore=86 sworn=-41 system=200 t=-152 t_=-93
-    t_junction=-93 ta=-41 tabel=-140 table=-195 table_=-200 table_and=-200 table_around=-71
-    table_at=-93 table_between=-93 table_go=-93 table_head=-57 table_in=-158 table_is=45
-    table_keeping=-127 table_on=-200 table_so=-134 table_that=-111 table_then=-200 table_to=9
-    table_turn=-120 table_walk=-111 table_where=-127 table_with=-200 tables=-61 tables_=-140
-    tables_with=-93 tada=-41 tail=-93 take=-44 take_a=-101 take_about=-93 take_it=-181
-    take_one=-127 take_the=-77 take_two=45 take_you=-152 taken=200 takes=-41 taking=16 talk=132
-    tall=-183 tall_chair=-93 taller=-41 tallest=-71 tan=-193 tan_chair=-57 tank=-200 tank_=-200
-    tank_and=-168 tank_then=-82 tape=-152 taped=-41 tapestry=-200 tapestry_=-134
-    tapestry_and=-82 tapestrys=-23 target=79 task=197 task_=200 tasking=-41 tastes=-41 taxi=86
-    tea=-127 teacher=172 teacher's=-140 teacher's_desk=-140 teal=-71 team=200 technician=200
-    technician_with=200 teddies=-71 teddy=86 teenager's=-41 teeny=-127 teh=172 telephone=-111
-    telescope=-172 telescope_=-152 television=-200 television_=-200 television_and=-82
-    television_then=-57 televisions=-23 tell=200 tell_you=200 teller=-25 teller_windows=16
-    telling=194 tells=200 tells_you=200 telly=-71 tempting=-41 ten=165 tenner=86 tennis=86
-    tent=-163 tent_=-140 term=-41 terminal=-41 terminate=-71 terminates=-71 terminating=-41
-    terms=172 terrace=-117 terrace_=-54 terrace_and=-93 terrible=86 test=172 text=200
-    text_says=200 text_you=149 than=138 than_the=79 thank=200 thank_you=200 thanks=161 that=96
-    that's=-155 that's_a=-54 that's_all=-93 that's_at=-93 that's_closest=-93 that's_got=-127
-    that's_it=-152 that's_on=-93 that's_shaped=-93 that's_the=-189 that's_where=-124
-    that's_your=-140 that_=182 that_and=-111 that_are=158 that_door=-197 that_follow=163
-    that_follows=200 that_go=-111 that_goes=104 that_has=-200 that_is=99 that_it=51
-    that_looks=53 that_means=-93 that_none=200 that_one=-53 that_robots=200 that_room=161
-    that_says=-197 that_the=101 that_was=200 that_way=92 that_you=200 the=-50 the_3=-71
-    the_administrator=200 the_aisle=-200 the_alarm=-163 the_alcove=-111 the_altar=-197
-    the_aquarium=-152 the_arch=-200 the_archway=-200 the_armchair=-172 the_art=-93 the_atm=-93
-    the_attic=-117 the_automatic=-140 the_baby=-8 the_back=-162 the_balcony=-182
-    the_ballroom=-181 the_bananas=-93 the_banister=45 the_bank=16 the_baptistery=-111
-    the_bar=-200 the_barbecue=-140 the_barn=-140 the_barrels=-111 the_base=-93 the_basement=60
-    the_bath=-93 the_bathroom=-124 the_bathtub=-148 the_bay=-172 the_bead=-93 the_beaded=-93
-    the_bed=-175 the_bedroom=-44 the_beds=-127 the_beginning=200 the_bell=-140 the_bench=-200
-    the_bicycle=-140 the_bidet=-93 the_big=-200 the_biggest=-93 the_bike=-111 the_bikes=-111
-    the_billiard=-111 the_bird=91 the_birdbath=-111 the_black=-185 the_blackboard=-127
-    the_blue=-200 the_boiler=-172 the_bookcase=-200 the_bookshelf=-177 the_boot=-93 the_boss=85
-    the_bottom=-200 the_bowl=16 the_brass=-93 the_bread=-93 the_break=-93 the_breakfast=-87
-    the_brick=-189 the_bridge=-25 the_brochure=-111 the_brown=-168 the_bucket=-111
-    the_buffet=-127 the_building=107 the_bulletin=-111 the_bunk=-200 the_bust=-152
-    the_cabin=-163 the_cabinet=-181 the_cactus=-140 the_cafe=-127 the_cake=-111 the_candle=-185
-    the_candles=-127 the_candy=-93 the_carpet=-200 the_carpeted=-93 the_cash=-197 the_ceiling=91
-    the_cellar=-163 the_center=-163 the_cereal=-111 the_chair=20 the_chairs=-200
-    the_chandelier=-200 the_changing=-152 the_chapel=-7 the_charging=9 the_chart=-111
-    the_checkout=-93 the_chess=-111 the_chest=-93 the_chief=200 the_chimney=-93 the_china=-127
-    the_christmas=-111 the_church=-41 the_classroom=-181 the_cloakroom=-41 the_clock=-200
-    the_closed=-172 the_closest=-127 the_closet=-124 the_coat=-200 the_coats=-111
-    the_coffee=-200 the_column=-103 the_columns=-93 the_computer=-111 the_concierge=-111
-    the_conference=-200 the_confessional=-111 the_contrary=200 the_control=100 the_copier=-197
-    the_corner=-200 the_corridor=-200 the_costumes=-93 the_couch=58 the_counter=-200
-    the_courtyard=-152 the_crib=-200 the_cubbies=16 the_curtain=-200 the_curved=-163
-    the_dance=-127 the_dark=-7 the_dartboard=-140 the_deck=-200 the_deep=-111 the_deer=-111
-    the_den=-181 the_description=200 the_desk=-200 the_desks=-163 the_dining=-200
-    the_dinosaur=-127 the_direction=45 the_directions=200 the_dishwasher=-200 the_display=-140
-    the_distance=-163 the_doctor's=53 the_dog=-54 the_door=-143 the_doormat=-172 the_doors=-95
-    the_doorway=-200 the_double=-200 the_dresser=-200 the_dressing=-197 the_drinking=-111
-    the_drum=-172 the_drums=-127 the_dryer=-172 the_easel=-163 the_edge=-200 the_elevator=-190
-    the_elevators=-163 the_end=-115 the_engine=-93 the_entrance=-66 the_entryway=-193
-    the_escalator=-200 the_exercise=-158 the_exit=-70 the_eye=-111 the_family=-147 the_far=-200
-    the_fence=-111 the_fern=-127 the_fifth=-111 the_filing=-111 the_fire=-19 the_fireplace=-200
-    the_first=-40 the_fish=-200 the_five=-93 the_floor=-19 the_flower=-172 the_flowers=-111
-    the_folding=-93 the_following=200 the_font=-127 the_foosball=-93 the_foot=-200
-    the_fountain=-200 the_four=-158 the_fourth=-17 the_foyer=-114 the_freezer=-163
-    the_french=-200 the_fridge=-192 the_front=-120 the_fruit=-7 the_full=-111 the_fuse=16
-    the_gallery=-152 the_game=-158 the_gap=-127 the_garage=-67 the_garden=15 the_gas=-111
-    the_gate=-200 the_generator=-93 the_giant=-93 the_gift=-152 the_glass=-182 the_globe=-200
-    the_goal=200 the_gold=-127 the_grandfather=-177 the_grass=-111 the_gray=-193 the_green=-199
-    the_grey=-172 the_grill=-200 the_guest=-200 the_guitar=-111 the_gumball=-111 the_gym=-124
-    the_half=-111 the_hall=-166 the_hallway=-200 the_handrail=-111 the_hanging=-93 the_harp=-189
-    the_harpsichord=-111 the_hat=-140 the_hatch=-152 the_hay=-93 the_head=190 the_heavy=-93
-    the_hedge=-93 the_high=-172 the_hooks=-93 the_horse=-127 the_hospital=21 the_hot=-200
-    the_hotel=-8 the_house=60 the_ice=-200 the_inner=-93 the_instruction=200 the_iron=-152
-    the_ironing=-189 the_island=-189 the_jacuzzi=-134 the_jukebox=-140 the_keyboard=-7
-    the_kitchen=-88 the_kitchenette=-25 the_l=-93 the_ladder=-200 the_lady=-93 the_lamp=-200
-    the_landing=-199 the_large=-200 the_last=32 the_laundry=-200 the_leather=-200 the_left=-181
-    the_leftmost=-93 the_letter=101 the_library=-138 the_life=-152 the_lifeboat=-93
-    the_lifeboats=-111 the_lifebuoy=-93 the_lifeguard=-93 the_lift=-10 the_light=-152
-    the_linen=-200 the_list=200 the_little=-200 the_living=-46 the_lobby=-200 the_locker=-93
-    the_lockers=-200 the_loft=-54 the_long=-130 the_lounge=-200 the_low=-93 the_lower=-111
-    the_lunch=-93 the_machine=-181 the_mailbox=-152 the_mailboxes=-172 the_main=-127
-    the_mannequin=-140 the_map=200 the_marble=-200 the_massage=-103 the_master=-152 the_mat=-156
-    the_metal=-200 the_meteorite=-93 the_microwave=-181 the_middle=-136 the_milk=-93
-    the_mirror=-200 the_mirrored=-111 the_mirrors=-140 the_mop=-140 the_moving=-140 the_mud=-177
-    the_museum=-25 the_music=-127 the_narrow=-152 the_nave=-93 the_nearest=-38
-    the_newspapers=-111 the_next=50 the_nightstand=-172 the_notice=-93 the_number=31
-    the_nurse's=-172 the_nursery=-200 the_nurses=-127 the_object=200 the_office=-200 the_old=82
-    the_one=-26 the_ones=-93 the_open=-200 the_opening=-172 the_opposite=200 the_orange=-197
-    the_organ=-140 the_other=64 the_ottoman=-163 the_outside=-127 the_oval=-93 the_oven=-148
-    the_owner=200 the_painting=-158 the_pantry=-146 the_passage=-127 the_path=28 the_patio=-200
-    the_penguin=16 the_people=-9 the_person=200 the_pews=-163 the_phone=-66 the_photos=-127
-    the_piano=-200 the_picture=14 the_pictures=-93 the_pillar=-197 the_pinball=-111
-    the_ping=-140 the_pink=-134 the_place=200 the_plan=200 the_plant=-200 the_plaque=-163
-    the_playroom=-152 the_plunge=-163 the_podium=-111 the_police=200 the_pool=-200
-    the_popcorn=-127 the_porch=-200 the_portrait=-152 the_poster=69 the_potted=-200
-    the_pottery=-111 the_pretty=-93 the_printer=-172 the_pulpit=-140 the_puppet=-111
-    the_purple=-200 the_rack=-172 the_radiator=-163 the_rail=-181 the_railing=-200 the_rain=16
-    the_ramp=-200 the_reading=-127 the_reception=-200 the_record=-111 the_red=-184
-    the_refrigerator=-200 the_remaining=45 the_rest=200 the_restaurant=-111 the_reverse=200
-    the_revolving=-163 the_right=-158 the_robot=-189 the_rocking=-189 the_roof=21 the_room=-154
-    the_rope=-163 the_round=-200 the_route=200 the_row=-200 the_rowing=-93 the_rows=-93
-    the_rug=-200 the_run=200 the_safety=200 the_salad=-93 the_same=-16 the_sandbox=-93
-    the_sauna=-200 the_scale=-200 the_school=-93 the_science=16 the_screen=-172
-    the_scullery=-111 the_sculpture=-111 the_second=-161 the_sentence=200 the_service=101
-    the_set=-127 the_sewing=-152 the_shelf=-200 the_shelves=-127 the_shiny=-140 the_shoe=-200
-    the_shoes=-127 the_shop=-95 the_shopping=-111 the_short=-127 the_shower=-200
-    the_showers=-152 the_side=-200 the_sign=-31 the_sill=-93 the_silver=-93 the_sink=-200
-    the_sinks=-152 the_site=176 the_sitting=-111 the_sixth=-111 the_skeleton=-93
-    the_skylight=-54 the_sliding=-200 the_small=-200 the_snack=-93 the_sofa=-25 the_spa=-71
-    the_space=-93 the_speaker=101 the_spiral=-200 the_spot=178 the_square=-82 the_stack=-111
-    the_stacked=-127 the_stage=-168 the_stained=-111 the_staircase=-200 the_stairs=-90
-    the_stairway=-200 the_start=200 the_statue=-200 the_steam=-172 the_steel=-111 the_steps=-143
-    the_stone=-200 the_stool=-168 the_stools=-111 the_stop=190 the_store=-93 the_stove=-200
-    the_striped=-200 the_study=-200 the_suit=-140 the_sun=-185 the_sunken=-93 the_sunroom=-163
-    the_supervisor=200 the_swing=-200 the_swinging=-152 the_t=-152 the_table=-52 the_tables=-140
-    the_tall=-135 the_tan=-147 the_tape=-93 the_tapestry=-134 the_task=200 the_tea=-111
-    the_teacher's=-140 the_telephone=-93 the_telescope=-172 the_television=-193 the_tent=-140
-    the_terrace=-189 the_text=200 the_theater=-189 the_third=-177 the_three=-200
-    the_threshold=-197 the_throne=-163 the_ticket=-181 the_tile=-127 the_tiles=-111
-    the_tiny=-127 the_toilet=-41 the_toilets=-93 the_top=-200 the_towel=-181 the_towels=-111
-    the_tower=-25 the_toy=-140 the_train=16 the_trash=-147 the_treadmill=-200
-    the_treadmills=-140 the_tree=-86 the_trip=200 the_trophies=-93 the_trophy=-172
-    the_trunk=-111 the_tub=-200 the_turns=200 the_turnstile=-152 the_tv=-200 the_two=-143
-    the_typewriter=-93 the_umbrella=-143 the_unit=200 the_user=200 the_utility=-147
-    the_vacuum=-111 the_vanity=-189 the_vase=-200 the_vault=16 the_velvet=-93 the_vending=-200
-    the_very=9 the_vestibule=-93 the_volcano=-93 the_waiting=-120 the_walk=199 the_wall=-61
-    the_walls=60 the_wardrobe=-200 the_washer=-158 the_washing=-200 the_water=-200 the_way=-7
-    the_weight=-140 the_well=-127 the_whale=-93 the_wheelchair=-93 the_while=187 the_white=-200
-    the_whiteboard=-200 the_whole=130 the_wicker=-193 the_wigs=-111 the_window=-200
-    the_windows=-163 the_wine=-200 the_wobbly=-93 the_wood=-93 the_wooden=-200 the_word=158
-    the_words=200 the_workbench=-140 the_wrong=200 the_yard=-140 the_yellow=-153 theater=-200
-    theater_room=-152 theater_with=-93 theatre=-93 their=193 theirs=86 them=-64 them_=-51
-    them_all=101 them_and=-189 them_on=-127 them_to=-163 themselves=-71 then=-200 then_a=-189
-    then_after=-82 then_another=-111 then_as=-82 then_at=-140 then_bear=-103 then_climb=-103
-    then_come=-111 then_continue=-120 then_cross=-200 then_descend=-120 then_down=-93
-    then_enter=-140 then_follow=-193 then_go=-200 then_hang=-111 then_head=-172 then_i=-93
-    then_immediately=-111 then_in=-93 then_it's=-189 then_keep=-172 then_left=-200 then_look=-93
-    then_make=-103 then_move=-120 then_once=-120 then_out=-181 then_pass=-200 then_past=-200
-    then_proceed=-163 then_right=-200 then_slightly=-93 then_stand=-71 then_step=-158
-    then_stop=-200 then_straight=-93 then_take=-200 then_that=-93 then_the=-152
-    then_there's=-189 then_through=-127 then_to=-111 then_turn=-200 then_up=-111 then_veer=-71
-    then_wait=-200 then_walk=-200 then_when=-120 then_you=-200 then_you'll=-140 then_you're=-76
-    there=-41 there'll=-111 there'll_be=-111 there's=-173 there's_a=-157 there's_the=-181
-    there_=-49 there_and=-68 there_are=-57 there_but=-93 there_is=12 there_make=-93
-    there_should=-172 there_so=-140 there_take=-93 there_turn=-111 there_was=136 there_will=-197
-    there_without=-93 there_you=-93 thereafter=-41 thereof=-41 theres=-41 thermostat=-41
-    these=200 these_commands=200 they=200 they'll=86 they're=-181 they've=16 they_are=200
-    they_turn=-93 they_were=200 thick=-41 thin=-7 thing=-5 thing_=-7 thing_is=20
-    thing_number=-93 thing_to=-66 thing_you=20 things=185 things_=153 think=126 think_of=161
-    thinking=132 third=-172 third_=-189 third_desk=-93 third_door=-32 third_right=-103
-    third_row=-140 third_window=-140 thirdly=-41 this=200 this_=200 this_at=197
-    this_building=200 this_house=200 this_is=200 this_one=52 this_room=9 this_route=200
-    this_run=200 this_says=200 this_sentence=200 this_step=120 this_task=200 this_text=200
-    those=-200 those_=-93 those_and=-93 though=-54 three=-98 three_=-127 three_doors=-181
-    three_is=-93 three_o'clock=-93 three_stairs=-147 three_stairway=-57 three_steps=-200
-    threshold=-197 threshold_and=-197 throne=-189 throne_=-111 throne_and=-127 through=-200
-    through_=-181 through_90=-93 through_a=-7 through_and=-152 through_door=-93 through_it=-88
-    through_that=-189 through_the=-200 through_there=-93 throughout=131 throw=200 throwing=86
-    thru=-93 thumping=-41 tick=-41 ticked=172 ticket=-200 ticket_booth=-111 ticket_machine=-111
-    tickle=-41 ticks=-41 tiddles=86 tie=86 tied=-71 tiger=16 tight=-93 tile=-200 tiled=-71
-    tiles=-181 tiles_=-127 till=-200 till_the=-200 till_you=-200 time=172 time_=101
-    time_and=-111 time_you=200 times=133 times_=190 tinsel=-71 tiny=-200 tiny_bit=-93
-    tiny_chairs=-93 tiptoe=-93 tiptoes=86 tired=86 titchy=-41 to=-16 to_=200 to_a=-200
-    to_an=-163 to_be=200 to_begin=-93 to_carry=200 to_disregard=200 to_do=93 to_drop=132
-    to_end=200 to_face=-200 to_find=105 to_follow=190 to_gate=-111 to_get=-110 to_go=79
-    to_it=-116 to_its=-31 to_keep=-111 to_leave=200 to_look=-197 to_move=190 to_open=-140
-    to_pass=-140 to_put=16 to_read=149 to_return=200 to_say=-7 to_see=39 to_sit=62 to_stand=-93
-    to_stop=107 to_take=113 to_tell=200 to_that=-127 to_the=-114 to_turn=-55 to_undo=112
-    to_wait=101 to_walk=182 to_where=151 to_you=200 to_your=-76 tock=-41 today=200 today's=-152
-    today_=200 toddle=-71 todo=172 toes=-71 together=21 together_=91 toilet=-65 toilet_=51
-    toilet_ahead=-57 toilet_and=-200 toilets=-93 told=200 told_me=200 told_to=200 tolerance=-41
-    tomatoes=-71 tomb=-71 tomorrow=172 tonight=86 too=92 too_=117 too_far=-95 took=-41 tool=-93
-    tool_bench=-93 toolbox=-41 tools=16 top=-200 top_=-200 top_and=-1 top_go=-93 top_of=-200
-    top_turn=-111 top_you'll=-93 toss=172 touch=-152 touch_the=-111 touching=172 toward=-200
-    toward_the=-200 towards=-139 towards_it=-93 towards_the=-196 towel=-200 towel_=-111
-    towel_rack=-189 towels=-189 towels_=-172 tower=-76 toy=-197 toy_chest=-111 toys=-111
-    trace=172 track=-93 tractor=-7 tractor_=-93 trade=172 traffic=163 train=-41 trains=-71
-    trajectory=-41 trampoline=-71 transfer=-41 transition=-41 translate=-41 translating=172
-    translation=-71 trap=200 trash=-197 trash_can=-197 travel=139 travels=-41 traverse=-93
-    tray=-41 tread=-41 treadmill=-200 treadmill_=-200 treadmill_and=-111 treadmill_turn=-57
-    treadmills=-163 treadmills_=-93 treads=-111 treasure=91 treasure's=86 treat=200
-    treat_all=200 treat_the=200 tree=-123 tree_=-197 tree_and=-111 tree_in=16 treehouse=-71
-    trees=-71 trestle=-71 trip=200 trolley=-41 trolleys=-71 trophies=-127 trophies_=-93
-    trophy=-189 trophy_cabinet=-111 trophy_case=-152 trot=-41 trotting=-41 trough=-71 trucks=-41
-    true=172 trun=-140 trunk=-111 trust=200 try=-93 trying=132 tub=-200 tub_=-200 tub_and=-140
-    tub_to=-82 tucked=-41 tuesday=86 tuesdays=86 tulips=-71 tumble=-41 tummy=-41 tummy's=86
-    tune=-71 tuner=-41 tunnel=86 tunr=172 turn=-92 turn_=97 turn_90=-200 turn_and=67
-    turn_around=-67 turn_at=-140 turn_away=91 turn_back=200 turn_go=101 turn_into=-127
-    turn_is=200 turn_left=-200 turn_right=-178 turn_round=9 turn_sharp=-197 turn_slightly=-200
-    turn_so=-93 turn_to=-200 turn_toward=-93 turn_until=-93 turn_your=-200 turned=91 turning=31
-    turning_on=149 turns=200 turns_=200 turnstile=-181 turnstile_=-111 turnstile_and=-93
-    turnstiles=-71 tv=-200 tv_=-200 tv_and=-140 twang=-41 twelve=-197 twelve_=-93 twice=108
-    twice_=101 twice_without=176 twin=16 twins=86 twirl=200 twirl_in=197 twist=-41 twit=-41
-    two=-102 two_=105 two_beds=-93 two_bookshelves=-93 two_computer=-111 two_couches=-93
-    two_doors=-200 two_flights=-163 two_floors=-140 two_hallways=-93 two_long=-111
-    two_paintings=-93 two_pillars=-111 two_rooms=-140 two_rows=-111 two_sinks=-111
-    two_staircases=16 two_steps=-21 two_three=-93 type=-71 typed=172 typewriter=-111
-    typewriter_=-93 typing=131 u=-200 u_turn=-200 uh=-140 um=-163 umbrella=-160 umbrella_=-93
-    umbrella_stand=-117 uncle=86 under=-77 under_it=-172 under_the=-200 underneath=45
-    understand=172 understood=172 undo=200 undo_what=200 unicorn=-71 uniform=-41 unit=200
-    unit_shall=190 units=198 unless=172 unlike=86 unlit=-41 unspecified=-41 until=-33 until_i=79
-    until_it=-189 until_the=-20 until_you=-111 until_you're=-181 unusual=-41 up=-100 up_=37
-    up_a=-140 up_all=-200 up_and=-38 up_at=-93 up_both=-54 up_by=-93 up_in=49 up_it=-127
-    up_one=-200 up_or=60 up_the=-200 up_them=-197 up_there=151 up_those=-111 up_three=-200
-    up_to=-200 up_two=-124 up_with=79 update=200 updated=172 upholstery=-41 upon=-41 upper=-41
-    ups=-71 upside=131 upstairs=34 upstairs_=105 upstairs_in=-111 upward=86 upwards=-41 urer=172
-    urn=-71 us=79 us_=-93 use=101 use_the=54 use_to=16 used=85 used_to=21 user=200 user's=172
-    using=-185 using_the=-185 usually=-41 utility=-147 utility_room=-147 vacuum=-181
-    vacuum_cleaner=-127 valid=200 van=16 vanity=-200 vanity_=-71 vanity_and=-134 vanitys=-23
-    vase=-185 vase_=-193 vase_of=-93 vase_on=-134 vases=-163 vault=21 vault_=16 vector=-41
-    veer=-200 veer_a=-93 veer_left=-140 veer_right=-103 veering=-41 vegetables=-41 vehicle=-41
-    velocity=-41 velvet=-93 velvet_rope=-93 vending=-200 vending_machine=-200 veranda=-71
-    verb=200 verification=-41 verify=-41 version=200 vertical=-71 very=-44 very_first=101
-    vessel's=-41 vestibule=-93 vestry=-71 vests=-41 via=-197 via_the=-163 view=-172 view_=-93
-    vineyard=-41 vip=86 vise=-71 visibility=86 visit=-93 visually=-41 voice=200 void=200
-    void_=200 void_so=112 voids=172 volcano=-93 voted=172 w=-140 waffle=-71 waffles=86 waist=-41
-    wait=-53 wait_=-30 wait_at=-200 wait_beside=-152 wait_by=-125 wait_for=158 wait_here=88
-    wait_in=-200 wait_just=-177 wait_near=-185 wait_next=-200 wait_outside=106 wait_there=-200
-    wait_under=-163 waiting=-41 waiting_area=-134 waiting_room=-93 wake=-41 wakes=172 wakey=86
-    wales=86 walk=-132 walk_=200 walk_3=-111 walk_a=-71 walk_across=-200 walk_ahead=-163
-    walk_all=-140 walk_along=-175 walk_alongside=-200 walk_around=-200 walk_away=-25
-    walk_back=176 walk_behind=-93 walk_beside=-93 walk_between=-200 walk_by=-200 walk_down=-200
-    walk_forward=-200 walk_from=-140 walk_in=17 walk_inside=-200 walk_into=-53 walk_on=-200
-    walk_out=-142 walk_over=-127 walk_past=-200 walk_round=-93 walk_straight=-200 walk_the=-25
-    walk_through=-200 walk_to=-148 walk_toward=-172 walk_towards=-77 walk_under=-200
-    walk_until=-200 walk_up=-200 walked=131 walking=2 walking_=45 walking_past=-200 walks=200
-    walkway=-197 walkway_to=-127 wall=-57 wall_=-119 wall_and=-33 wall_ends=-93 wall_of=79
-    wall_on=-50 wall_past=-111 wall_that=101 wall_that's=-93 wall_to=31 wall_with=-181
-    walled=-41 wallpaper=-111 wallpaper_=-93 walls=-15 walls_=35 walls_and=-111 wally=86
-    walnut=-41 wander=60 want=-57 want_=-152 want_the=-200 want_to=-127 want_you=62 wanted=123
-    wants=200 wants_you=200 ward=60 wardrobe=-81 wardrobe_=-120 wardrobe_and=-103 warm=-7
-    warmer=-71 warn=-41 warranty=172 was=200 was_a=117 wash=-7 washer=-200 washer_=-134
-    washer_and=-103 washing=-200 washing_machine=-200 washing_machines=-82 wasn't=-41
-    wasteful=-41 watch=-76 watches=-41 watching=-41 watchtower=86 water=-200 water_cooler=-200
-    water_fountain=-172 water_heater=-127 wave=-152 waving=86 waxed=-41 way=49 way_=137
-    way_around=-111 way_down=-197 way_into=-93 way_is=200 way_of=-193 way_out=-152 way_over=-93
-    way_round=200 way_through=-93 way_to=-72 way_up=-93 way_you=91 waypoint=120 waypoints=-41
-    ways=-41 we=128 we'd=-41 we'll=-163 we're=55 we're_going=5 we're_not=101 we've=101
-    we've_got=16 we_=91 we_are=200 we_can=-93 we_had=16 we_have=171 weak=86 wearing=91
-    weather=86 weave=-41 weaving=-41 wedding=-111 wedge=-41 wee=16 week=86 week's=86
-    weighing=-71 weight=-152 weight_bench=-93 weight_rack=-93 weights=-93 welcome=-127
-    welcoming=-41 well=50 well_=-54 wellies=-71 went=-40 wept=86 were=200 were_mirrored=200
-    west=86 western=-41 westward=-41 wet=60 whale=-111 what=200 what's=86 what_a=163 what_i=200
-    what_is=200 what_it=190 what_the=200 what_they=190 what_this=200 what_you=200 whatever=200
-    whatever_is=200 wheee=-41 wheel=31 wheel_=79 wheelbarrow=-71 wheelchair=-93 wheelchairs=-111
-    wheels=129 wheels_=45 when=-91 when_the=-3 when_you=-121 when_you're=-127 when_you've=-111
-    whenever=200 whenever_you=200 where=83 where_a=161 where_it=181 where_people=-127
-    where_the=-200 where_there's=-93 where_they=169 where_you=161 where_you'll=-93 where_your=16
-    wherever=200 wherever_it=200 which=-16 which_has=-41 which_i=16 which_is=-151 which_you=139
-    whichever=-111 while=200 while_=176 whirl=172 whisky=-41 whisper=86 whispered=172 white=-200
-    white_door=-181 white_tiles=-111 white_towels=-111 whiteboard=-200 whiteboard_=-172
-    whiteboard_turn=-93 whizz=-71 who=200 who's=132 whoa=-41 whoever=200 whole=93 whole_way=82
-    whom=172 whoopsie=-41 whopping=-41 whose=-71 why=16 wicker=-200 wicker_bench=-82 wide=-71
-    wider=-140 width=131 wigs=-111 will=-61 will_be=-65 will_see=-200 willow=-71 win=16
-    winch=-71 wind=86 winders=-41 window=-200 window's=-41 window_=-200 window_and=-62
-    window_at=-127 window_in=-33 window_is=-127 window_seat=-163 window_then=-93
-    window_turn=-120 window_with=-93 windows=-196 windows_=-197 windows_and=-93 windows_on=-127
-    windowsill=-41 wine=-180 wine_bar=16 wine_cellar=-152 wine_fridge=-111 wine_rack=-200
-    wing=45 wink=-71 winner=-41 wipe=172 wishing=-71 with=-92 with_a=-139 with_all=-127
-    with_an=-25 with_flowers=-93 with_full=176 with_glass=-127 with_green=-93 with_it=79
-    with_its=16 with_lots=-140 with_no=-111 with_round=-111 with_the=-118 with_three=-127
-    with_two=-200 with_windows=-111 with_you=91 with_your=5 withdrawn=200 withdrawn_this=132
-    within=69 without=-14 without_entering=-163 without_going=-172 without_moving=176
-    without_stopping=101 witness=-71 wlak=-140 wobbly=-111 woke=172 woman=-111 women=-41
-    won't=16 wonderful=45 wood=-200 wood_stove=-127 wooden=-200 wooden_bench=-93
-    wooden_door=-200 wooden_floor=-189 wooden_pews=-111 wooden_stairs=-93 wooden_table=-140
-    woof=86 word=200 words=200 work=200 workbench=-152 workbench_=-93 working=-71 workshop=-71
-    worry=16 would=139 would_you=-8 wouldn't=45 wow=16 wreath=-111 wristwatch=-41 write=172
-    written=200 written_=200 written_next=197 wrong=200 wrong_way=200 wrote=200 x=185
-    xylophone=-71 yard=-140 yard_=-111 yaw=101 yeah=187 year=163 years=-41 yell=-41 yellow=-97
-    yellow_door=16 yellow_line=-140 yellow_lines=-93 yep=-41 yes=-7 yesterday=132 yet=-7 yet_=16
-    yew=-41 yo=172 yoga=-71 yonder=-41 you=60 you'd=93 you'll=-200 you'll_be=-147
-    you'll_come=-189 you'll_find=-197 you'll_go=-93 you'll_notice=-93 you'll_pass=-181
-    you'll_see=-200 you'll_spot=-93 you'll_stop=-93 you'll_want=-181 you're=-101 you're_at=-200
-    you're_done=-181 you're_facing=-127 you're_going=-141 you're_in=-100 you're_inside=16
-    you're_looking=-172 you're_not=134 you're_out=-93 you're_outside=-111 you're_standing=-189
-    you're_there=-181 you've=-21 you've_gone=-54 you've_got=-127 you_=78 you_a=186 you_and=7
-    you_are=89 you_at=21 you_began=200 you_begin=105 you_bump=-127 you_came=42 you_can=-51
-    you_can't=-38 you_come=-104 you_did=200 you_do=200 you_don't=-40 you_enter=-168
-    you_find=-111 you_for=190 you_get=-124 you_go=-146 you_have=120 you_hear=200 you_hit=60
-    you_hold=101 you_in=111 you_into=-93 you_is=101 you_just=-9 you_know=152 you_leave=120
-    you_like=153 you_look=16 you_make=101 you_may=45 you_might=-25 you_must=200 you_need=41
-    you_on=171 you_out=79 you_pass=11 you_please=-93 you_reach=-192 you_read=200 you_remember=91
-    you_see=-82 you_shall=-93 you_should=58 you_so=161 you_stand=145 you_stop=-200 you_take=-172
-    you_that=200 you_the=200 you_then=-82 you_to=194 you_turn=51 you_undo=112 you_up=161
-    you_wait=-111 you_walk=-3 you_want=-200 you_were=200 you_will=-200 your=19 your_back=-200
-    your_destination=-140 your_developer=200 your_feet=-93 your_head=79 your_left=-200
-    your_mission=101 your_operator=200 your_orders=200 your_own=200 your_right=-200
-    your_route=200 your_second=-93 your_steps=37 your_stop=-93 your_stopping=-140 your_way=-200
-    your_wheels=200 yours=82 yourself=14 yourself_and=-93 yourself_at=-93 yourself_in=-111
-    yummy=-41 zero=67 zone=-152 zoo=86
+    0=134 00=165 000=113 0123=113 03=113 07=113 1=-51 10=54 112=113 12=39 120=-29 13=113 135=-29
+    14=136 15=84 16=-29 168=113 1699912=113 17=113 18=-29 180=-34 180_degrees=-34 192=113
+    1964=113 1_=15 1_m=-99 1_st=-21 2=-78 20=62 2016=113 2019=113 2020=113 2024=113 204=3
+    214=-62 214_=-3 27=113 270=-29 2_=43 2_m=-161 2_meters=-85 2_nd=-121 2_the=-200 3=-49 30=-70
+    3000=113 306=-51 308=-29 31=113 310=-29 318=113 3_5=-130 3_is=-70 3_m=-85 3_meters=-85
+    3_step=-110 3_stop=-130 4=28 404=113 408=-29 4471=113 4491=113 45=-70 450=113 4567=113
+    45_degrees=-70 47=113 4_=-62 4_m=-139 4_stop=-121 5=-151 5_m=-85 5_meters=-85 6=-99 61=113
+    64=113 7=114 71=113 744=113 7741=113 8=62 84=113 88=113 9=-26 90=-200 90210=113
+    90_degrees=-200 99=113 999=113 9_m=-85 _=200 _1=-121 _2=-139 _3=-110 _4=-99 _a=113
+    _abandon=54 _across=-70 _act=88 _action=113 _actually=114 _add=136 _advance=-110 _after=-67
+    _all=200 _alright=53 _always=164 _an=170 _and=-175 _any=185 _anything=91 _anyway=-36
+    _are=132 _around=-70 _as=132 _ascend=-70 _assistant=200 _at=-142 _attention=176 _b=-3
+    _back=-113 _be=120 _bear=-185 _bedroom=-70 _beep=199 _before=-9 _begin=-15 _behind=-17
+    _bench=-3 _between=-26 _beyond=-110 _both=66 _bottom=-99 _bound=-70 _bravo=103 _bullet=-70
+    _but=62 _by=200 _can=33 _cancel=200 _carry=103 _change=199 _climb=-200 _come=-83
+    _consider=200 _continue=-129 _could=29 _count=129 _cross=-200 _danger=21 _descend=-168
+    _did=176 _ding=62 _disregard=139 _do=83 _don't=52 _door=-17 _doorway=-70 _down=-82 _drop=200
+    _each=192 _end=89 _enter=-200 _er=53 _every=192 _everyone=200 _everything=200 _exit=-200
+    _face=-163 _facing=-200 _find=-157 _first=-92 _follow=-139 _following=-110 _for=200
+    _forget=147 _forward=-70 _from=-49 _front=43 _full=62 _get=-151 _give=80 _go=-200 _good=141
+    _guess=118 _half=-21 _hallway=28 _halt=80 _hang=-110 _have=147 _having=-147 _he=15 _he's=-42
+    _head=-37 _heading=-85 _hello=200 _here=-98 _here's=12 _hey=123 _hi=132 _hmm=-21 _hold=-4
+    _how=178 _how's=106 _i=124 _i'd=129 _i'll=200 _i'm=200 _i've=87 _if=186 _ignore=88
+    _imagine=179 _in=41 _inside=-121 _instead=-82 _interpret=199 _into=-110 _is=196 _it=29
+    _it'll=-99 _it's=43 _its=-70 _job=-85 _just=16 _keep=-106 _kindly=-38 _knock=118 _ladder=-21
+    _ladies=53 _lap=-70 _last=125 _leave=-200 _left=-16 _leg=-110 _let=157 _let's=39 _line=-110
+    _locate=-110 _look=-81 _make=-116 _may=-70 _maybe=113 _message=200 _might=-85 _move=-168
+    _my=200 _n=-99 _never=192 _new=170 _next=-200 _no=145 _nobody=139 _not=3 _nothing=200
+    _notice=200 _now=-106 _objective=-70 _of=-139 _off=-62 _oh=195 _ok=62 _okay=-66 _on=-130
+    _once=-53 _one=-36 _only=163 _open=80 _our=180 _out=-200 _output=176 _over=53 _override=88
+    _par=-85 _pass=-200 _past=-200 _pause=80 _perform=136 _phase=-110 _pick=113 _plan=-70
+    _play=199 _please=119 _police=199 _pretend=170 _proceed=-137 _push=62 _quick=43 _rather=43
+    _read=200 _remain=114 _remember=200 _repeat=200 _return=114 _reverse=10 _right=-134
+    _rotate=43 _round=-39 _route=-17 _run=136 _say=157 _search=62 _second=-147 _see=-98 _set=113
+    _sharp=-85 _she=3 _she's=-3 _should=129 _sit=62 _skip=69 _slide=62 _slow=-21 _so=24
+    _somebody=200 _sorry=101 _spin=33 _stage=-85 _stairs=-26 _stand=-108 _start=-188
+    _starting=-200 _stay=105 _step=-200 _stop=-200 _straight=-195 _swap=200 _swing=62 _switch=88
+    _system=200 _take=-92 _task=147 _tell=161 _thank=199 _that=80 _that's=-11 _the=134
+    _then=-200 _there=-13 _there'll=-36 _there's=-28 _thereafter=-85 _theres=-70 _these=136
+    _they=87 _thing=-70 _think=199 _third=-62 _this=200 _three=-49 _through=-147 _throw=200
+    _thru=-70 _time=103 _to=26 _train=-70 _translate=136 _treat=200 _turn=-180 _two=1 _u=103
+    _um=-161 _under=114 _unless=199 _until=170 _up=-104 _upon=-185 _ur=80 _use=-155 _user=200
+    _veer=-200 _wait=-126 _walk=-200 _water=136 _we=121 _we'll=3 _we're=21 _we've=43 _well=87
+    _what=200 _whatever=200 _when=-21 _whenever=167 _where=56 _wherever=200 _while=103
+    _whoever=200 _will=-70 _with=-130 _within=-110 _without=-48 _would=-50 _x=200 _yeah=106
+    _yes=30 _you=-13 _you'd=22 _you'll=-75 _you're=18 _you've=170 _your=182 a=10 a_a=-110
+    a_balcony=-78 a_bathroom=-85 a_bathtub=21 a_bear=-3 a_bed=93 a_bedroom=54 a_bench=-83
+    a_big=-80 a_bird=62 a_bit=-14 a_black=-182 a_blue=-38 a_boat=43 a_bookcase=-90
+    a_bookshelf=-99 a_bowl=-85 a_brass=-21 a_bronze=-21 a_brown=-139 a_bunch=-70 a_cabinet=-99
+    a_candle=-92 a_cat=95 a_ceiling=62 a_chair=45 a_chandelier=-62 a_chapel=-70 a_choice=-70
+    a_circle=121 a_clock=8 a_closed=-70 a_closet=-116 a_coffee=62 a_comfy=-70 a_corner=62
+    a_corridor=-135 a_couch=48 a_couple=-200 a_crib=-85 a_cross=-70 a_curtain=-105
+    a_cushion=-147 a_day=170 a_desk=-149 a_different=200 a_dining=-13 a_dog=43 a_door=39
+    a_doorway=-34 a_dream=176 a_dresser=-56 a_few=-32 a_film=62 a_fire=-3 a_fireplace=-94
+    a_fish=16 a_flat=95 a_floor=-99 a_fork=-130 a_fridge=80 a_friendly=-21 a_gap=-85 a_gate=-70
+    a_gift=-70 a_glass=-134 a_goal=170 a_goat=147 a_good=152 a_grandfather=62 a_gray=-135
+    a_green=-13 a_grey=-105 a_half=-155 a_hall=-110 a_hallway=-77 a_halt=-99 a_hard=-147
+    a_hat=-70 a_heavy=-85 a_hole=28 a_horse=34 a_hot=-70 a_house=62 a_huge=-21 a_hundred=200
+    a_i=-70 a_joke=199 a_kind=103 a_kitchen=-139 a_ladder=-8 a_lamp=-35 a_landing=-21
+    a_large=-61 a_laundry=-92 a_left=-172 a_letter=103 a_light=80 a_lion=-85 a_little=-84
+    a_lobby=-99 a_long=-40 a_lot=33 a_lovely=-3 a_low=-70 a_man=118 a_marble=-139 a_matter=136
+    a_metal=-110 a_microwave=-99 a_million=103 a_minute=199 a_mirror=-8 a_mirrored=-70
+    a_moment=62 a_narrow=-139 a_new=78 a_nice=-50 a_ninety=-85 a_number=3 a_nursery=-110
+    a_pair=-130 a_phone=-70 a_piano=-72 a_picture=34 a_piece=62 a_pillar=-70 a_pink=-121
+    a_place=103 a_plant=-8 a_pole=-70 a_pool=-67 a_popcorn=-85 a_porthole=-70 a_potted=-110
+    a_pretty=-70 a_proper=-70 a_punching=-70 a_purple=-106 a_quarter=-3 a_quick=-21
+    a_railing=-82 a_real=106 a_really=-70 a_red=-66 a_refrigerator=3 a_right=-200 a_road=-70
+    a_robot=125 a_rocking=-110 a_room=27 a_rope=43 a_round=-85 a_route=176 a_row=-190 a_rug=77
+    a_runner=-85 a_saddle=-85 a_sculpture=-78 a_seat=-130 a_second=77 a_secret=186 a_set=-151
+    a_sharp=-200 a_shelf=-13 a_shiny=-85 a_ship=-50 a_short=-62 a_shower=-70 a_sign=21
+    a_single=28 a_sink=-52 a_skylight=-70 a_sliding=-85 a_slight=-200 a_small=-190 a_sofa=46
+    a_sort=-70 a_spiral=-85 a_square=-69 a_stack=-70 a_stained=-110 a_stair=136 a_staircase=39
+    a_stand=-110 a_statue=-70 a_step=-70 a_stone=-125 a_stool=-70 a_stop=-115 a_straight=-85
+    a_striped=-139 a_swan=-85 a_sweet=-85 a_table=-34 a_tall=-139 a_tan=-171 a_tapestry=-121
+    a_technician=167 a_teeny=-85 a_television=-0 a_thing=62 a_tiny=-99 a_toilet=54 a_towel=-135
+    a_trap=200 a_trash=-105 a_turn=-34 a_tv=-99 a_u=-174 a_vacuum=80 a_vase=-70 a_very=80
+    a_waiting=-78 a_walk=136 a_wall=29 a_wardrobe=-3 a_washing=-70 a_wee=-3 a_well=62
+    a_white=-143 a_whole=-99 a_wicker=-121 a_window=13 a_wine=-99 a_wood=-85 a_wooden=-171
+    a_yellow=26 aa=113 abandon=88 abandon_the=54 abandoned=-29 abeam=-29 able=103 able_to=103
+    abort=199 about=200 about_a=200 about_that=136 about_the=200 about_to=200 about_turn=-36
+    above=197 above_the=43 above_was=199 abracadabra=-29 absence=49 absolute=49 absolutely=-29
+    abt=-29 abutment=-29 accept=49 access=149 access_to=62 accessed=-29 accident=199
+    accommodation=-29 accomplished=-110 according=165 accordingly=195 accordingly_=200
+    account=-3 accounting=-70 accounts=-70 accounts_=-70 achoo=49 acid=113 acquaint=49
+    acquire=-51 across=-200 across_from=-85 across_it=-155 across_the=-200 across_to=-85 act=200
+    act_as=200 act_on=199 acting=165 action=191 action_stop=136 actions=113 actual=103
+    actually=100 add=170 added=113 additional=-29 address=165 addressed=113 addressee=113
+    adhered=-29 adipiscing=113 adjacent=-70 adjacent_to=-70 adjoining=-29 adjustment=-29
+    admin=165 administrator=200 administrator's=-110 administrator_has=147 admire=-29
+    admiring=-29 admission=-29 admitted=-29 adn=113 adorable=-29 adore=49 adorned=-29
+    advance=-200 advance_along=-85 advance_to=-147 advancing=-29 adventure=49 advised=12
+    afford=-51 aforementioned=-51 afraid=113 aft=-70 after=-4 after_=96 after_all=199
+    after_each=200 after_every=200 after_it=-40 after_that=-77 after_the=-200 after_this=139
+    afternoon=103 aftr=-29 again=10 again_=96 again_and=-8 again_around=-70 again_at=-200
+    again_to=-3 against=125 against_the=125 agent=200 ago=20 agree=113 agreed=113 agreement=113
+    ahead=-192 ahead_=-72 ahead_and=-161 ahead_is=62 ahead_of=-200 ahead_stop=-130 ahead_to=-85
+    ahhh=-29 ahoy=49 ai=165 aid=-110 aim=-29 aiming=-29 air=-3 air_conditioner=-3 airing=-29
+    airlock=-29 airplane=-51 aisle=-200 aisle_=-139 aisle_and=-147 aisle_between=-168
+    aisle_is=-70 aisle_to=-121 aisle_with=-99 ajar=-29 alarm=37 alarmed=-29 alcove=-130
+    alcove_on=-70 alert=165 alight=113 alighting=-29 align=-29 all=114 all_=200 all_around=-110
+    all_motion=136 all_of=78 all_robots=200 all_rooms=199 all_that=200 all_the=-43 all_times=44
+    all_turns=197 all_units=200 all_you=62 alley=-51 allow=159 allow_what=134 allowed=100
+    allowed_to=-70 almost=-85 alone=43 alone_=62 along=-200 along_a=-70 along_it=-180
+    along_that=-99 along_the=-200 along_this=-70 along_to=-85 along_until=-85 alongs=49
+    alongside=-200 alongside_the=-200 alpha=62 alphabet=113 alphabetical=113 already=200
+    already_=185 alright=53 alrighty=-29 also=100 altar=-200 altar_=-139 alter=-29 alters=-29
+    although=55 always=193 always_do=154 always_go=136 always_take=171 always_use=66 am=200
+    am_the=200 amazing=49 amble=-29 amet=113 among=-85 among_the=-70 amps=-29 an=54
+    an_elevator=28 an_hour=200 an_office=-121 an_old=125 an_open=-72 an_opening=-85
+    an_orange=-62 an_oval=-130 an_oven=-121 an_umbrella=-121 ancelledcay=113 anchor=-121 and=-64
+    and_a=-91 and_across=-85 and_advance=-99 and_after=-71 and_all=199 and_an=-85 and_and=-70
+    and_around=-17 and_as=-143 and_ascend=-85 and_at=-200 and_await=136 and_back=147 and_be=43
+    and_bear=-143 and_begin=199 and_between=-85 and_by=28 and_call=62 and_carry=-161
+    and_climb=-193 and_come=3 and_continue=-200 and_count=62 and_cross=-200 and_descend=-92
+    and_do=147 and_don't=56 and_down=-69 and_end=200 and_enter=-200 and_er=-147 and_exit=-168
+    and_face=43 and_finally=-70 and_find=-185 and_finish=147 and_follow=-140 and_from=-70
+    and_gentlemen=53 and_get=15 and_give=43 and_go=-200 and_halt=-200 and_hang=-147 and_have=136
+    and_he=-62 and_he's=-62 and_head=-200 and_hmm=-130 and_hold=-121 and_i=142 and_i'd=-130
+    and_i'll=87 and_i'm=30 and_i've=126 and_ignore=62 and_immediately=-99 and_in=8 and_into=-200
+    and_is=113 and_it=25 and_it'll=62 and_it's=-48 and_its=-3 and_just=-121 and_keep=-68
+    and_leave=-41 and_left=-131 and_let=113 and_locate=-70 and_look=-8 and_make=-132
+    and_move=-121 and_must=170 and_my=118 and_neither=199 and_never=200 and_no=56 and_nobody=147
+    and_not=34 and_now=-24 and_on=-130 and_once=-34 and_one=37 and_only=136 and_out=-158
+    and_pass=-200 and_past=-130 and_pause=-70 and_proceed=-182 and_put=43 and_relax=136
+    and_remain=15 and_report=200 and_right=105 and_round=15 and_say=28 and_second=-99 and_she=15
+    and_she's=-50 and_shut=136 and_slightly=-70 and_so=129 and_stand=-6 and_stay=168
+    and_step=-177 and_stop=-200 and_straight=-161 and_take=-135 and_that=-87 and_that's=-200
+    and_the=-71 and_then=-186 and_there=-136 and_there's=-115 and_they=122 and_they're=-21
+    and_this=157 and_three=46 and_through=-200 and_to=-200 and_toward=-200 and_turn=-200
+    and_two=11 and_um=-130 and_under=-70 and_up=-185 and_veer=-130 and_wait=-139 and_walk=-200
+    and_we=37 and_what=55 and_when=-85 and_where=-70 and_white=-139 and_windows=-3 and_you=-51
+    and_you'd=-146 and_you'll=-83 and_you're=59 and_you've=-70 angel=-29 angle=-17 angles=113
+    angry=165 animal=113 annotator=165 announced=-29 announces=113 another=104 another_door=-70
+    another_left=-70 answer=200 anthem=113 anticlockwise=-29 antique=-70 antonym=113 any=200
+    any_door=176 any_further=173 any_more=198 any_of=174 any_room=136 anybody=84 anyhow=-3
+    anyone=200 anything=200 anything_=136 anytime=113 anyway=-72 anyways=49 anywhere=200
+    anywhere_=200 anywho=-29 apart=-51 apartment=95 apartment_=-70 aperture=-51 apologies=-29
+    apologise=49 appearance=-29 appears=113 apple=113 apples=-85 appliance=113 applies=165
+    apply=173 apply_a=62 appointed=-29 appreciated=-51 appreciative=-29 approach=54
+    approach_the=-85 approached=-29 approved=199 approximately=-70 aquarium=-168 aquarium_=-85
+    aquarium_and=-70 arbitrary=-29 arbor=-29 arcade=-99 arcade_=-70 arch=-200 arch_=-195
+    arch_and=-174 arched=-139 arches=-99 arches_=-70 architect=113 archive=-50 archway=-200
+    archway_=-200 archway_and=-182 archway_on=-99 archway_turn=-121 archways=-51 are=75 are_=200
+    are_a=200 are_about=191 are_asked=95 are_at=95 are_behind=-99 are_by=-171 are_done=-58
+    are_facing=-180 are_four=-85 are_given=178 are_gone=-85 are_hereby=199 are_in=-61
+    are_inside=-70 are_kindly=-99 are_level=-70 are_looking=136 are_no=80 are_not=176
+    are_now=-97 are_on=-147 are_out=113 are_painted=62 are_passed=-85 are_requested=-121
+    are_some=-85 are_standing=-200 are_the=180 are_then=-99 are_there=34 are_three=-99 are_to=93
+    are_told=200 are_two=-35 are_void=199 are_you=153 area=-200 area_=-200 area_and=-155
+    area_then=-126 area_with=-158 aren't=200 arguments=113 arm=-82 arm's=-51 arm_=-36
+    armchair=-97 armchair_=-177 armchair_and=-92 armchair_then=-85 armchairs=-98
+    armchairs_and=-110 armor=-168 armor_=-139 armour=-51 armrest=-51 arms=-30 arms_=-139
+    army=113 arnd=-29 around=-172 around_=-100 around_and=-115 around_go=-116 around_here=62
+    around_it=-139 around_its=-99 around_on=62 around_so=-168 around_the=-200 around_then=-110
+    around_to=-200 around_until=-147 arr=-29 arranged=-51 arrival=-85 arrive=-34 arrive_at=-130
+    arrived=80 arrived_=173 arrived_at=-85 arriving=-110 arriving_at=-85 arrow=-85 arrows=-3
+    arsenal=113 art=-50 artwork=-51 as=137 as_a=200 as_an=199 as_far=-92 as_i=85 as_if=158
+    as_it=-3 as_long=141 as_opposed=-70 as_soon=-115 as_the=98 as_they=43 as_this=142 as_to=34
+    as_well=-85 as_you=-36 as_your=200 ascend=-107 ascend_the=-180 ascended=-51 ascending=-70
+    ascertain=-29 asdf=113 ash=113 ashamed=113 aside=113 ask=18 ask_that=3 ask_you=62 asked=136
+    asked_to=78 asking=183 asking_for=126 asks=200 asks_that=142 asks_you=199 asleep=135
+    assemble=-51 assembly=113 assignment=113 assistance=-29 assistant=200 assume=200
+    assume_the=199 assumed=84 assuming=49 astray=49 at=-120 at_=-155 at_a=1 at_all=154 at_an=-85
+    at_any=178 at_each=200 at_every=200 at_home=53 at_it=-84 at_its=-200 at_least=199 at_my=74
+    at_once=200 at_one=62 at_that=-80 at_the=-200 at_their=-21 at_this=118 at_which=-139
+    at_you=46 at_your=10 atlantic=113 atm=-85 atm_=-70 atrium=-110 atrium_to=-70 attached=-51
+    attack=165 attained=-29 attempt=113 attention=39 attention_to=-130 attic=-96 attic_=-67
+    attic_and=-116 attic_through=-92 attire=-29 attn=49 attractions=-29 auctioneer's=-51
+    audience=-29 audio=49 auditorium=-51 aunt=132 aunt's=49 auntie=-29 auntie's=-29
+    australian=113 author=113 authorise=113 authorised=84 authorities=113 authority=165
+    automatic=-155 automatic_doors=-139 autumn=49 avail=-29 available=-51 aviary=-29 avoid=170
+    avoided=165 aw=-29 await=113 awaited=-29 awarded=-29 aware=132 away=-12 away_=97
+    away_and=103 away_from=-48 away_the=176 awful=-29 awfully=49 awning=-85 ax=-51 axis=64
+    axis_=77 axis_at=66 axle=-29 aystay=113 azimuth=-29 b=26 b_4=43 b_and=-70 babe=-29
+    babies=-51 baby=18 baby's=-51 baby_gate=-85 back=42 back's=-29 back_=193 back_and=114
+    back_at=-24 back_door=-200 back_from=-42 back_inside=-200 back_into=3 back_is=80
+    back_of=-146 back_on=-161 back_out=-119 back_past=-99 back_porch=30 back_room=-3
+    back_stairs=-121 back_through=62 back_to=72 back_up=15 backing=-29 backpack=-29 backs=-70
+    backslash=113 backstage=49 backward=140 backward_wherever=66 backwards=173 bad=186
+    baddies=49 badly=49 bag=-130 bag_=-85 baggage=-51 bak=84 bake=113 bakery=-4 baking=49
+    balcony=-137 balcony_=-200 balcony_and=-42 balcony_door=-36 bales=-51 ball=54 ballet=-51
+    balloon=-51 balloons=-51 ballroom=-104 ballroom_=-85 balls=-99 balls_and=-70 balusters=-29
+    balustrade=-51 bamboo=-130 banana=62 bananas=-99 bananas_=-70 band=113 bandage=49
+    bandstand=-51 bang=-29 banister=3 banister_down=-70 banister_on=-70 bank=33 banned=165
+    banner=-51 banquet=-70 baptismal=-51 baptistery=-85 bar=-200 bar_=-200 bar_and=-155
+    bar_area=-200 bar_on=-50 bar_stool=-70 bar_stools=-200 bar_there's=-70 bar_with=-110
+    barbecue=-155 barbecue_=-85 bare=-29 bark=113 barn=-155 barn_door=-85 barometer=-62
+    barometer_and=-70 barometers=49 barracks=49 barre=-29 barrel=-160 barrel_=-139
+    barrel_table=-85 barrels=-190 barrels_=-70 barrels_and=-139 barrier=-130 barrier_=-85
+    bars=-51 barstool=-29 base=44 base_of=-70 basement=81 basement_=129 basement_stairs=-110
+    basically=62 basins=-51 basket=-73 basket_=1 basket_and=-110 basketball=-99
+    basketball_hoop=-70 baskets=-51 bath=-33 bath_=-99 bath_and=-70 bathrm=-29 bathrobes=-29
+    bathroom=-55 bathroom_=-145 bathroom_and=-77 bathroom_but=62 bathroom_door=-121
+    bathroom_is=136 bathroom_on=-135 bathroom_then=-130 bathroom_turn=-85 bathroom_with=-85
+    bathrooms=113 baths=-51 bathtub=-103 bathtub_=-123 bathtub_and=-121 batteries=165
+    battery=200 bawls=-29 bay=-64 bay_window=-180 bb=113 be=49 be_=200 be_a=-2 be_advised=53
+    be_careful=-62 be_carried=199 be_done=200 be_entered=-85 be_facing=-200 be_found=114
+    be_gone=-139 be_in=-115 be_left=62 be_looking=-21 be_made=54 be_next=-200 be_obeyed=183
+    be_on=-200 be_passed=113 be_seated=-70 be_seen=-85 be_so=129 be_taken=54 be_the=11
+    be_there=-3 be_turned=-70 be_understood=199 be_used=80 be_walked=62 beach=165 bead=-110
+    bead_curtain=-110 beaded=-121 beaded_curtain=-121 beads=-21 beam=-70 bean=-51 beanbag=-90
+    beanbags=-62 beans=-29 bear=-114 bear_=-50 bear_left=-185 bear_right=-195 bear_slightly=-99
+    bear_to=-70 bearing=-82 beast=49 beat=165 beats=-29 beautiful=46 beautifully=-29 beauty=62
+    because=32 because_i=77 because_it=62 because_it's=-21 because_my=53 because_of=147
+    because_the=-50 because_there=-70 because_you=-70 become=176 becomes=-29 bed=-71 bed_=-159
+    bed_3=-3 bed_and=-91 bed_go=-99 bed_in=-85 bed_is=200 bed_on=-131 bed_to=-121 bed_turn=-110
+    bed_walk=-85 bed_with=-180 bedchamber=-51 bedding=-29 bedroom=-21 bedroom_=38
+    bedroom_and=-73 bedroom_at=-110 bedroom_go=62 bedroom_past=-85 bedroom_then=-110
+    bedroom_with=-188 bedrooms=80 beds=-58 beds_=-174 beds_and=-130 beds_are=62 beds_on=-70
+    beehives=-51 been=200 been_a=176 been_cancelled=199 been_changed=199 been_left=62
+    been_reached=43 been_told=136 beep=199 beep_=199 beer=113 beers=-29 bees=49 before=48
+    before_=136 before_going=-3 before_i=30 before_it=41 before_the=-69 before_this=136
+    before_we=80 before_you=95 beg=-29 began=200 began_=154 begging=113 begin=32 begin_=147
+    begin_at=95 begin_by=-116 beginning=200 beginning_=170 begins=196 begins_=125 begun=84
+    behalf=84 behave=199 behind=-142 behind_=43 behind_it=-200 behind_the=-165 behind_you=-142
+    beige=-70 being=18 believe=-91 believe_=-36 believe_and=-70 believes=49 belive=113 bell=-77
+    bell_=-130 bellhop's=-51 bells=12 bellweather=113 belong=113 belongs=113 below=200
+    below_=113 below_is=199 belt=43 bench=-200 bench_=-200 bench_and=-200 bench_at=-70
+    bench_in=-126 bench_stop=-70 bench_then=-85 bench_with=-70 benches=-121 benches_=-99
+    bend=-110 bending=-29 bends=15 bends_to=62 beneath=-164 beneath_the=-190 berth=-70
+    beside=-110 beside_=-70 beside_a=-85 beside_it=-147 beside_the=-155 best=186 bestie=-29
+    bet=84 better=200 better_than=199 between=-200 between_=-130 between_the=-200
+    between_them=-200 between_those=-85 between_two=-36 beyond=44 beyond_=-70 beyond_it=28
+    beyond_the=51 bicycle=-168 bicycle_=-110 bicycles=-70 bidden=-29 bidding=49 bidet=-85
+    bidet_and=-70 bifurcates=-29 big=-154 big_arch=-85 big_clock=-70 big_desk=-85 big_glass=-85
+    big_globe=-85 big_oak=-3 big_one=-110 big_white=-70 big_window=-99 bigger=20 biggest=-121
+    bike=-200 bike_=-126 bike_and=-105 bike_rack=-70 bikes=-130 bikes_=-70 bikes_and=-70
+    billet=-29 billiard=-50 billiard_table=-99 billiards=-51 bin=-110 bin_=-99 bins=-3 bird=17
+    bird_bath=-85 birdbath=-110 birdbath_=-85 birdcage=-51 birds=80 birds_and=62 birthday=132
+    biscuit=20 bisect=-29 bit=-19 bit_left=-70 bit_of=33 bit_the=-85 bit_to=-70 bite=113
+    bitter=-29 black=-200 black_and=-139 black_door=-85 black_piano=-70 black_railing=-78
+    blackboard=-174 blackboard_=-121 blah=165 blame=113 blank=84 blanket=-82 blanket_=-62
+    blankie=-29 blast=-29 bleachers=-51 bless=20 blew=132 blindfold=49 blink=113 bliss=-29
+    blocked=28 blocks=113 blood=-51 blotchy=49 blue=-120 blue_carpet=-72 blue_chairs=-70
+    blue_curtain=-70 blue_door=-62 blue_sofa=-78 blue_vase=30 blueprint=113 blurs=113 board=-31
+    board_=-127 board_with=-85 boardroom=-36 boardroom_=-3 boards=-29 boardwalk=-51 boat=43
+    body=62 boil=49 boiled=81 boiler=-161 boiler_=-130 bold=49 bollard=-51 bolts=-29 bomb=113
+    bones=-29 bong=-29 book=49 bookcase=-200 bookcase_=-200 bookcase_and=-185 bookcase_on=-78
+    bookcase_then=-85 bookcases=-110 bookcases_=-85 books=-139 bookshelf=-103 bookshelf_=-105
+    bookshelf_and=-126 bookshelves=-70 boom=-29 boos=-29 boot=-121 boot_room=-70 booth=-189
+    booth_=-90 booth_and=-130 booths=-121 booths_=-70 boots=-155 boots_=-85 boots_and=-85
+    borders=113 boring=49 born=-51 borne=84 borrowed=49 boss=161 bot=-29 botanical=-29 both=-37
+    both_=113 both_flights=-130 both_of=-4 both_sides=-147 bother=136 bottles=-121 bottles_=-70
+    bottles_and=-70 bottom=-200 bottom_=-200 bottom_and=-99 bottom_of=-200 bottom_turn=-155
+    bottom_you'll=-70 bottomless=113 bought=113 bound=-21 bounds=103 bouquet=-51 bow=132
+    bowl=-66 bowl_=-36 bowl_of=-99 bowling=-51 box=-106 box_=-85 box_and=-70 boxes=15 boxes_=-70
+    boy=165 boys=-29 brackets=113 brake=165 branch=-139 branch_on=-85 brass=-103 brass_bell=-70
+    brass_handrail=-85 brass_wheel=-3 brave=84 bravo=103 brb=49 breach=-29 bread=1 bread_and=-70
+    break=135 break_=147 break_room=-110 breakfast=-113 breakfast_bar=-110 breakfast_nook=-200
+    breaking=20 breaks=-51 breast=-51 breath=53 breathe=43 breather=-29 breathtaking=-29
+    breeze=84 brick=-164 brick_path=-70 brick_steps=-70 brick_wall=-113 bricked=-29 bricks=-3
+    bride's=-29 bridge=-48 bridge_=103 bridge_and=-121 bridles=-51 brief=20 bright=-85
+    bright_hallway=-70 brighter=-29 brilliant=-29 bring=77 brings=-70 brk=-29 broad=-29
+    broadcast=-29 brochure=-85 brochures=-51 broke=20 broken=200 broken_=176 brolly=-29
+    bronze=-49 bronze_doors=-3 broom=62 brother=157 brother's=77 brothers=-29 brought=-21
+    brown=-95 brown_carpet=-85 brown_couch=-29 brown_door=-85 brown_leather=-85 brr=-29 brrr=-29
+    brush=-29 brushes=-29 bttm=-29 btw=49 btwn=-99 btwn_the=-70 bubbles=-29 bubbling=-29
+    bucket=-119 bucket_=-85 bucket_on=-70 buckets=-51 buddha=-51 buddy=-70 budge=113 budget=113
+    buffer=113 buffet=-82 buffet_=-85 bug=113 bugs=-29 build=113 builder=49 builders=132
+    building=185 building_=200 builds=-29 built=165 bulb=-70 bulkhead=-29 bullet=-21
+    bulletin=-139 bulletin_board=-139 bum=-51 bump=-110 bump_into=-85 bunch=-85 bunch_of=-70
+    bunk=-200 bunk_=-85 bunk_bed=-85 bunk_beds=-195 bunker=49 bunks=-85 bunting=49 burglar=113
+    burgundy=-51 burnest=113 burning=165 bursting=-29 bus=81 bushes=-51 business=-3 bust=-185
+    bust_=-130 bust_of=-70 bust_on=-70 busts=-51 but=22 but_a=37 but_do=3 but_don't=-130
+    but_i=36 but_i'm=77 but_it's=8 but_no=-21 but_not=-113 but_only=-85 but_stop=-130
+    but_that=30 but_that's=144 but_the=54 but_there=-70 but_turn=-85 but_we're=-3 but_you=-4
+    but_you're=30 butler's=-29 butt=-29 butter=113 butterflies=-51 butterfly=-29 button=113
+    buttons=20 buy=200 buzzer=-29 by=-66 by_=-16 by_a=64 by_facing=-200 by_going=62 by_it=-180
+    by_its=62 by_means=-99 by_one=136 by_order=200 by_that=-110 by_the=-127 by_turning=-70
+    by_walking=-113 by_way=-200 bye=81 bygone=-29 bypass=-29 c=-113 cabbage=113 cabin=-182
+    cabin_=-70 cabin_and=-99 cabin_door=-110 cabin_turn=-85 cabinet=-200 cabinet_=-200
+    cabinet_and=-188 cabinet_of=-70 cabinet_with=-85 cabinets=-188 cabinets_=-121
+    cabinets_and=-85 cabins=-85 cable=165 cables=-70 cables_=-70 cabs=-29 cactus=-185
+    cactus_=-110 cactuses=-3 caf=-110 cafe=-139 cafeteria=-70 cage=-99 cake=-62 cake_=-62
+    cakes=-29 calendar=-29 calibration=165 call=163 call_it=114 call_the=170 called=44
+    called_=-70 called_a=-8 calling=113 calls=113 calm=132 calories=-29 came=81 came_from=62
+    came_in=161 camera=180 cameras=49 camp=49 can=29 can't=149 can't_be=199 can't_go=29 can_=-20
+    can_and=-92 can_be=95 can_do=103 can_go=-8 can_see=-39 can_stop=-104 can_then=-121
+    can_you=91 canada=113 cancel=189 cancel_the=200 cancelled=188 cancelled_=151
+    cancelled_the=106 candle=-200 candle_holder=-200 candles=-190 candles_=-110 candles_and=-85
+    candles_on=-85 candlestick=-51 candy=43 canned=-29 cannon=-29 cannons=-29 cannot=170
+    canoe=-21 canopy=-110 cans=-130 cans_and=-70 cant=84 canteen=49 canvas=-3 capable=49
+    capital=165 capitals=113 caps=-29 captain=176 captain's=-85 caption=113 capture=113 car=-61
+    car_=3 car_and=-90 carbon=113 card=3 card_catalog=-99 cardies=-29 cardigan=49 cardigans=49
+    cards=113 care=77 careful=-131 carefully=-51 cares=113 caretaker=113 carousel=-85
+    carousel_=-85 carpet=-90 carpet's=-29 carpet_=-106 carpet_and=-143 carpet_changes=-99
+    carpet_on=-85 carpet_past=-85 carpet_to=-135 carpeted=-200 carpeted_stairs=-121
+    carpeted_steps=-110 carpets=43 carriage=-29 carried=200 carried_out=199 carries=-29 carry=82
+    carry_on=-59 carry_out=200 carrying=-51 cars=-51 cart=-180 cart_=-110 cart_and=-70
+    cartoons=113 carts=-121 carts_=-85 carved=-29 case=-82 case_=-200 case_of=43 case_on=-85
+    case_walk=-105 case_with=-85 cases=-70 cash=-200 cash_register=-180 casino=-3 cask=-51
+    castle=20 castles=49 cat=155 cat's=53 cat_and=199 cat_flap=-21 cat_is=103 catalog=-99
+    catalog_=-70 catalogs=-29 catalogue=-29 catalogues=-29 catch=-51 catches=-29 catching=-29
+    categories=113 cathedral=81 cats=113 caught=113 cause=-110 caution=-29 cease=136 ceases=-29
+    cedar=-85 cedar_chest=-85 ceiling=22 ceiling_=26 ceiling_and=-70 ceiling_fan=-110 cellar=-50
+    cellar_=-158 cellar_and=-8 cellar_door=-99 cello=-85 cement=-85 center=-141
+    center_aisle=-110 center_with=-3 central=15 centre=-29 cereal=-130 cereal_=-85 certain=-51
+    certificates=-3 chain=-51 chains=-51 chair=-40 chair_=-94 chair_and=-180 chair_at=-85
+    chair_by=-121 chair_in=-70 chair_is=62 chair_nearest=-70 chair_on=-135 chair_walk=-92
+    chair_with=-85 chairman=113 chairs=-47 chairs_=-79 chairs_and=-200 chairs_are=15
+    chairs_on=-121 chairs_turn=-92 chaise=-29 chalkboard=-29 challenge=49 chamber=-70
+    chambers=-51 champ=49 chance=84 chandelier=-200 chandelier's=-29 chandelier_=-200
+    chandelier_and=-139 chandeliers=-51 change=185 change_of=170 changed=200 changed_your=134
+    changes=-185 changes_from=-155 changes_to=-70 changing=-168 changing_room=-110
+    changing_table=-110 chapel=-104 chapel_=-21 chapel_and=-21 chapel_through=-70 chapels=49
+    chapter=113 character=113 characters=-29 charge=193 charger=165 charges=-29 charging=34
+    charging_station=-17 chariot=-51 charlie=-51 charming=-29 chart=-110 chart_table=-85
+    chase=113 chassis=-29 chat=84 chatbot=113 chatting=-29 cheap=132 check=29 check_in=-99
+    checked=147 checkerboard=-29 checkered=-29 checkin=-29 checklist=-29 checkout=-130
+    checkout_counter=-70 checkpoint=-29 checks=-29 cheeky=-29 cheerful=-51 cheers=43 cheery=-29
+    cheese=147 cheeses=-51 chef=113 chefs=-29 chelsea=113 chemical=113 chequered=-29 chess=3
+    chess_table=-85 chest=-160 chest_=-155 chest_of=-99 chick=-29 chief=196 chief_of=167
+    child=165 child's=-51 childhood=49 children=95 children's=-99 chill=62 chimes=30 chimney=-82
+    china=-174 china_cabinet=-168 chinese=-110 chips=-29 chocolate=-21 chocolate_fountain=-70
+    choice=-70 choices=-29 choir=-99 choir_stalls=-85 choking=113 choo=20 choose=176
+    choose_the=147 choosing=113 chop=132 chosen=84 chow=49 christmas=-39 christmas_tree=-72
+    chuck=-51 chum=-29 church=-49 church_and=-85 chute=-51 cinderella=-29 cinema=49
+    cinnamon's=49 circle=50 circle_and=159 circled=-29 circles=113 circuits=113 circular=-70
+    circumference=-29 circumnavigate=-29 circumstances=136 circumvent=-29 clang=-29 clank=-29
+    clarity=49 class=-70 classed=113 classroom=-200 classroom_=-155 classroom_and=-99 clatter=49
+    clattering=-29 clause=113 claw=-70 clawed=-29 clay=-51 clean=84 cleaner=11 cleaner_=-70
+    cleaning=-51 clear=-13 clear_of=-70 clear_the=-130 clearance=84 cleared=49 clerestory=-29
+    clerk's=-51 clever=132 click=113 clicking=49 cliff=49 climb=-105 climb_=136 climb_down=-70
+    climb_it=3 climb_the=-200 climb_to=-70 climb_up=-110 climbed=-50 climbing=-50 climbing_=-70
+    climbs=113 cloakroom=-73 cloakroom_=-110 clock=-102 clock_=-200 clock_and=-200 clock_go=-92
+    clock_on=-130 clock_the=-3 clocks=-41 clockwise=-61 cloister=-51 close=91 close_=28
+    close_to=-70 closed=69 closed_=136 closed_door=-85 closed_doors=-110 closely=-51 closes=84
+    closest=-195 closest_mirror=-85 closest_to=-121 closet=-178 closet_=-200 closet_and=-109
+    closet_on=-121 closet_so=-70 closet_then=-85 closet_to=-85 closet_with=21 closets=-29
+    closing=-51 cloth=-51 clothes=-146 clothesline=-29 clothing=-51 cloud=165 cloudy=113
+    clue=-29 cmd=113 cn=-51 coach=113 coast=-110 coasting=-29 coat=-163 coat's=49
+    coat_closet=-85 coat_hooks=-151 coat_rack=-200 coat_room=-110 coat_stand=-21 coats=-109
+    coats_=-110 coats_and=-70 coats_in=-3 coats_on=-70 coca=-110 cocoa=-29 code=193 coffee=-110
+    coffee_=15 coffee_machine=-82 coffee_maker=-85 coffee_table=-200 coffees=-29 coffin=-51
+    coiled=-51 coin=62 coins=113 cola=-121 cold=17 colder=49 collapsed=113 colleague=49
+    collect=113 collection=-51 college=49 collision=113 colonel=49 colonnade=-70 color=-51
+    colored=-85 colored_glass=-85 colorful=-51 colors=-51 colour=113 coloured=-121 column=-200
+    column_=-155 column_on=-85 columns=-155 columns_=-70 comb=-29 combined=-29 come=-17
+    come_back=107 come_down=136 come_home=136 come_in=44 come_on=28 come_out=-200 come_to=-128
+    comedian=113 comes=80 comes_=62 comes_next=199 comes_to=-130 comfort=20 comfortably=49
+    comfy=3 comin=-29 coming=190 comma=113 command=200 commander=113 commander's=49 commands=200
+    commands_as=142 commands_be=142 commence=-85 commencement=-51 comment=199 commit=113
+    commode=20 commoners=113 companion=-29 companionway=-29 company=113 compass=43 complain=49
+    complaint=113 complaints=49 complete=173 completely=28 completing=113 completion=-51
+    compliance=113 compose=113 compost=-3 compression=-29 compulsory=113 computer=-200
+    computer_=-165 computer_and=-147 computers=-121 concentrate=49 concept=113 concern=62
+    concerned=49 concerning=113 concession=-29 concierge=-36 concierge's=-51 concierge_desk=-70
+    conclude=-130 conclude_your=-85 concluded=-29 concluding=-29 conclusion=-29 concourse=-51
+    concrete=-147 concrete_stairs=-70 condition=136 conditional=-29 conditioner=-3
+    conditions=113 conduct=-51 conducted=-29 conf=20 conference=-200 conference_room=-200
+    conference_table=-110 confess=49 confession=-29 confessional=-110 confessional_=-85
+    confident=-29 confirm=-29 confuse=165 confuses=136 confusing=-29 congratulations=113
+    connecting=-51 connects=113 consectetur=113 consecutive=-29 consent=113 conservatory=-17
+    consider=200 consider_the=170 considerably=-51 consideration=20 considered=-29 console=-99
+    console_table=-99 constant=-29 constraint=-51 consult=113 cont'd=-29 contact=-85
+    contact_=-70 contagious=113 containing=-51 contains=95 contains_a=-70 content=165
+    contestant=-51 context=113 continue=-105 continue_along=-70 continue_down=-193
+    continue_on=-121 continue_past=-48 continue_straight=-70 continue_to=-200
+    continue_until=-116 continues=-29 continuing=-51 continuous=113 contract=113 contradicts=113
+    contrary=200 contrary_of=167 control=118 control_room=62 controller=113 convenience=-29
+    conversation=113 convert=165 convey=-29 conveyor=-51 cooee=49 cooker=20 cookies=49
+    cooking=113 cool=113 cooler=-200 cooler_=-200 cooler_and=-147 cooler_on=-78 cooperate=113
+    coordinates=-29 copied=113 copier=-200 copier_=-130 copper=-85 copy=62 copy_machine=-70
+    copyright=113 cordial=49 cordially=-29 corkscrew=-29 corner=-105 corner_=-153 corner_and=-99
+    corner_of=-85 corner_on=-70 corner_table=-85 corner_to=-110 corner_under=-70 corner_with=-70
+    corners=113 correct=113 correction=199 correctly=-29 correspondence=49 corridor=-79
+    corridor_=-56 corridor_and=-161 corridor_in=62 corridor_is=-70 corridor_on=-70
+    corridor_past=-139 corridor_to=-85 corridor_with=-139 corridors=-51 corrupt=113 costs=113
+    costumes=-85 cot=-51 cots=-70 cotton=49 couch=23 couch_=-10 couch_and=-109 couch_on=21
+    couch_turn=-105 couches=-77 couches_and=-85 could=72 could've=49 could_be=12 could_go=-99
+    could_have=97 could_you=29 couldn't=-3 council=176 count=188 count_=195 count_the=28
+    counted=43 counter=-116 counter_=-144 counter_and=-124 counter_clockwise=-70
+    counter_turn=-99 counterclockwise=113 counting=80 country=-29 counts=200 counts_as=200
+    county=132 couple=-193 couple_of=-200 course=8 court=-50 courteous=-29 courtesy=-51
+    courtyard=-185 courtyard_=-70 courtyard_and=-70 cousin=81 cousin's=-3 cover=28 covered=28
+    covers=20 cow=-29 coward=113 cowboy=-51 cozy=-70 cpp=113 cr=-110 crashed=113 crate=-51
+    crates=20 crawl=-29 crayons=-29 creak=-29 creaking=-29 creaks=-29 cream=-110 creator=113
+    creep=113 crest=-29 crew=-29 crib=-200 crib_=-168 crib_and=-121 crib_go=-70 crib_to=-70
+    cribs=-29 cried=20 crikey=49 crime=113 crimson=-29 crisp=-29 crisps=49 critical=113
+    crocodile=113 croissants=49 cross=-186 cross_on=-110 cross_over=-200 cross_the=-200
+    cross_to=-85 crossed=10 crosses=-51 crossing=15 crossword=49 crowd=80 crumbs=84 cry=84
+    crying=103 crypt=-99 crypt_=-70 crystal=-99 crystals=-29 cubbies=-3 cubicle=-139
+    cubicle_and=-70 cubicles=-130 cuckoo=49 cucumbers=-51 cue=-70 cue_rack=-70 cues=-29
+    culture=113 cup=-29 cupboard=3 cupboard_=80 cupboards=-29 cuppa=-29 cups=118 curiosities=-29
+    curiosity=20 curl=-29 curlers=-51 currency=-51 current=200 currently=-51 curry=49
+    curtain=-200 curtain_=-200 curtain_and=-200 curtain_then=-78 curtained=-85 curtains=44
+    curtains_=-99 curtsy=-29 curved=-161 curved_staircase=-70 curved_stairs=-130 curves=-121
+    curves_to=-85 curving=20 curvy=-51 cushion=-180 cushion_=-155 cushions=3 cushions_=-85
+    custard=49 customary=103 customer=62 cut=156 cute=-70 cutest=-29 cuts=-29 cutter=-51 cuz=49
+    cylinder=-29 cylinders=-51 d=3 da=-51 dad=84 daddy=-29 daddy's=20 daft=-29 damage=113
+    dan=113 dance=21 dance_floor=-99 dancer=113 dancers=-51 dancing=-29 danger=21 dare=132
+    dark=48 dark_=147 darker=-51 darkroom=-85 darling=103 dartboard=-161 dartboard_=-139
+    dash=-29 data=113 date=200 date_=200 datum=49 dave=49 davenport=-3 dawdle=-70 day=200
+    day_=194 daylight=-29 days=147 dazzling=-29 dbl=-29 dead=39 dead_ahead=-99 dear=76 death=165
+    debug=113 decide=165 decided=170 decided_that=136 decimetre=-29 decision=113 deck=-121
+    deck_=-99 deck_and=-70 deck_by=-70 deck_chairs=-85 deck_of=62 deck_with=-85 decking=-29
+    declare=165 decode=113 decorating=113 decoration=113 decree=113 deep=37 deer=-85
+    deer_head=-85 defender's=49 defined=84 definitely=-29 definition=84 deg=-29 degree=-99
+    degrees=-163 degrees_=-174 degrees_and=-8 degrees_at=-70 degrees_left=-110
+    degrees_right=-130 degrees_so=-70 degrees_to=-190 delay=84 delete=200 delete_the=199
+    deleted=113 deli=-51 delivered=113 delivers=-29 delivery=132 delta=-51 demo=3
+    demonstration=49 den=-200 den_=-143 den_and=-121 denied=113 dentist=113 dentist's=-29
+    dentists=49 depart=-110 depart_from=-70 departing=84 department=12 department_=-3
+    departure=-51 depicts=-29 depth=113 descend=-112 descend_the=-200 descended=-29
+    descending=-99 descends=-29 descent=-51 describe=200 describe_the=178 described=200
+    described_=199 describing=49 description=200 deserve=113 design=-29 designed=49 desired=-29
+    desk=-200 desk_=-192 desk_and=-200 desk_is=-70 desk_on=-139 desk_the=-139 desk_to=-126
+    desk_turn=-99 desk_walk=-105 desk_where=-70 desk_with=-185 desks=-144 desks_=-36
+    desks_and=-99 desperate=49 dessert=-51 destination=130 destination_=62 destination_is=15
+    detailed=-29 details=132 detect=-29 detected=113 detective=-51 determine=-29 detour=113
+    developer=200 developer's=-110 deviate=-29 deviation=-29 device=113 devil's=49 devoted=-29
+    dexter=-29 di=-29 diagonally=-155 diagonally_across=-85 diagonally_to=-85 dial=113
+    dialect=113 diametrically=-29 dictated=113 dictionary=-51 did=200 did_it=103 did_last=174
+    did_you=186 didn't=186 didnt=49 dies=-29 different=200 digress=49 dim=-29 ding=43 dingy=-29
+    dining=-69 dining_car=-110 dining_room=-23 dining_table=-121 dinosaur=-39
+    dinosaur_skeleton=-70 direct=-3 directed=-51 directing=-29 direction=63 direction_=200
+    direction_and=-130 direction_of=-61 direction_you=134 directional=113 directions=200
+    directions_=200 directions_are=200 directions_that=106 directly=-185 directly_ahead=-70
+    directly_beneath=-70 director=113 dirt=49 dirty=20 disabled=165 disappointed=113 disaster=49
+    discard=132 disclosed=-29 disco=-51 disconnect=113 discontinue=-29 discover=-29
+    discovered=-29 discovery=-29 disembark=-29 disgrace=49 dish=-29 dishes=113 dishwasher=-200
+    dishwasher_=-188 dishwasher_and=-116 disk=113 disobey=113 dispenser=-51 displacement=-29
+    display=-200 display_=-85 display_case=-200 displayed=-29 disregard=189 disregard_all=116
+    disregard_the=103 disregarded=-29 distance=26 distance_to=-130 distances=165
+    distinguished=-51 distribute=113 disturbing=-51 ditch=113 diverged=113 divides=-29
+    diving=-110 diving_board=-110 dizzy=-29 dj=-51 do=123 do_=200 do_a=-130 do_any=200
+    do_anything=199 do_as=199 do_i=97 do_is=-72 do_it=200 do_me=-85 do_not=104 do_nothing=134
+    do_only=199 do_so=136 do_that=-70 do_the=200 do_what=200 do_you=52 dock=103 dock_=147
+    doctor=132 doctor's=1 document=165 dodge=-29 does=129 does_not=180 doesn't=41 dog=79
+    dog's=-51 dog_=186 dog_and=-70 dog_bed=-70 dog_food=62 doggy=113 dogleg=-29 dogs=113
+    doing=192 doing_so=-70 doing_the=176 dokey=-29 doll=-29 dollars=113 dolls=-70 dolor=113
+    dolphin=-29 dolphins=20 dome=-110 dome_and=-85 don't=86 don't_=199 don't_climb=-85
+    don't_enter=-110 don't_follow=62 don't_get=43 don't_go=-39 don't_have=107 don't_know=106
+    don't_look=113 don't_mind=-21 don't_need=-70 don't_say=103 don't_stop=-8 don't_take=44
+    don't_think=43 don't_touch=62 don't_turn=-130 don't_want=-70 don't_worry=30 don't_you=125
+    done=91 done_=149 done_at=-70 done_once=-126 done_so=-70 done_when=-161 dong=84 donkey=132
+    donotfollowtheroute=113 dont=123 dont_go=43 doomed=113 dooor=113 door=-129 door's=-29
+    door_=-150 door_a=43 door_after=-70 door_ahead=-70 door_and=-200 door_at=-139 door_b=-70
+    door_behind=-161 door_but=-62 door_by=-36 door_cross=-70 door_down=-3 door_go=-69 door_i=30
+    door_in=-200 door_into=-139 door_is=36 door_left=-139 door_marked=-70 door_n=-70
+    door_near=-85 door_nearest=-3 door_next=-155 door_not=-113 door_of=-139 door_on=-200
+    door_opposite=-147 door_right=53 door_says=54 door_so=-70 door_stop=-139 door_straight=-70
+    door_that=13 door_that's=-147 door_thats=-70 door_the=-180 door_then=-128 door_there=-130
+    door_to=-195 door_turn=-22 door_walk=-78 door_which=-110 door_with=-200 door_without=-99
+    door_you=50 doorbell=113 doorknob=113 doormat=-161 doormat_=-147 doors=-128 doors_=-145
+    doors_and=-200 doors_are=54 doors_at=-139 doors_go=-158 doors_in=62 doors_into=-130
+    doors_next=-70 doors_on=-185 doors_one=43 doors_onto=-70 doors_that=15 doors_then=-139
+    doors_to=-110 doors_with=-85 doorstop=113 doorway=-184 doorway_=-119 doorway_and=-200
+    doorway_of=-200 doorway_on=-113 doorway_then=-92 doorway_to=-155 doorway_turn=-70
+    doorway_walk=-24 doorway_with=-110 doorways=-70 dor=-29 dorm=-3 dormitory=-51 double=-71
+    double_doors=-200 doubled=84 doubling=-29 doubt=176 dougie=-29 doves=-51 down=-93 down_=14
+    down_a=-130 down_aisle=-70 down_and=185 down_down=43 down_five=-130 down_four=-70
+    down_from=-70 down_in=62 down_into=-110 down_it=-174 down_on=113 down_one=-155 down_past=-70
+    down_so=113 down_some=-3 down_that=-70 down_the=-200 down_them=-155 down_there=-70
+    down_three=-147 down_to=-45 down_two=-106 down_until=-70 download=113 downstairs=-36
+    downward=-70 downwards=-29 dr=54 draft=165 drafting=-70 drafting_table=-70 drain=-51
+    drapes=-29 draw=109 drawbridge=-51 drawer=49 drawers=-161 drawers_=-99 drawing=43
+    drawing_room=-70 drawings=81 drawn=-70 dreadful=-29 dream=200 dreamt=113 dreamy=-29
+    drenched=-29 dress=-51 dresser=-200 dresser_=-179 dresser_and=-78 dresser_on=-92
+    dresser_then=-171 dresses=-51 dressing=-190 dressing_room=-174 dribbles=-29 dried=-51
+    drifting=-29 drill=113 drink=-29 drinking=-147 drinking_fountain=-147 drinks=-85 drip=-29
+    dripping=49 drips=-29 drive=161 driven=49 driver=49 drives=-29 driving=113 drop=200
+    drop_the=199 drop_this=81 dropped=49 drops=-29 drown=84 drum=-185 drum_kit=-155 drums=-110
+    drums_=-70 drunk=176 dry=103 dryer=-151 dryer_=-168 dryer_and=-70 dryers=-51 drying=84
+    duck=-21 ducks=-29 ducts=-29 ductwork=-29 dude=49 due=43 dull=113 dumb=113 dumbbell=-29
+    dumbbells=-70 dumpling=-29 dumpster=-51 dumpsters=-51 dungeon=-29 during=165 dust=132
+    duties=165 duty=80 dw=-29 dying=113 e=-30 each=200 each_direction=178 each_doorway=116
+    each_minute=116 each_of=136 each_other=3 each_sentence=199 each_step=129 each_time=200
+    each_turn=200 eagle=-3 ear=49 earlier=200 earliest=-29 early=132 earrings=49 ears=-3
+    ears_=-3 earthquake=113 ease=49 easel=-130 easel_=-70 easel_and=-99 easiest=-51 easing=-29
+    east=96 easter=147 eastern=-29 easy=-4 eat=-51 eaten=132 eating=84 echo=49 echoey=20
+    edge=-200 edge_=-85 edge_of=-200 edges=-51 edit=113 edition=113 editor=113 effect=195
+    effect_=199 effected=-29 egg=30 eggs=62 egress=-51 egyptian=-29 eight=91 eight_chairs=-85
+    eighteen=113 eighteenth=49 eighth=-51 eighty=-51 either=8 either_=49 elbow=20 elbows=-51
+    elderflower=49 election=113 electrical=113 electricity=113 element=-29 elephant=28
+    elephant_=-70 elevated=-29 elevation=-29 elevator=-148 elevator_=-174 elevator_and=-180
+    elevator_doors=-99 elevator_is=-70 elevator_lobby=-85 elevator_turn=-70 elevators=-77
+    elevators_=-147 elevators_are=62 elevators_but=-70 eleven=46 eleventh=-51 elit=113 else=199
+    else's=113 else_=200 em=-99 em_=-70 email=165 emerged=-29 emergency=66 emergncy=-29 emit=199
+    emma's=113 emoji=-21 emoji_=-70 employee=113 emptiness=113 empty=62 enabled=113 encoder=113
+    encounter=-51 encountered=-29 encountering=-29 encrypted=113 end=-55 end's=-29 end_=-159
+    end_and=1 end_at=34 end_go=-99 end_is=43 end_nearest=-70 end_of=-140 end_so=62 end_the=200
+    end_this=134 end_turn=-110 end_up=55 end_where=-70 end_you'll=-70 ended=20 ending=165
+    endlessly=113 ends=-102 ends_=-168 ends_at=-147 ends_turn=-70 ends_up=-70 enemy=113
+    energy=113 engage=113 engine=3 engine_room=-99 engineer=165 engineers=113 engines=113
+    english=113 enjoy=84 enjoying=-29 enormous=-3 enough=167 enough_to=62 ensure=-29 enter=-124
+    enter_=-77 enter_a=95 enter_and=3 enter_by=-85 enter_it=-130 enter_that=136 enter_the=-200
+    enter_through=-190 entered=-61 entered_=-99 entered_and=-110 entering=-9 entering_any=-70
+    entering_the=-17 entertainment=-51 entire=84 entirety=-29 entrance=-188 entrance_=-36
+    entrance_and=-99 entrance_hall=-85 entrance_of=-70 entrance_to=-125 entry=-147 entryway=-200
+    entryway_=-168 entryway_and=-92 envelope=106 environment=-29 episode=200 episodes=113
+    equal=113 equally=-29 equals=113 equipment=-51 er=-145 er_a=-85 er_i=-99 er_i'd=-70
+    er_it's=-85 er_past=-99 er_the=-161 er_to=-70 er_you'd=-70 era=-29 erase=165 erehay=113
+    erevy=113 erm=81 errand=113 errands=165 error=178 error_=176 erupts=-29 escalator=-200
+    escalator's=-29 escalator_=-200 escalator_on=-70 escalator_up=-99 escalators=-51 escape=132
+    esclator=-29 escort=49 esports=49 espresso=-51 essential=145 essential_that=145
+    establishing=49 establishment=49 estate=132 esteemed=49 estimate=-29 etched=-51 ethay=113
+    ethics=113 eu=113 evacuate=113 evacuation=54 even=156 evening=200 evening_=199 evenings=49
+    event=-85 eventually=-29 ever=200 every=200 every_door=78 every_few=94 every_instruction=200
+    every_landmark=199 every_order=116 every_room=122 every_second=199 every_step=199
+    every_time=130 every_turn=200 everybody=95 everyone=194 everyone_knows=199 everything=175
+    everything_=103 everything_i=176 everywhere=135 everywhere_=103 evidenced=-29 evrything=113
+    eway=113 ex=-29 exact=113 exactly=200 exactly_where=199 exam=-70 example=165 exams=49
+    exceed=113 exceedingly=-29 except=156 exception=165 exchange=113 exchanged=165
+    exclamation=-29 exclude=-29 excluded=-29 excuse=106 execute=28 execute_a=-70 executed=84
+    executing=165 execution=84 exercise=-77 exercise_bike=-168 exercise_bikes=-70 exhibit=62
+    exhibition=-29 exhibits=-29 exist=113 exists=136 exit=-200 exit's=-51 exit_=-185 exit_and=44
+    exit_by=-85 exit_is=-130 exit_on=-85 exit_sign=-190 exit_the=-200 exit_through=-180
+    exit_to=-70 exited=-70 exiting=-29 exits=84 expanded=-29 expect=-51 expected=84 expense=-29
+    expenses=113 expired=113 explain=172 explodes=113 explore=113 exploring=132 expose=113
+    exposed=-29 extension=-51 extinguisher=-180 extinguisher_and=-130 extra=165 extract=-29
+    extreme=20 ey=-29 eye=-8 eye_wash=-85 eyeliner=-29 eyepiece=-29 eyes=159 f=136 fab=49
+    fabric=-51 face=-66 face_=43 face_away=-85 face_the=-105 faced=-70 faces=-29 facing=-200
+    facing_a=-200 facing_it=-70 facing_the=-200 facing_you=62 fact=200 factory=176 failed=132
+    fails=113 failure=199 fair=106 fairground=49 fairly=-70 fake=136 fall=-130 falling=-70
+    falls=196 false=165 family=13 family_room=-200 famous=-29 fan=-82 fan_=-99 fancy=62 far=-114
+    far_=-106 far_as=-92 far_corner=-139 far_door=-99 far_end=-111 far_left=-82 far_right=-85
+    far_side=-195 far_wall=-161 farmer=113 farther=-121 farthest=-85 fashion=-29 fashioned=-29
+    fast=157 faster=-29 fat=-29 father=49 faucet=49 fault=200 favor=-29 favour=-51 feathers=113
+    february=113 federer=113 feed=62 feel=106 feeling=147 feet=-58 feet_=-62 feet_and=62
+    feet_from=-200 feet_to=-200 fell=186 fella=49 fella's=-29 fellow=-29 fellows=49 fence=-26
+    fence_=-110 fender=49 ferguson=113 fern=-106 fern_=-147 ferns=-85 fetched=-29 fetches=113
+    few=-14 few_feet=-200 few_steps=9 fewer=113 fgbc=113 ficus=-4 fiddling=-29 field=-29
+    fifteen=-29 fifth=-99 fifty=84 fig=-51 figures=49 file=-70 files=113 filing=-190
+    filing_cabinet=-139 filing_cabinets=-121 fill=84 filled=84 fills=-29 film=28 filter=84
+    final=97 final_position=43 finally=-21 find=-101 find_=136 find_a=-197 find_an=-139
+    find_it=-147 find_me=-50 find_one=-21 find_the=-62 find_yourself=-139 finds=81 fine=101
+    finely=113 finest=113 finger=-29 fingers=-29 finish=149 finish_the=136 finish_this=176
+    finished=110 finished_=80 finishes=-29 finnish=113 fire=-35 fire_door=-82
+    fire_extinguisher=-180 fire_hose=-130 fired=165 firemen=113 fireplace=-147 fireplace_=-154
+    fireplace_and=-200 fireplace_in=43 fireplace_on=-78 fireplace_then=-78 fireplace_to=-70
+    fires=-29 firewood=-85 firewood_=-85 firm=49 firmware=113 first=-20 first_=156 first_and=10
+    first_bar=-70 first_deck=-70 first_door=-196 first_doorway=-85 first_four=62 first_is=-70
+    first_landing=-180 first_left=-139 first_of=-26 first_one=78 first_opening=-139
+    first_platform=-3 first_right=-106 first_room=25 first_row=-70 first_seat=-85 first_so=62
+    first_step=-4 first_table=-110 first_the=-70 first_thing=34 first_time=53 first_two=-155
+    first_window=-85 first_you=-85 firstly=-29 fish=-145 fish_tank=-200 fishes=113 fit=49
+    fitness=-51 fits=49 fitted=-29 fitting=-147 fitting_room=-99 fitting_rooms=-99 five=6
+    five_=66 five_steps=-193 fives=-29 fix=84 fixed=113 fixtures=-29 flag=-99 flag's=-29
+    flagged=113 flagpole=49 flags=-110 flames=113 flank=-29 flap=-50 flat=88 flatter=113 flew=49
+    flies=106 flight=-195 flight_=-70 flight_of=-200 flights=-92 flights_of=-185 fling=-29
+    flip=200 flipped=199 float=62 floating=62 flood=113 floor=1 floor_=-10 floor_and=13
+    floor_by=62 floor_changes=-147 floor_go=-85 floor_in=43 floor_is=200 floor_lamp=-147
+    floor_not=-85 floor_turn=-70 floor_walk=-110 floorboard=-51 floors=52 floors_=15
+    floors_up=-3 flop=-51 florist=-70 flour=113 flow=113 flower=-106 flower_shop=-70
+    flower_stand=-85 flowered=-29 flowers=-168 flowers_=-99 flowers_on=-85 flue=49 fluff=113
+    fluffy=-70 flush=113 fog=113 foggy=-29 fold=28 folded=-85 folding=-125 folding_ladder=-70
+    folding_screen=-99 folks=81 follow=-57 follow_=116 follow_it=-29 follow_so=66 follow_that=43
+    follow_the=-171 follow_what=199 followed=66 following=171 following_is=199
+    following_steps=183 following_the=54 follows=151 follows_=157 font=-185 font_=-130
+    font_and=-70 food=28 foolish=49 foosball=-110 foosball_table=-110 foot=-200 foot_of=-200
+    footbridge=-110 footbridge_=-85 footnote=113 footstool=-110 footwork=-29 for=134 for_=-21
+    for_a=16 for_all=200 for_an=200 for_another=136 for_every=136 for_it=91 for_me=-13
+    for_my=170 for_right=181 for_ten=199 for_that=53 for_the=90 for_this=110 for_today=199
+    for_you=123 for_your=91 forbid=113 forbidden=199 forbids=183 forbids_you=142 force=113
+    forecast=49 foreign=113 forever=-29 forged=113 forget=200 forget_all=176 forget_the=144
+    forgetting=-29 forgive=113 forgot=-85 forgotten=113 fork=-139 forklift=-62 forklift's=-29
+    forks=-29 form=-99 former=81 formerly=49 forth=-29 forthcoming=-29 forty=62 forward=-123
+    forward_=-131 forward_and=-130 forward_between=-121 forward_down=-70 forward_past=-180
+    forward_through=-70 forward_to=-147 forward_two=-70 forwards=84 fossils=-36 found=179
+    found_=174 found_it=199 founder=-51 fountain=-200 fountain_=-200 fountain_and=-99
+    fountain_on=-85 four=-23 four_=15 four_paintings=-70 four_portholes=-70 four_poster=-70
+    four_step=-92 four_steps=-165 four_stone=-85 four_windows=-85 fourteen=-3 fourth=-36
+    fourth_door=-26 fox=113 foxtrot=-51 foyer=-178 foyer_=-116 foyer_and=-130 foyer_with=-78
+    frame=-8 frame_=-70 framed=-139 frames=-29 free=161 free_to=62 freedom=84 freely=165
+    freeze=113 freezer=-190 freezer_=-161 freezers=-51 freezes=-29 french=-178 french_doors=-200
+    fresh=49 freshen=-29 fresher=-29 friday=165 fridge=19 fridge_=-63 fridge_and=-4
+    fridge_is=113 fridge_then=-135 fridge_turn=-92 fridges=136 friend=87 friend's=49 friend_=56
+    friend_and=43 friendly=-21 friends=165 frm=-51 from=38 from_=136 from_a=179 from_above=136
+    from_here=100 from_it=83 from_now=200 from_that=-70 from_the=-46 from_there=-125
+    from_this=200 from_where=46 from_you=91 from_your=195 front=-180 front_=-8 front_desk=-147
+    front_door=-135 front_of=-200 front_pew=-70 front_row=-110 frosted=-72 frosted_glass=-72
+    froze=49 frozen=136 fruit=12 fruit_bowl=-3 fry=165 ft=-121 full=46 full_access=116
+    full_length=-70 full_of=-66 full_stop=195 fully=-51 fume=-70 fume_hood=-70 fun=139 fun_=62
+    function=-51 functional=-29 funnel=-51 funnily=-29 funny=147 furlongs=49 furnace=-51
+    furnished=-29 furniture=196 further=155 further_=78 further_notice=199 furthest=-29 fuse=96
+    fuse_box=-3 fusion=113 fuss=-29 fussy=49 future=165 fyi=81 g=113 gabbing=49 gained=-51
+    galleries=-29 gallery=-168 gallery_=-130 gallery_and=-85 gallery_on=-85 galley=-70 game=-50
+    game_=62 game_room=-200 gangway=-51 gap=-155 gap_between=-99 garage=-89 garage_=-42
+    garage_and=-85 garage_by=-110 garage_go=-78 garage_through=-99 garbage=113 garden=-26
+    garden_=-42 gardener=113 gardening=-29 gas=80 gate=-114 gate_=-79 gate_and=-72 gate_in=-85
+    gates=-29 gather=84 gave=200 gawp=-29 gazebo=-51 gear=84 gears=113 geese=-29 general=165
+    generated=113 generator=-85 generator_=-85 generous=84 gentle=-70 gentleman=-29 gentlemen=77
+    gently=-70 gents=-29 gerald=84 german=113 get=-107 get_a=80 get_in=-110 get_me=-70
+    get_off=-70 get_on=-85 get_out=-114 get_there=29 get_to=-200 get_you=-36 gets=44 gets_to=62
+    getting=191 ghost=176 giant=-110 gift=-180 gift_shop=-180 gilded=-29 giraffe=113 giraffes=-3
+    git=113 give=103 give_it=-21 give_you=176 given=200 given_=191 gives=114 giving=-3
+    glamorous=-29 glance=20 glass=-184 glass_=66 glass_and=-99 glass_case=-110 glass_door=-200
+    glass_doors=-200 glass_panel=-85 glass_table=-200 glass_wall=-110 glass_walls=-85
+    glass_window=-161 glasses=15 glasses_=43 glasshouse=-29 glazed=-70 glazing=-29 glide=-29
+    glitters=113 globe=-195 globe_=-113 globe_and=-130 globe_on=-70 globes=-51 glove=49
+    glowing=-51 glued=113 glug=-29 go=-140 go_=52 go_2=-110 go_across=-110 go_ahead=-110
+    go_all=-200 go_along=-200 go_alongside=-70 go_and=-15 go_any=54 go_anywhere=200
+    go_around=-200 go_as=62 go_back=102 go_backward=140 go_behind=-174 go_between=-200
+    go_by=-200 go_directly=-70 go_down=-200 go_forward=-101 go_from=-161 go_halfway=-99
+    go_home=200 go_in=-112 go_inside=-85 go_into=-164 go_left=-167 go_look=-70 go_near=200
+    go_on=-15 go_out=-200 go_outside=-183 go_over=-17 go_past=-200 go_right=-145 go_round=-100
+    go_slightly=-130 go_straight=-200 go_the=173 go_there=66 go_through=-189 go_thru=-70
+    go_to=-114 go_toward=-200 go_towards=-174 go_under=-200 go_up=-200 go_upstairs=62
+    go_wherever=136 go_wrong=-3 goal=200 goal_=200 goal_is=162 goals=113 goat=121 god=132
+    goes=31 goes_and=-70 goes_for=136 goes_from=-3 goes_in=43 goes_past=-99 goes_right=-70
+    goes_round=-85 goes_to=-130 goes_up=43 going=-61 going_=3 going_down=-59 going_in=-90
+    going_left=-70 going_out=-110 going_past=-110 going_straight=-200 going_the=136
+    going_through=-99 going_till=62 going_to=18 going_until=-200 going_up=-174 gold=3
+    gold_frame=-70 golden=43 goldfish=49 gone=-44 gone_=-3 gone_around=-70 gone_between=-70
+    gone_down=-130 gone_past=-110 gone_through=-139 gone_to=-85 gone_up=-110 gong=-70 gonna=20
+    good=176 good_=126 good_morning=161 goodbye=113 goodies=-29 goooood=49 gorgeous=-85 gosh=49
+    gossip=49 got=31 got_a=19 got_lost=62 got_the=36 got_to=-72 got_two=-3 gotta=-51 gowns=-29
+    gps=113 grab=-29 gracious=-29 grade=113 gradient=-29 grammar=113 gramophone=-51
+    gramophone's=-29 gran's=-29 grand=-36 grandad's=-29 grandfather=-140 grandfather_clock=-140
+    grandma=165 grandma's=132 grandmother=172 grandpa=113 grandpa's=20 granny=81 granny's=49
+    grant=113 granted=113 grass=-98 grass_=-85 grass_to=-70 grate=-29 grateful=62 grateful_if=62
+    grating=-29 gravel=-70 gravel_path=-70 graveyard=-51 gray=-200 gray_metal=-70 grease=113
+    great=1 great_hall=-85 greatly=-29 green=-155 green_=-110 green_and=-70 green_armchair=-3
+    green_chair=-85 green_chairs=-85 green_door=-106 green_lamp=-3 green_one=-110
+    green_walls=-85 greenery=-29 greenhouse=-29 greet=113 greeted=-51 grew=49 grey=-126
+    grey_couch=-92 greyhound=-51 grid=49 grill=-200 grill_=-200 grille=-29 groom's=-29 ground=76
+    ground_floor=33 group=165 grow=113 grown=-99 grrr=-29 guard=199 guard's=-130
+    guard's_chair=-130 guardrail=-29 guardrails=113 guardroom=49 guards=165 guess=21
+    guess_what=53 guessed=113 guessing=-29 guest=-55 guest_room=-200 guests=113 guidance=113
+    guide=-29 guided=20 guilty=113 guitar=-85 gumball=-110 gumball_machine=-110 gun=-121
+    gunner's=49 gutter=49 gym=-165 gym_=-50 gym_and=-116 gym_doors=-85 gym_with=-99
+    gymnasium=-85 gyroscope=113 ha=30 hacked=113 had=189 had_a=200 had_the=126 had_to=106
+    haha=103 hahaha=49 haiku=113 hair=-110 hairpin=20 half=87 half_bath=-3 half_flight=-110
+    half_landing=-99 half_of=196 half_right=-70 half_way=62 halfway=-200 halfway_=-70
+    halfway_down=-70 halfway_up=-85 hall=-166 hall's=-29 hall_=-150 hall_and=-179 hall_as=-70
+    hall_by=-99 hall_door=-3 hall_into=-110 hall_is=-70 hall_of=-99 hall_past=-121
+    hall_table=-70 hall_then=-195 hall_through=-70 hall_to=-139 hall_turn=-92 hall_until=-161
+    hall_with=-139 hallway=-85 hallway's=-29 hallway_=-95 hallway_and=-154 hallway_as=-70
+    hallway_by=-85 hallway_go=-92 hallway_in=-70 hallway_is=173 hallway_on=-55 hallway_past=-200
+    hallway_splits=-139 hallway_then=-155 hallway_to=-180 hallway_turn=-126 hallway_with=-200
+    hallways=21 hallyway=-110 halt=12 halt_=59 halt_at=-18 halt_by=-85 halt_on=-70 halt_when=-70
+    halted=-70 halts=-29 hammock=-121 hammock's=-29 hammock_=-70 hamper=-110 hamper_and=-70
+    hamster=-51 hand=44 hand's=113 hand_=95 hand_door=-110 hand_for=163 hand_is=199
+    hand_side=-164 hand_the=136 hand_wall=30 handbrake=113 handedness=113 hander=-29 handle=-51
+    handles=-70 handrail=-147 hands=161 handsome=113 handy=49 hang=-200 hang_a=-200 hangar=49
+    hanging=-118 hanging_from=-70 hanging_on=3 hangs=-98 hansen=113 happen=132 happened=165
+    happens=113 happy=3 harbor=-51 harbour=-29 hard=-200 hard_left=-139 hard_right=-147
+    hard_to=-99 hardly=-70 hardwood=-85 harp=-131 harp_=-70 harp_and=-121 harpist=-29
+    harpsichord=-99 harpsichord_=-85 has=175 has_a=-74 has_been=200 has_cancelled=106
+    has_changed=200 has_closed=199 has_got=-21 has_never=136 has_no=80 has_one=103 has_the=-99
+    has_to=191 has_two=-3 has_withdrawn=81 hasn't=81 hat=-48 hat_=62 hat_rack=-70 hat_stand=-121
+    hatch=-119 hatch_=-147 hate=113 hated=49 hates=113 hats=-51 have=152 have_a=101
+    have_arrived=50 have_been=200 have_done=136 have_found=136 have_gone=55 have_left=-3
+    have_no=200 have_passed=-70 have_reached=66 have_the=117 have_to=58 have_you=101 haven't=103
+    having=27 having_been=-50 hay=-110 hazy=-29 he=0 he'd=49 he'll=-51 he's=-48 he's_going=-70
+    he's_on=-70 he's_out=-99 he_doesn't=-70 he_goes=-139 he_is=-85 he_stops=-110 head=-47
+    head_=66 head_down=-121 head_for=18 head_of=54 head_office=200 head_on=-70 head_out=-190
+    head_straight=-70 head_through=-70 head_to=-200 head_towards=-200 head_up=-70 heading=-174
+    heading_you=-70 headlines=113 headmaster's=49 headquarters=132 headroom=-29 heads=43
+    health=132 hear=183 hear_left=62 heard=170 hearing=-29 hears=113 heart=157 hearth=-70
+    heartless=113 hearts=-29 heat=-29 heated=-99 heater=-155 heater_=-121 heater_and=-70
+    heating=113 heave=-29 heavy=-43 heavy_=103 heavy_door=-70 hedge=-130 hedge_=-70 heed=165
+    height=-51 held=84 helical=-29 hello=153 hello_=132 help=156 helper=113 helps=-51 hence=-3
+    henhouse=49 her=78 her_right=-3 here=148 here's=41 here's_a=53 here's_your=53 here_=149
+    here_and=200 here_is=49 here_on=170 here_so=200 hereby=173 herein=113 hero=132 hers=49
+    hex=113 hey=123 heyyy=-29 hi=102 hi_=118 hi_to=-3 hidden=95 hide=178 hiding=113 high=6
+    high_chair=-98 high_chairs=-70 higher=66 highest=-51 hill=-29 hills=84 him=11 him_=-30
+    him_and=-70 himself=-51 hint=-29 hired=113 his=80 his_right=-85 hit=66 hit_the=33 hiya=81
+    hm=-51 hmm=-179 hmm_left=-70 hmm_the=-70 hmm_you'd=-70 hmmmm=113 hold=3 hold_=3 hold_at=-161
+    hold_by=-99 hold_on=-119 hold_position=43 holder=-200 holder_=-126 holder_and=-151
+    holding=62 holds=-51 hole=37 hole_in=62 holes=49 holiday=113 hologram=113 home=200 home_=200
+    homes=113 hon=-29 honest=147 honestly=132 honey=132 honor=49 honored=-29 hood=-70 hook=15
+    hookah=-51 hooks=-146 hooks_=-190 hooks_and=-36 hoop=-85 hoop_=-70 hooray=-29 hoover=-70
+    hop=43 hope=132 hopeless=49 hoping=-29 hopscotch=113 horizontal=62 horn=113 horse=-76
+    horse's=-29 horse_=-20 horseback=-51 horses=20 hose=-147 hose_=-121 hospital=-23
+    hospital_bed=-147 host=53 hot=-125 hot_tub=-200 hotel=-59 hotel_corridor=-85 hotel_room=-85
+    hour=200 hour_=186 hours=200 house=115 house_=91 house_and=80 house_by=-70 house_for=62
+    house_has=200 house_is=55 house_through=-70 house_you=103 household=132 housekeeping=-51
+    houses=62 hover=-29 how=176 how's=126 how's_the=126 how_to=62 however=-85 hue=-29 huge=-33
+    huge_orange=-3 hugs=-29 human=165 humans=113 humble=165 humbly=-70 humidity=113 humming=-29
+    hums=165 hun=-29 hundred=161 hundred_and=-70 hung=-36 hungry=20 hunt=144 hup=-29 hurry=22
+    hurt=113 hurting=113 hurts=113 husband=20 hush=49 hushed=49 hut=-51 hutch=-29 hymn=-51
+    hypothetically=113 i=90 i'd=34 i'd_have=62 i'd_i'd=-70 i'd_like=55 i'd_say=-121 i'd_stop=-85
+    i'll=181 i'll_be=53 i'll_have=-3 i'll_say=106 i'll_tell=172 i'm=119 i'm_fairly=-70
+    i'm_not=181 i'm_sure=-70 i'm_told=97 i've=131 i've_been=126 i've_got=5 i've_had=106
+    i've_said=106 i_=176 i_always=157 i_am=200 i_believe=-141 i_can=94 i_can't=173 i_could=141
+    i_did=103 i_do=26 i_don't=102 i_e=-155 i_er=-70 i_ever=103 i_got=91 i_guess=-85 i_had=161
+    i_have=200 i_hear=-21 i_hope=77 i_know=44 i_left=-110 i_look=30 i_mean=-82 i_meant=-155
+    i_need=65 i_never=53 i_repeat=-3 i_said=114 i_say=139 i_see=53 i_should=-39 i_still=103
+    i_suppose=-84 i_take=147 i_tell=200 i_think=-84 i_thought=53 i_told=161 i_um=30 i_used=97
+    i_want=20 i_was=171 i_would=22 i_write=176 iambic=113 ice=-173 ice_bucket=-85 ice_cream=-85
+    ice_machine=-200 idea=28 identical=-29 identity=113 idk=-29 idle=84 if=151 if_a=147
+    if_anyone=147 if_i=165 if_i'm=77 if_it=1 if_it's=80 if_the=88 if_they=200 if_you=132
+    if_you're=107 ignore=107 ignore_the=62 ignored=-29 ignorethenextstep=113 ignoring=62
+    ignroe=113 ii=-70 iii=-51 ikea=-110 ill=49 illegal=113 illuminated=-51 im=20 image=165
+    images=113 imagine=116 imagine_that=136 immaterial=-29 immediate=156 immediate_effect=199
+    immediately=-45 immediately_=28 immediately_after=-121 immediately_and=113
+    immediately_left=-99 immediately_right=-99 immediately_to=-70 imminent=113 imperative=-29
+    impersonate=113 importance=-29 important=199 impossible=113 in=19 in_=-18 in_a=-15
+    in_again=-3 in_all=137 in_an=-121 in_and=-124 in_any=113 in_at=-174 in_between=-155
+    in_by=-110 in_case=147 in_charge=196 in_closet=-174 in_desks=-70 in_each=136 in_front=-200
+    in_go=113 in_here=-3 in_it=10 in_its=-70 in_my=140 in_one=43 in_order=-66 in_other=62
+    in_our=200 in_place=200 in_question=-70 in_reverse=200 in_stop=-121 in_that=48 in_the=12
+    in_there=-113 in_this=200 in_through=-91 in_turn=-34 in_two=-85 in_under=-85 in_view=-99
+    in_wardrobe=-3 in_which=78 in_with=53 in_you=28 in_your=200 inch=176 incidents=-29
+    inclination=-29 incline=-29 inclined=-29 including=200 inconvenience=-29 incorrect=113
+    increased=113 indebted=-29 indeed=20 indefinitely=165 independent=113 indications=113
+    indoor=-85 indoors=-51 infiltrate=-29 infinity=113 inform=-51 information=-130
+    information_desk=-130 informed=-29 ingress=-29 inhibited=113 initial=62 initiate=-29
+    injured=113 injury=49 inn=49 inner=-99 inner_door=-85 inning=-29 innocent=-29 input=176
+    insane=49 insert=165 inside=-168 inside_=-200 inside_and=-185 inside_it=-70 inside_the=-92
+    inside_then=-110 inside_through=-200 insist=-29 insists=-29 inspected=-29 inspector=113
+    inspectors=113 install=113 installation=113 installed=113 instance=-29 instant=113
+    instead=121 instead_=200 instead_and=-70 instead_of=71 instructed=-29 instruction=200
+    instruction_=200 instruction_is=199 instructions=176 instrument=-29 intended=-70 intent=49
+    interchanged=113 interest=84 interior=-51 intermediate=-51 internal=84 interpret=200
+    intersection=-51 intersects=-29 intervals=-29 intervening=-29 interviews=49 into=-163
+    into_a=-38 into_it=-99 into_the=-200 into_which=-70 into_your=103 intruder=113 invalid=113
+    invented=113 invert=165 inverted=165 invisible=113 invite=-29 invited=-85 invited_to=-85
+    inviting=-29 ipsum=113 iron=-79 iron_door=-130 iron_gate=-8 ironing=-131 ironing_board=-131
+    is=82 is_=77 is_a=55 is_about=147 is_an=18 is_and=-99 is_asked=80 is_at=-48 is_behind=-131
+    is_broken=200 is_by=15 is_called=54 is_cancelled=54 is_closed=110 is_customary=103
+    is_done=136 is_down=136 is_entered=-121 is_essential=145 is_for=125 is_forbidden=199
+    is_gone=-180 is_halted=-70 is_how=106 is_in=115 is_it=17 is_just=43 is_left=-23 is_made=-185
+    is_my=21 is_named=200 is_next=-139 is_no=200 is_not=143 is_nothing=100 is_now=113 is_off=178
+    is_on=-78 is_only=134 is_open=78 is_out=147 is_over=62 is_passed=-147 is_reached=-99
+    is_requested=-67 is_required=62 is_respectfully=-70 is_right=113 is_stopped=-85
+    is_taken=-110 is_that=117 is_the=12 is_then=-174 is_this=12 is_to=58 is_turned=-70
+    is_used=62 is_void=191 is_walked=-147 is_what=139 is_where=-126 is_written=200 is_wrong=199
+    is_you=-70 is_your=116 is_yours=-70 island=-168 island_=-158 island_and=-151 island_on=-130
+    islanders=49 isle=-29 isn't=156 isn't_it=157 isnt=49 issue=165 issued=165 it=13 it'd=-29
+    it'll=11 it'll_be=-70 it's=13 it's_a=56 it's_all=103 it's_dark=-85 it's_down=-36
+    it's_er=-110 it's_for=-3 it's_forward=-85 it's_got=-41 it's_just=-36 it's_left=-72
+    it's_like=-4 it's_not=33 it's_on=-50 it's_right=-139 it's_the=-60 it's_up=-85 it_=-7 it_a=67
+    it_again=196 it_all=175 it_and=-141 it_as=-3 it_at=21 it_be=80 it_because=-70 it_behind=-70
+    it_but=8 it_by=-147 it_comes=-70 it_curves=-121 it_does=-70 it_doesn't=147 it_down=-99
+    it_ends=-34 it_for=200 it_gets=62 it_go=3 it_goes=22 it_has=112 it_he=-99 it_i=62 it_in=85
+    it_into=-139 it_is=-29 it_isn't=30 it_looks=-82 it_may=153 it_not=-99 it_on=-92 it_once=53
+    it_one=-50 it_opens=-130 it_out=-70 it_past=-70 it_right=28 it_says=200 it_should=62
+    it_so=-36 it_stop=-82 it_stops=-85 it_tells=66 it_that's=-3 it_the=78 it_then=-85
+    it_there's=-82 it_through=-110 it_to=-32 it_towards=-70 it_turn=-42 it_um=-3 it_until=-130
+    it_up=62 it_walk=-70 it_was=163 it_will=136 it_with=55 it_would=86 it_yes=-70 it_you=-121
+    it_you'll=-70 it_you're=-3 italian=113 italics=113 item=20 itinerary=165 its=-47
+    its_door=-121 its_end=-200 its_far=-147 its_left=-200 its_near=-70 its_only=-85 its_other=43
+    its_right=-200 its_tail=-70 itself=100 iv=-99 ivory=-51 jackets=-110 jackets_=-85
+    jacuzzi=-200 jacuzzi_=-92 jacuzzi_and=-126 jacuzzis=-41 jailbreak=113 jars=-51 jazz=113
+    jeez=49 jelly=49 jeweler=-51 jigsaws=-29 jinks=-29 jk=49 jkl=113 job=131 job_=176 job_is=43
+    jobs=132 jog=-51 join=161 joining=49 joint=113 joke=170 journey=110 journey_ends=62 jst=-29
+    judge=84 judge's=-70 judged=-29 judges=-29 jug=-51 juggles=-29 juice=43 jukebox=-89
+    jukebox_=-110 jukebox_and=-110 juliet=49 jump=43 jumper=49 jumps=113 junction=-26 june=113
+    jury=-85 jury_box=-85 jus=43 just=-38 just_a=-98 just_after=-110 just_before=-200
+    just_follow=62 just_go=-32 just_in=-70 just_inside=-200 just_keep=-70 just_like=53
+    just_outside=-200 just_past=-121 just_stop=-121 just_to=-36 just_turn=-70 just_wait=-110
+    just_walk=-110 k=-36 karaoke=49 karate=49 karen=113 kayleigh=-29 keep=-56 keep_going=-84
+    keep_it=62 keep_left=-147 keep_on=-168 keep_out=43 keep_right=-70 keep_straight=-70
+    keep_the=-200 keep_to=-200 keep_turning=154 keep_walking=-76 keeper=49 keeper's=-70
+    keeping=-200 keeping_it=-180 keeping_the=-130 keeping_them=-70 keeping_to=-110 keeps=-36
+    kept=26 kettle=84 kevin=-29 key=147 keyboard=-36 keypad=-85 keypad_=-70 keys=78 keys_=62
+    kick=-29 kicks=-29 kiddies=-29 kidding=84 kids=-29 kill=-121 killing=-51 kiln=-85 kilo=49
+    kilometres=84 kind=75 kind_as=62 kind_of=33 kindly=-74 kindly_advance=-70 kindly_pass=-85
+    kindly_proceed=-110 kindly_requested=-85 kindly_stop=-70 kindly_take=-70 kindly_turn=-161
+    kindly_walk=-85 kindness=-29 kinds=113 king=28 king's=-29 king_size=-85 kings=113 kiosk=-85
+    kisses=-29 kit=-146 kit_=-155 kit_and=-70 kitchen=-23 kitchen_=-86 kitchen_and=1
+    kitchen_door=43 kitchen_doorway=-85 kitchen_is=78 kitchen_island=-137 kitchen_now=-110
+    kitchen_past=-70 kitchen_sink=28 kitchen_table=-85 kitchen_through=-143 kitchen_with=-70
+    kitchen_you=-155 kitchenette=-36 kitchens=199 kk=-29 klingon=113 knead=113 knee=53 knees=-29
+    knew=49 knife=-51 knight=43 knight's=49 knitted=49 kno=49 knob=-99 knob_=-70 knock=135
+    knocked=113 knocker=-51 knocks=-29 knot=-29 knots=-29 know=106 know_=118 know_it's=-3
+    know_that=78 know_the=-3 know_what=55 know_you're=-3 known=165 knows=200 koi=-29 kx=113
+    l=-48 l_=-130 la=-29 lab=-110 label=199 labelled=-110 laboratory=-29 labyrinth=113 lace=-51
+    lack=113 lad=-29 ladder=-153 ladder_=-190 ladder_and=-48 ladder_into=-70 ladder_is=62
+    ladder_on=-85 ladder_to=-121 ladders=-29 ladies=12 ladies_and=30 lads=49 lady=11 lady's=-29
+    lady_with=-70 laid=-51 lake=80 lamp=-44 lamp_=-152 lamp_and=-104 lamp_on=-17 lamps=25
+    lamps_=-26 lamps_and=62 landing=-188 landing_=-117 landing_and=-168 landing_turn=-147
+    landing_with=-50 landings=-85 landlord=199 landlubber=113 landmark=162 landmark_is=136
+    landmarks=178 lands=49 landscape=-51 lane=-21 lanes=-51 language=165 lantern=-62
+    lantern_=-70 lanterns=-51 lap=-36 lapses=113 large=-191 large_staircase=-70 largest=-99
+    laser=49 last=77 last_=200 last_chair=-85 last_door=-151 last_every=66 last_night=200
+    last_of=-85 last_one=-26 last_room=-34 last_step=103 last_stool=-85 last_thing=-155
+    last_time=-3 last_window=-70 last_year=161 lasts=113 lasts_=77 late=200 latency=113
+    later=178 lateral=84 latest=113 lathe=-51 latin=-29 latter=-29 laugh=147 laughing=49
+    laundry=-78 laundry_basket=-155 laundry_room=-67 lava=62 lavatory=-29 lavender=49 law=132
+    lawful=113 lawn=-62 laws=-29 lawyer=113 lawyers=113 layman=-29 lays=-29 lazy=165 lead=41
+    lead_you=15 leader=-29 leading=15 leads=-26 leads_to=43 leaf=-29 leaflet=49 leak=113
+    leaking=113 lean=49 leaning=-29 leaning_on=-70 learn=20 learned=165 learning=49 least=200
+    leather=-168 leather_armchair=-85 leather_chair=-105 leather_couch=-99 leave=-52 leave_=68
+    leave_all=15 leave_by=-174 leave_it=37 leave_the=-134 leave_this=114 leave_through=-174
+    leave_your=43 leaves=33 leaves_the=-85 leaving=-151 leaving_the=-190 lectern=-51 lecture=-3
+    led=77 leeds=113 left=-140 left_=-176 left_90=-139 left_a=-85 left_across=-70
+    left_after=-200 left_again=-200 left_along=-161 left_and=-200 left_arm=-85 left_around=-200
+    left_as=-73 left_at=-200 left_before=-121 left_branch=-70 left_by=-80 left_corner=-72
+    left_door=-70 left_down=-29 left_end=-70 left_enter=-116 left_for=56 left_go=-200
+    left_halfway=-70 left_hall=-70 left_hand=1 left_i=-121 left_i'm=-85 left_immediately=-70
+    left_in=-141 left_into=-177 left_is=29 left_it=62 left_just=-99 left_left=-21 left_my=-121
+    left_not=-110 left_of=-170 left_on=-21 left_once=-94 left_one=-161 left_or=136 left_out=34
+    left_pass=-70 left_past=-179 left_round=-36 left_side=-140 left_so=-106 left_staircase=-99
+    left_stop=-29 left_that's=62 left_the=-155 left_then=-200 left_there=-200 left_through=-200
+    left_to=-23 left_toward=-70 left_towards=-147 left_turn=75 left_until=-147 left_up=43
+    left_walk=-121 left_wall=-130 left_when=28 left_where=-99 left_which=80 left_with=-26
+    left_yes=-70 leftmost=-85 lefts=107 leftward=-29 leftwards=-29 leg=-125 legally=113
+    legend=-29 lego=-110 legs=168 legs_=53 legs_and=43 leisurely=-29 lemon=-50 lemon_=-21
+    length=-68 length_of=-16 length_past=-70 lens=113 lent=-29 leominster=49 less=95 let=156
+    let's=36 let's_get=-110 let's_go=77 let's_start=28 let's_take=62 let_it=195 let_me=116
+    let_the=113 letter=200 letter_of=199 letterbox=81 letterboxes=20 letters=3 level=-77
+    level_and=-85 level_with=-85 liar=113 librarian=-29 library=-178 library_=-147
+    library_and=-121 library_by=-70 library_then=-92 licence=113 licks=-29 lidar=113 lie=80
+    lied=113 lies=193 lieu=-29 life=157 life_jackets=-110 lifeboat=-147 lifeboat_=-110
+    lifeboats=-62 lifeboats_=-85 lifebuoy=-85 lifebuoy_=-85 lifeguard=-70 lifeguard's=-29
+    lift=-6 lift_=-48 lifts=62 light=33 light_=-3 lighted=-29 lighthouse=-85 lighting=-51
+    lights=46 like=82 like_=176 like_a=127 like_that=106 like_the=-82 like_to=56 like_you=34
+    like_you're=-139 liked=113 likeness=-29 likes=165 likewise=-51 lily=-85 lily_pond=-85
+    limb=-29 limit=84 limits=84 line=-38 line_=62 line_ends=-70 line_on=-155 lined=-51
+    linen=-200 linen_cart=-70 linen_closet=-195 linen_cupboard=-85 lines=44 lintel=-29 linux=113
+    lion=-110 lions=-29 lions_and=-70 lisbon=113 list=200 listen=91 listened=49 lit=-110
+    literal=113 literally=-51 litter=113 little=-60 little_=-130 little_and=-110 little_bit=-85
+    little_door=-82 little_hallway=-70 little_passage=-70 little_steps=-70 little_table=43
+    little_to=-70 live=80 lives=132 livid=49 living=30 living_room=28 lizard=49 lmao=49 load=20
+    loading=1 loading_bay=80 loading_dock=-110 lobby=-200 lobby's=-29 lobby_=-200 lobby_and=-200
+    lobby_to=-85 lobby_with=-70 lobster=49 locate=-185 locate_a=-147 locate_the=-70 located=-70
+    locating=-29 location=46 lock=165 locked=97 locker=-82 locker_room=-62 lockers=-200
+    lockers_=-190 lockers_and=-161 locomotion=113 loft=-109 loft_=-139 loft_with=-70 log=113
+    logbook=-51 login=-110 lol=167 lol_=136 lonely=165 long=-47 long_=-3 long_as=141
+    long_hall=-130 long_hallway=15 long_low=-85 long_part=-70 long_side=-70 long_table=-105
+    long_wooden=-70 longed=-29 longer=200 longue=-29 loo=-3 loo's=-29 look=-17 look_at=60
+    look_down=-85 look_for=-98 look_to=-70 looked=-70 lookin=-29 looking=107 looking_at=31
+    looking_for=167 looks=35 looks_like=81 loom=-51 loop=113 loose=84 lopez=113 lorem=113
+    lose=200 lost=199 lost_=157 lot=6 lot_of=21 lots=-130 lots_of=-130 loud=178 loudspeakers=-29
+    lounge=-55 lounge_=-180 lounge_and=-139 lounge_chair=-85 lounge_chairs=-110 lounge_go=-92
+    lounger=-70 lounger_=-70 loungers=-113 loungers_=-121 louvred=-51 love=108 lovelier=113
+    lovely=-73 loves=-29 low=57 low_doorway=-70 lower=-48 lower_deck=-99 lower_level=-70
+    lowest=-70 ltd=113 luck=-3 lucky=-29 luggage=-110 lunch=-99 luv=-29 lying=176 m=-63 m_=-26
+    m_and=-70 machine=-128 machine's=-29 machine_=-200 machine_and=-162 machine_in=-3
+    machine_is=-85 machine_on=-98 machine_then=-126 machine_with=-70 machines=-83 machines_=-130
+    machines_and=-121 machines_on=-12 madam=-29 made=5 made_=-70 made_and=-70 made_at=-85
+    made_for=-70 made_it=103 made_of=-48 made_out=-70 mae=-29 magazine=-51 magazines=-110
+    magazines_=-99 magic=49 magician's=49 magnets=113 magnificent=-29 magnitude=84 maid's=-51
+    mail=-3 mail_room=-3 mailbox=-161 mailbox_=-139 mailboxes=-161 mailboxes_=-130 main=-147
+    maintain=-29 maintenance=113 majesty=-29 make=-95 make_a=-200 make_for=-130 make_it=135
+    make_your=-200 makeover=49 maker=15 makers=113 makes=91 makeup=-85 making=46 man=125
+    man_on=103 man_with=106 management=200 manager=200 manager's=-85 managers=113 mannequin=-110
+    mannequin_=-70 mannequins=-130 mannequins_=-121 manoeuvre=113 mansion=49 mantelpiece=-29
+    manual=113 manufacturer=165 manuscripts=-51 many=78 map=138 map's=-29 map_=-26 map_is=136
+    maps=49 marble=-183 marble_bust=-110 marble_columns=-85 marble_stairs=-110 marble_statue=-85
+    marble_steps=-85 march=62 margin=113 mark=-85 marked=-147 market=-29 marks=-51 marquee=-51
+    married=-29 marshal=165 marta=113 marvellous=132 masks=-51 massage=-141 massage_room=-85
+    massage_table=-139 massages=-29 massive=-29 mast=-51 master=-144 master_bedroom=-193
+    mat=-200 mat_=-200 match=103 matchday=49 matches=113 matching=-85 mate=-3 mats=-85
+    matter=179 matter_of=136 maureen=49 may=169 may_be=-36 may_concern=103 may_not=176
+    may_stop=43 maybe=54 mayor=30 maze=132 me=155 me_=120 me_a=106 me_and=113 me_for=106
+    me_i=176 me_i'm=147 me_the=157 me_to=174 meadows=113 meal=20 mean=30 mean_the=-24 meaning=95
+    means=141 means_left=199 means_of=-99 means_right=199 meant=111 meant_for=199 meant_the=-155
+    measure=113 measured=132 measuring=-29 mechanic=113 meet=100 meeting=-61 meeting_room=-17
+    meetings=-29 meets=-51 melted=113 members=-29 memo=49 memorial=-51 memories=132 memory=195
+    mended=49 mention=176 mentioned=200 mentioned_=200 mentions=113 mercy=113 mere=-29 merely=-3
+    merlin=113 merry=49 mess=-99 message=200 message_=199 message_from=200 messing=-29 met=-51
+    metal=-200 metal_door=-85 metal_stairs=-155 metaphorically=113 meteor=84 meteorite=-70
+    meter=-110 meters=-200 meters_=-85 meters_and=-110 metre=136 metres=129 mezzanine=-110
+    mezzanine_=-70 microfilm=-36 microfilm_reader=-85 microphone=46 microphone_=-3
+    microscope=-51 microscopes=-51 microwave=-193 microwave_=-182 microwave_and=-105
+    microwaves=-41 mid=-29 middle=-87 middle_=-62 middle_aisle=-110 middle_and=-36
+    middle_between=-85 middle_door=-85 middle_of=-88 middle_one=-85 midle=-29 midnight=113
+    midpoint=-29 midst=-29 might=-141 might_be=-110 mighty=113 mile=49 miles=113 milk=95
+    miller's=-110 million=103 mind=119 mind_=129 mind_the=56 mind_you=136 mine=-3 mine's=20
+    mineral=-29 minerals=-70 mini=-51 minibar=-51 minimise=-29 minimum=-29 minister=113
+    ministry=165 mint=-29 minus=173 minute=200 minute_=200 minutes=200 mirror=-87 mirror_=-200
+    mirror_and=-61 mirror_at=-85 mirror_on=-85 mirror_so=-8 mirror_then=-121 mirror_with=-99
+    mirrored=114 mirrored_=161 mirrored_wall=-85 mirrors=-61 mirrors_=-70 mirrors_on=-130
+    misc=-110 misreading=-29 miss=101 misses=-29 missing=20 mission=105 mission_=136 mistake=113
+    mistaken=53 mistakes=165 mister=20 mistletoe=-51 misunderstanding=49 mix=165 mixer=-3
+    mixes=113 mmmmm=113 mobile=-70 mode=200 model=156 modest=-29 module=113 modulo=113
+    moment=164 mondays=165 money=43 mongolia=113 monitors=-85 monkey=113 monoxide=113 month=132
+    mood=-29 moon=165 moon's=113 moose=-3 mop=-8 mops=49 more=120 more_=185 more_step=28
+    more_steps=3 more_than=157 morning=200 morning_and=176 mornings=-29 mortuary=49 mosaic=-51
+    moscow=113 mosey=-85 most=15 mostly=-29 mother=76 mother's=-29 motion=193 motion_is=62
+    motionless=165 motor=199 motors=113 mount=-51 mountains=-51 mounted=-99 mouse=49
+    moustache=106 mouths=-29 move=50 move_=200 move_away=-200 move_forward=-130 move_toward=-200
+    moved=170 moved_to=147 movement=200 moves=178 movie=-51 moving=116 moving_=167
+    moving_walkway=-130 mr=113 mrs=113 ms=113 much=196 mud=-200 mud_room=-200 muddles=113
+    muddling=-29 mudroom=-147 mudroom_=-70 mudroom_and=-70 muffled=49 multiply=113 mum=103
+    mum's=-29 mummies=-85 mummy=-98 mummy's=-29 mummy_and=-99 mums=49 murder=49 muscle=113
+    museum=83 museum_in=-70 music=-168 music_room=-155 must=200 must_be=78 must_go=181
+    must_never=199 must_not=200 mustn't=113 mutual=113 my=160 my_brother=147 my_brother's=77
+    my_cousin's=-3 my_eyes=147 my_friend=46 my_grandmother=147 my_late=106 my_left=136
+    my_mother=49 my_old=180 my_own=-21 my_sister=147 myself=161 mystery=49 myths=113 n=-83
+    n_go=15 n_stop=-174 n_the=-85 n_wait=-70 nag=-29 nah=165 nail=-51 name=147 named=200
+    named_=200 named_in=199 nan=49 nan's=49 napoleon=113 narrator=165 narrow=-198
+    narrow_door=-50 narrow_hallway=-99 narrow_passage=-70 narrow_stairs=-99 narrower=-51
+    nation's=49 national=113 natural=113 naturally=-51 nave=-99 navigation=200 nb=49 nd=44
+    near=-20 near_a=147 near_end=62 near_it=28 near_the=-82 nearer=20 nearest=-42
+    nearest_bed=-110 nearest_couch=-99 nearest_mirror=15 nearest_the=-72 nearest_to=-50
+    nearest_toilet=-185 nearly=-29 neat=-29 necessary=84 neck=84 need=74 need_a=26 need_is=-42
+    need_not=170 need_to=41 needed=-51 needn't=103 needs=144 negate=113 negated=113 negative=113
+    neighbor=-29 neighbor's=49 neighborhood=-29 neighbour=165 neighbour's=165 neighbours=113
+    neither=179 nemo=-29 neon=-70 nephew=20 nerves=49 net=53 never=200 never_been=176
+    never_go=199 never_mind=142 new=200 newel=-70 newel_post=-70 news=196 newsletter=113
+    newspaper=-110 newspaper_rack=-110 newspapers=-85 newspapers_=-70 newsstand=-51 next=-98
+    next_=159 next_door=-200 next_left=-78 next_one=51 next_room=-168 next_sentence=199
+    next_to=-200 next_turn=136 nice=11 nice_=53 nicely=-29 nicer=176 niche=-51 night=200
+    night_=200 nightmare=49 nightstand=-200 nightstand_=-135 nightstand_with=-85 nil=106
+    nine=181 nineteen=49 ninety=-136 ninety_degree=-70 ninety_degrees=-130 nip=-51 no=140
+    no_=157 no_don't=103 no_further=-34 no_goal=199 no_good=77 no_longer=200 no_matter=136
+    no_more=11 no_need=200 no_not=30 no_stairs=-3 no_wait=103 nobody=200 nobody's=81
+    nobody_goes=136 noclip=113 noise=113 noises=113 nomenclature=49 nominal=-29 none=200
+    none_=136 none_of=200 nonsense=165 nook=-200 nook_=-182 nook_and=-147 nook_then=-85
+    nook_with=-78 noon=165 nor=20 normal=80 north=54 northbound=-29 nose=-70 not=98 not_a=159
+    not_allow=134 not_asking=106 not_at=62 not_be=193 not_climb=62 not_do=200 not_enter=99
+    not_follow=170 not_for=-85 not_go=31 not_going=-3 not_i=-3 not_in=3 not_left=-85
+    not_mentioned=199 not_move=200 not_on=-85 not_pass=3 not_right=-70 not_stop=31 not_take=64
+    not_that=11 not_the=-75 not_through=-130 not_to=50 not_too=43 not_turn=134 not_up=-4
+    not_use=68 not_walk=200 not_where=30 not_yet=106 note=185 noted=49 notes=49 notgo=113
+    nothing=165 nothing_=200 nothing_about=199 nothing_else=54 nothing_in=78 nothing_on=15
+    nothing_to=170 notice=151 notice_a=20 notice_board=-85 notice_the=156 notice_your=94
+    noticeboard=-21 noticed=-29 notices=-29 noting=-29 notion=49 notturn=113 nouns=113 novel=113
+    november=-29 novice=49 now=54 now_=200 now_and=129 now_go=-110 now_he=-70 now_i=-70
+    now_in=-147 now_on=200 now_so=-72 now_take=62 now_the=-21 now_there=62 now_turn=-130
+    now_walk=-110 now_you=-131 now_you're=-147 nowhere=84 null=165 nulling=-29 number=112
+    number_of=170 number_three=-85 numbered=113 numbers=84 numerous=-29 nurse=147 nurse's=-139
+    nursery=-200 nursery_=-200 nursery_and=-171 nursery_on=-85 nursery_then=-110
+    nursery_with=-85 nurses=-168 nurses_station=-139 nuts=113 nutshell=49 nxt=-70 o=3
+    o'clock=-161 o'clock_and=-70 oak=49 oak_door=-3 obey=200 obeyed=183 obeyed_=172 obeying=113
+    object=200 objective=43 objects=113 obliged=-29 oblique=-51 observation=-3 observatory=-29
+    observe=-70 observed=-29 obsolete=132 obstacle=-51 obstacles=-29 obvious=-29 obviously=-51
+    occupies=-29 occurs=136 ocean=-70 oche=-29 octagonal=-51 odd=200 odds=-29 ode=113
+    odometer=113 of=-34 of_=-139 of_3=-70 of_90=-85 of_a=-3 of_all=104 of_an=76 of_apples=-70
+    of_armor=-168 of_automatic=-70 of_bed=62 of_beds=-70 of_black=-85 of_books=-85
+    of_candles=-70 of_chairs=-61 of_computers=-70 of_course=-21 of_date=199 of_doors=-42
+    of_drawers=-99 of_each=200 of_every=167 of_feet=-200 of_flags=-85 of_flowers=-70
+    of_glass=-99 of_going=15 of_green=-85 of_head=20 of_it=-104 of_management=106 of_my=77
+    of_ninety=-70 of_one=-110 of_room=-70 of_seats=-147 of_shelves=-70 of_stairs=-200
+    of_steps=-121 of_stone=-85 of_tables=-70 of_that=74 of_the=-85 of_them=-97 of_these=146
+    of_thing=53 of_this=200 of_those=8 of_three=-85 of_two=-110 of_us=103 of_what=200
+    of_which=-121 of_white=-121 of_windows=-121 of_wine=-99 of_you=-168 of_your=138 off=102
+    off_=200 off_by=62 off_from=-70 off_it=43 off_the=-1 off_to=66 offer=-51 offered=-29
+    office=-72 office_=-150 office_and=-200 office_does=66 office_has=103 office_on=62
+    office_turn=-99 office_with=-105 officer=196 official=165 officially=113 offline=165
+    offset=-29 often=132 oh=107 oi=49 oil=125 ok=190 ok_=200 okay=-24 okay_=135 okay_so=-29
+    okey=-29 old=148 old_man=-70 old_place=106 older=-29 oldest=-51 olives=113 ollie=-29 omg=132
+    on=-78 on_=7 on_a=-38 on_all=103 on_and=31 on_both=-139 on_by=-70 on_down=-85 on_for=62
+    on_going=-99 on_her=55 on_it=-148 on_its=-200 on_left=-110 on_my=21 on_one=-99 on_out=-70
+    on_past=-185 on_reaching=-70 on_right=-130 on_straight=-85 on_that=62 on_the=-109
+    on_them=-121 on_this=59 on_through=-110 on_to=-200 on_top=28 on_treat=132 on_until=3
+    on_up=-85 on_ur=-155 on_wheels=28 on_you=173 on_your=-200 once=38 once_=200 once_and=88
+    once_every=94 once_inside=-110 once_more=-15 once_so=66 once_the=-99 once_there=-70
+    once_through=-3 once_you=-150 once_you're=-110 once_you've=80 one=-18 one's=-49 one_=-33
+    one_after=80 one_and=-107 one_at=74 one_by=-17 one_day=-3 one_deck=-110 one_door=-85
+    one_end=-85 one_flight=-190 one_floor=-80 one_foot=-70 one_go=-130 one_goes=-70 one_has=-70
+    one_hundred=-70 one_in=-147 one_is=-63 one_level=-99 one_more=46 one_next=-70 one_not=-17
+    one_of=30 one_on=-97 one_room=199 one_should=-155 one_side=-26 one_so=136 one_step=-66
+    one_that=-14 one_that's=-70 one_to=26 one_too=62 one_turns=-70 one_two=-17 one_up=-99
+    one_who=170 one_with=-117 one_you=-72 ones=46 ones_=66 ones_are=62 oneself=-70 onions=113
+    online=113 only=144 only_=200 only_a=193 only_and=103 only_door=-85 only_half=136
+    only_if=199 only_one=-72 only_the=134 onto=-200 onto_the=-200 onwards=113 ooh=12 oops=-121
+    open=-93 open_=26 open_and=46 open_door=-200 open_doors=43 open_doorway=-161 open_it=-72
+    open_the=-48 opened=-70 opening=-148 opening_=-21 opening_and=-85 opening_in=-121
+    opening_into=-85 opening_on=-168 opens=-26 opens_on=43 opera=-29 operational=113
+    operator=200 operator's=165 operator_has=66 operators=113 opinion=113 opposed=-70
+    opposed_to=-70 opposite=72 opposite_=66 opposite_day=200 opposite_direction=-110
+    opposite_of=200 opposite_side=28 opposite_the=-174 optical=-29 optician=-51 optional=113
+    options=-29 or=84 or_a=147 or_down=3 or_not=103 or_right=62 or_the=-99 or_what=-85
+    or_you=-70 oracle=113 orange=-102 orange_canvas=-3 oranges=-51 orchid=-51 orchids=-29
+    order=200 order_=200 order_of=200 order_to=-121 ordered=113 ordering=49 orderly=-29
+    orders=200 orders_=200 orders_so=81 orders_you=81 organ=-174 organ_=-139 organ_pipes=-85
+    orient=-29 oriental=-29 orientation=-29 origin=-29 original=113 originate=-29 orphan=113
+    oslo=113 other=36 other_=93 other_and=-70 other_end=-96 other_hand=197 other_one=-121
+    other_side=-81 other_way=153 others=195 otherwise=200 otters=113 ottoman=-200 ottoman_=-174
+    ought=55 ought_to=55 our=180 ours=-51 out=-71 out_=50 out_and=-185 out_at=-99 out_by=-136
+    out_from=-85 out_in=15 out_into=-48 out_it=62 out_left=-82 out_of=-163 out_on=-147
+    out_onto=-200 out_past=-70 out_so=-70 out_the=-1 out_there=-130 out_through=-121 out_to=-195
+    out_turn=-121 outdoor=-110 outdoors=84 outer=-29 outeray=113 outline=113 output=176
+    outrank=113 outside=-173 outside_=-115 outside_and=-52 outside_it=-139 outside_of=-147
+    outside_on=-110 outside_room=-110 outside_the=-200 outside_then=-126 outside_through=-99
+    outside_to=-70 outvoted=49 oval=-200 oval_mirror=-78 oven=-101 oven's=113 oven_=-200
+    oven_and=-86 oven_on=-99 ovens=113 over=5 over_=80 over_and=80 over_by=77 over_it=12
+    over_the=-77 over_there=103 over_to=-104 over_your=136 overheating=113 overlooking=-29
+    overlooks=-51 override=134 overview=49 overwrite=165 ovr=-29 owe=113 owes=49 owing=-29
+    own=192 own_axis=174 owner=200 owner's=-85 owner_has=132 owner_of=200 pace=113 paces=-70
+    packed=132 packet=113 packets=113 page=200 pagoda=-51 paint=30 paint_cans=-85 painted=60
+    painted_on=62 painting=-153 painting_=-165 painting_and=-105 painting_of=-130 paintings=-195
+    paintings_=-161 paintings_on=-70 pair=-180 pair_of=-161 pairs=-29 pajamas=-29 pal=-3
+    pale=-29 pallet=-51 pallets=-99 pallets_=-70 palm=-168 palm_=-110 palms=-3 pane=-29
+    paned=-51 panel=-185 panel_of=-130 panic=49 pantry=-83 pantry's=49 pantry_=-28
+    pantry_and=-143 pantry_door=-82 pantry_with=-78 pants=49 papa=49 paper=37 paper_=-70
+    papered=-29 papers=-29 par=-85 paragraph=199 parallel=-51 parameters=113 parasol=-51
+    parcel=113 parentheses=113 parish=-29 park=-17 parked=-72 parking=-85 parking_lot=-70
+    parks=-29 parlor=-3 parlour=-29 parquet=-36 parrot=49 parser=113 part=181 part_about=199
+    part_of=153 parted=49 parts=49 party=84 pass=-177 pass_2=-135 pass_a=-104 pass_beneath=-85
+    pass_between=-99 pass_by=-70 pass_four=-139 pass_it=-26 pass_on=-70 pass_one=-85
+    pass_something=106 pass_the=-200 pass_three=-147 pass_through=-155 pass_to=-139
+    pass_two=-198 pass_under=-70 passage=-156 passage_=-99 passage_and=-85 passage_past=-70
+    passage_to=-110 passed=-36 passed_=-99 passed_and=-110 passed_by=136 passed_the=-85
+    passed_through=-99 passengers=-29 passes=-130 passing=-195 passing_the=-130 past=-200
+    past_=-17 past_a=-151 past_all=-200 past_and=-70 past_both=-121 past_every=-155
+    past_five=-21 past_four=-99 past_it=-158 past_one=-70 past_six=28 past_that=-110
+    past_the=-200 past_them=-155 past_three=-161 past_two=-185 pat=-29 patch=-29 patched=-29
+    path=-36 path_=-85 path_is=-110 path_that=28 patience=176 patio=-200 patio_=-177
+    patio_and=-198 patio_door=-99 patio_turn=-85 patrol=20 pause=10 pause_at=-121 pausing=-29
+    pavilion=-50 pavilion_=-3 pay=25 pay_phone=-85 pea=-29 peanuts=-51 pears=-29 peasy=-29
+    pebbles=-29 pedestal=-85 pedestal_=-85 pee=-29 peek=-51 peel=-51 peels=-29 pegboard=-51
+    pegs=-110 pen=125 penalty=-29 pencil=113 penguin=-36 penguin_=-3 pentameter=113 people=65
+    people's=113 people_=147 people_put=-3 people_sitting=-139 per=113 perceive=-51 percent=200
+    perches=113 perfect=-51 perfectly=103 perform=113 perform_a=62 perfume=-51 pergola=-51
+    perhaps=117 perimeter=113 permission=113 permit=95 permits=113 permitted=136
+    permitted_to=136 permute=113 perpendicular=-29 persian=-51 person=200 person's=113
+    person_in=161 person_who=139 persona=113 personnel=113 pet=49 petal=-29 pete=49 peter=113
+    petting=49 pew=-168 pew_=-99 pews=-160 pews_=-85 pews_and=-85 pews_on=-85 pews_to=-70
+    phase=-130 philosopher=113 philosophers=-21 phone=-146 phone's=49 phone_=-50 phone_booth=-99
+    phones=20 photo=-30 photo_booth=-82 photo_of=62 photocopier=-29 photograph=113
+    photographer's=-29 photographers=-51 photographs=-85 photographs_and=-70 photos=-110
+    photos_on=-85 physical=-29 piano=-93 piano_=-131 piano_and=-22 piano_in=-3 piano_on=-12
+    piano_then=-85 pianos=-105 pic=49 pick=151 pick_the=43 picks=20 picnic=-51 picture=-35
+    picture_=-45 picture_a=-70 picture_and=-85 picture_of=-34 pictures=91 pictures_on=62
+    piece=46 piece_of=80 pieces=-29 pigeonholes=-51 pile=-29 pillar=-200 pillar_=-195
+    pillar_and=-147 pillars=-165 pillars_and=-99 pillows=62 pinball=-85 pinball_machine=-85
+    pinch=103 pineapple=-21 ping=-34 ping_pong=-147 pink=-200 pins=-29 pipe=62 pipes=-130
+    pirate=113 pit=21 pitch=-29 pity=165 pivot=62 pizza=132 place=170 place_=134 place_at=-24
+    place_is=176 place_to=43 place_where=154 placed=33 placeholders=113 places=147 plaid=-29
+    plain=-51 plainer=49 plan=200 plan_=199 plane=-70 planetarium=-3 planets=-51 plank=-3
+    planned=113 planner=113 plant=-59 plant_=-140 plant_and=-200 plant_in=28 plant_is=136
+    plant_on=-43 plant_take=-92 plant_turn=-135 planted=-29 planter=-51 planters=-51 plants=54
+    plaque=-130 plaques=-29 plaster=-29 plastic=33 plate=84 plates=-110 platform=-106
+    platform_=-99 play=134 player=-139 player_=-110 playhouse=-29 playing=-51 playroom=-147
+    plays=165 please=88 please_=24 please_be=28 please_conclude=-70 please_continue=-70
+    please_do=174 please_don't=147 please_enter=-70 please_exit=-85 please_leave=-110
+    please_proceed=-168 please_return=140 please_stop=-99 please_take=-58 please_turn=-147
+    please_walk=-72 pleases=113 pleasure=-29 plinth=-29 plonk=-51 plotter=-51 pls=66 plug=113
+    plumbed=-29 plumber=81 plunge=-168 plunge_pool=-161 plus=-29 plush=-29 plz=-51 po's=-110
+    pocket=84 podium=-85 poet=113 point=75 point_=88 pointed=-51 pointer=113 pointing=20
+    points=78 pointy=-29 poisoned=113 poke=-29 polarity=113 pole=-70 poles=-29 police=200
+    policy=113 polish=43 pommel=-51 pond=-98 pond_=-50 pong=-147 pong_table=-147 pool=-183
+    pool_=-67 pool_and=-190 pool_on=-99 pool_table=-200 pool_to=-70 pool_with=-99 poor=157
+    pop=15 popcorn=-180 popcorn_stand=-99 poppet=-29 pops=113 porcelain=-51 porch=-200
+    porch_=-172 porch_and=-143 porch_swing=-70 porches=113 port=-51 portable=-29 porter=49
+    porthole=-110 porthole_=-85 portholes=-130 portrait=-200 portrait_=-85 portrait_of=-85
+    portraits=-51 portside=-29 portuguese=113 pose=62 posh=49 position=54 position_is=62
+    positioned=-29 positive=84 possessing=-29 possible=-51 possibly=-36 post=83 post_=43
+    postcard=49 postcards=-51 postcondition=-29 poster=-26 poster_bed=-70 posters=-110
+    posters_=-85 posts=-70 pot=-72 pot_=-70 pot_and=-3 pots=15 pots_hanging=-70 potted=-200
+    potted_fern=-85 potted_palm=-155 potted_plant=-200 potted_tree=-99 pottery=-82 potting=-51
+    pouffe=-29 poultry=-29 pour=-29 pouring=132 powder=-51 power=103 powered=113 practically=-29
+    prams=-29 prankster=113 prayer=-51 praying=-29 precedence=113 preceding=113
+    preconditions=-29 prefer=113 preferable=-29 preferred=-29 preheat=113 premises=49 prep=-29
+    presence=-29 present=159 presently=62 presents=-51 president=113 press=-3 pressed=113
+    pressure=62 presume=49 pretend=200 prettier=113 prettiest=49 pretty=-34 previous=200
+    previously=49 price=113 prime=113 principal=-29 principal's=-51 principle=113 print=173
+    printed=199 printer=-180 printer_=-110 printer_and=-99 printers=-51 prior=-8 prior_to=-8
+    priority=103 privacy=113 private=-110 privilege=49 privileges=113 prize=84 probably=-3
+    proceed=-175 proceed_along=-139 proceed_between=-99 proceed_down=-70 proceed_from=-70
+    proceed_past=-200 proceed_through=-147 proceed_to=-139 proceeded=-29 produce=-51 progress=-3
+    projected=113 projection=-29 projector=-21 projectors=-51 projects=-29 promenade=-99
+    promenade_deck=-85 promise=49 promoted=113 prompt=199 pronto=-29 proof=-51 proper=-50
+    properly=81 proportions=-29 proposed=49 propped=-29 proud=80 prove=113 proved=113
+    provided=113 prudent=-29 psst=113 pt=49 pub=84 pucker=-29 pull=84 pulled=-29 pulling=-29
+    pulpit=-127 pulpit_=-147 pulpit_and=-99 pump=-85 punching=-85 punching_bag=-85
+    punctuation=113 punished=113 pup's=-29 pupils=49 puppet=-85 puppet_theater=-70 pure=49
+    purple=-200 purple_one=-70 purpose=84 purposes=165 purser=49 purser's=-51 pursuant=113
+    push=-61 pushed=-29 pushes=62 put=144 put_=200 put_it=80 put_on=-3 put_this=103 puts=43
+    putting=-51 pyjamas=-29 pyramid=-51 q=-51 qty=-29 quality=113 quantum=113 quarantine=113
+    quarter=-21 quarters=-3 query=-29 question=66 questions=118 queue=103 quick=46 quickly=-99
+    quiet=-130 quietly=-70 quilt=-51 quilts=-29 quit=136 quite=-3 quits=113 quotation=113
+    quote=165 quoted=113 quotes=113 quoting=113 qwerty=113 r=41 rabies=113 race=-29 racing=-29
+    rack=-200 rack_=-200 rack_and=-200 rack_is=-85 rack_of=-130 rack_on=-110 rack_turn=-85
+    rack_with=-85 racks=-94 racks_=-70 racks_of=-36 radiator=-93 radiator_=-121 radiator_and=-70
+    radiators=-110 radio=81 radioactive=113 rail=-119 railing=-200 railing_=-168
+    railing_and=-182 railing_on=-136 railing_to=-121 railings=-85 rails=-70 railway=49 rain=-17
+    rain_barrel=-70 rainbow=-29 raining=-29 raked=-29 rally=49 ramble=49 ramp=-200 ramp_=-200
+    ramp_and=-146 ramp_not=-70 ramp_on=-70 random=165 range=43 rate=49 rates=113 rather=111
+    rather_than=193 rational=113 rattle=-29 rattles=49 raw=49 ray=-3 rd=-51 reach=-121
+    reach_a=-85 reach_it=-110 reach_the=-145 reached=99 reached_=15 reached_the=139 reaches=-29
+    reaching=-139 reaching_it=-99 reaching_the=-70 read=200 read_is=154 read_the=159
+    read_this=200 readable=49 reader=66 reading=75 reading_room=-36 reads=76 ready=30 real=133
+    realised=49 really=123 rear=-26 rear_door=-70 rearward=-29 rearwards=-29 reason=199
+    reasonably=-29 reasons=113 reboot=113 rebuilt=113 recall=136 recap=49 recapitulate=49
+    recapitulation=49 receipt=-29 receive=165 received=176 reception=-200 reception_=-126
+    reception_counter=-85 reception_desk=-200 recessed=-29 recharge=113 recipe=-29
+    reciprocal=-29 recite=113 reckon=-29 reclassified=113 recliner=-36 recliners=-51
+    recognise=113 recollect=-29 recommend=-29 recommendation=-29 recon=49 record=3
+    record_player=-110 recorded=113 recovered=49 recruit=49 recycling=-3 red=-97 red_and=-70
+    red_carpet=-174 red_couch=-105 red_curtain=-139 red_door=-58 red_fire=-70 red_fridge=-70
+    red_line=-70 red_sofa=-36 redirect=113 reduce=-29 ref=-29 reference=-29 reflection=113
+    reflective=-70 refrain=80 refrain_from=80 refreshment=-29 refrigerator=-99
+    refrigerator_=-124 refrigerator_and=-85 refrigerator_on=-78 refrigerator_turn=-92
+    refrigerators=-29 refuse=199 refused=113 refuses=165 regard=-70 regard_to=-70 regarded=165
+    regardless=113 register=-200 register_=-147 regret=165 regular=-51 regulation=113 reined=-29
+    reinstate=113 reject=165 relaid=-29 related=49 relax=136 relax_=136 relaying=49 release=84
+    released=165 relief=49 relieved=-51 relocate=-29 relocation=81 rely=113 remain=138
+    remain_=43 remain_at=147 remainder=195 remainder_of=170 remaining=100 remaining_steps=15
+    remains=43 remark=49 remarkable=49 remember=154 remember_to=161 remembered=113 remind=84
+    reminds=49 remove=170 removed=165 renamed=165 renovation=113 renumbered=113 repair=84
+    repairs=-29 repeat=173 repeated=84 replace=200 replace_the=199 replaced=199 replacement=113
+    replaces=113 reply=132 report=200 report_that=199 reported=132 reporter=84 repose=-29
+    request=151 request_=199 request_that=-70 requested=-130 requested_that=-200
+    requested_to=-161 requesting=-29 requests=113 require=-29 required=46 requirement=-29
+    requires=170 reroute=113 rescinded=113 research=113 reserved=113 reservoir=49 reset=113
+    residence=49 residents=-29 resigned=113 resist=113 resorted=-29 respect=84 respectfully=-62
+    respond=113 rest=156 rest_=129 rest_is=170 rest_of=159 restaurant=-110 restaurant_and=-70
+    resting=-29 restrictions=113 restroom=-70 restrooms=-99 restrooms_=-70 result=-51
+    results=147 retrace=56 retrace_your=-4 return=200 return_to=200 returned=113 returns=80
+    reverse=155 reverse_of=200 reversed=113 revert=113 review=49 revoked=165 revolution=-29
+    revolvin=-29 revolving=-200 revolving_door=-174 revolving_doors=-99 reward=113 rewarded=84
+    rewinding=113 rewrite=113 rhyme=113 ridden=-29 ride=-99 riding=-29 right=-144 right's=-29
+    right_=-155 right_90=-99 right_a=-110 right_after=-200 right_again=-200 right_along=-130
+    right_and=-200 right_angle=-70 right_are=43 right_around=-200 right_as=-62 right_at=-200
+    right_because=-70 right_before=-113 right_beside=62 right_by=-174 right_corner=-139
+    right_cross=-92 right_down=-99 right_from=-24 right_go=-200 right_hand=-67 right_i=36
+    right_i'd=-99 right_immediately=-85 right_in=-44 right_instead=15 right_into=-200
+    right_is=-1 right_just=-174 right_like=62 right_n=-85 right_not=-99 right_now=-110
+    right_of=-168 right_off=-85 right_on=-121 right_one=-61 right_out=-99 right_past=-193
+    right_place=-110 right_right=37 right_round=-21 right_side=-200 right_so=-54 right_stop=-110
+    right_take=-70 right_that=-70 right_that's=62 right_the=-110 right_then=-200
+    right_there=-153 right_through=-85 right_to=18 right_towards=-168 right_turn=-91
+    right_until=-42 right_up=-139 right_wait=-139 right_walk=-188 right_wall=-110 right_when=-8
+    right_where=80 right_which=-70 right_with=-72 right_you=-21 rightly=20 righto=-29 rights=173
+    rightward=-51 rightwards=-29 righty=-29 rihgt=84 rim=-29 ring=117 rings=113 rink=-29
+    riser=-29 risers=-29 rises=-29 risky=-29 rite=-110 river=165 riverside=-161 rm=-15 rm_=-85
+    rms=-29 road=62 roads=113 robes=-51 robot=161 robot_=85 robot_in=176 robot_is=80
+    robot_to=136 robotics=113 robots=200 robots_=54 robots_must=199 rock=80 rocket=-51
+    rocking=-200 rocking_chair=-174 rocking_horse=-155 rocks=-85 rofl=113 roger=49 role=199
+    roll=91 rolled=-8 rolled_up=-99 roller=-85 roller's=-29 rollers=-29 rolling=62 rolls=-70
+    roman=-51 rome=113 romeo=49 roof=53 roof_=-99 roof_terrace=-3 room=-71 room's=-51 room_=-87
+    room_214=-99 room_after=-54 room_and=-200 room_at=-70 room_before=119 room_between=-70
+    room_by=-155 room_door=-110 room_for=91 room_go=-174 room_has=1 room_in=66 room_is=106
+    room_on=-88 room_opposite=-130 room_past=-70 room_stop=-85 room_straight=-99 room_that=114
+    room_that's=-70 room_the=-17 room_then=-200 room_through=-177 room_to=12 room_turn=-200
+    room_using=-200 room_walk=-34 room_where=-139 room_which=-99 room_with=-169 room_you=31
+    roomates=-29 rooms=115 rooms_=163 rooms_on=28 root=199 roots=113 rope=-106 rope_=28
+    rope_barrier=-130 rope_ladder=-85 ropes=-50 ropes_=-85 rose=-85 roses=113 rot=113 rotate=78
+    rotate_twice=116 rotates=-29 rotating=113 rotation=28 roughly=-51 round=-30 round_=200
+    round_and=-0 round_bench=-78 round_dining=-70 round_it=-82 round_one=-36 round_table=-130
+    round_tables=-85 round_the=-129 round_to=-121 round_window=-62 rounded=-29 rounding=-29
+    route=200 route_=200 route_and=200 route_is=200 routes=165 row=-200 row_=-155 row_and=-121
+    row_of=-200 row_six=-85 rower's=-29 rowing=-130 rowing_machine=-110 rows=-185 rows_of=-161
+    rt=-29 rubber=28 rubbish=80 rude=113 rug=-132 rug_=-152 rug_and=-54 rug_ends=-85 rug_in=-82
+    rug_is=-70 rug_to=-78 ruin=113 rule=170 rules=200 rules_=199 rum=113 rumbling=49 rumour=113
+    run=198 run_lasts=142 run_out=-70 runner=-155 runner_rug=-85 running=-70 runny=113 runs=-121
+    ruote=113 rush=103 rusty=-29 s=-29 sacristy=49 sad=113 saddle=-121 saddle_=-70 saddles=-51
+    safe=-8 safely=-29 safest=113 safety=200 safety_officer=106 said=198 said_=62 said_that=199
+    said_the=147 said_to=125 sailor=20 salad=-110 salad_bar=-85 sale=62 salon=-110 saloon=-85
+    salt=62 same=91 sample=113 sandbox=-70 sandra=53 sandwich=20 sanitary=-29 satisfaction=-29
+    saturn=-51 sauna=-200 sauna_=-188 sauna_and=-143 sauna_go=-78 sausage=-29 save=113 saved=49
+    saw=103 sawn=49 say=132 say_=200 say_and=62 say_hi=-21 say_it=200 say_right=-3 say_that=200
+    say_the=-21 saying=141 says=199 says_=200 says_left=200 says_so=103 says_stop=-42
+    says_that=200 says_to=170 says_you=199 scale=-200 scale_=-161 scales=-99 scales_=-70
+    scary=20 scavenger=147 scavenger_hunt=147 scenic=113 school=21 schoolroom=-29 schuss=-29
+    science=80 scissors=113 sconces=-51 scoot=-70 score=49 scoreboard=-70 scoreboard_=-70
+    scored=49 scrap=200 scraper=-51 scrapyard=113 scratch=113 scream=-29 screaming=113
+    screen=-200 screen_=-200 screen_door=-139 screens=-147 scroll=-110 scullery=-110
+    sculpture=-200 sculpture_=-168 sculpture_and=-110 sculptures=-41 sd=113 sea=145 sea_=199
+    sea_on=-3 seafood=-51 sealed=165 search=164 search_for=43 search_the=136 seashells=-36
+    season=49 seat=-115 seat_=-98 seat_on=-70 seat_with=-70 seated=43 seating=-51 seats=-141
+    seats_=-72 sec=-51 second=-98 second_=-58 second_at=43 second_bedroom=-99 second_bench=-85
+    second_classroom=-70 second_door=-79 second_doorway=-85 second_floor=-130 second_left=-99
+    second_lifeboat=-70 second_lounger=-70 second_of=-85 second_on=-70 second_one=-185
+    second_opening=-36 second_right=-155 second_row=-85 second_set=3 second_teller=-85
+    second_to=-3 second_turn=62 second_window=-139 secondly=-29 seconds=200 secret=200
+    secretary's=-51 secs=49 section=80 sectional=-70 sector=-29 secure=-70 security=99
+    security_desk=-17 see=-61 see_a=-111 see_an=-177 see_if=-21 see_is=199 see_stairs=-70
+    see_that=1 see_the=-179 see_two=-85 see_you=118 see_yourself=-70 seedling=49 seeing=84
+    seek=103 seeks=113 seem=-51 seen=132 seen_a=103 seen_from=136 sees=-3 segment=-51 select=15
+    select_the=-85 self=132 sell=132 sells=-29 send=200 send_you=199 sendorfer=-110 senior=113
+    sense=147 sensible=49 sensor=170 sensors=113 sent=200 sentence=200 sentence_about=199
+    sentence_is=200 sentences=199 sentry=49 separated=-29 separating=-29 separation=-29
+    sequence=84 serial=113 serious=49 seriously=165 servants=-70 serve=113 served=132 server=80
+    serves=-70 service=68 service_=136 service_stairs=62 serving=20 session=165 set=5 set's=-29
+    set_=-99 set_of=-200 sets=-139 sets_of=-139 settee=28 settings=113 settled=-29 settles=-29
+    seven=154 seven_=-3 seven_and=147 seventeen=113 seventh=-51 severely=113 sewing=-174
+    sewing_machine=-155 sewing_room=-85 shade=-70 shade_=-70 shaggy=-51 shake=-29 shall=125
+    shall_be=80 shall_i=106 shall_then=-70 shallow=-51 shan't=49 shape=20 shaped=-17
+    shaped_like=28 shapes=49 shared=-29 shares=113 sharp=-170 sharp_left=-200 sharp_right=-200
+    sharp_turn=-70 sharply=-99 sharply_right=-70 shatter=113 she=13 she'd=49 she's=-33
+    she's_gone=-70 she_does=62 she_goes=-85 shed=11 shed_=15 sheep=113 sheets=12 sheets_on=-3
+    shelf=-200 shelf_=-116 shelf_and=-174 shelf_of=-110 shelf_with=-85 shells=-29 shelter=132
+    shelves=-200 shelves_=-110 shelves_and=-85 shelves_with=-85 shelving=-85 shelving_units=-70
+    shh=-51 shhh=-51 shift=107 shine=-51 shiny=-147 shiny_black=-70 shiny_floor=-85 ship=-24
+    ship's=-70 ship_=-21 shipping=132 shirt=113 shoe=-200 shoe_bench=-85 shoe_counter=-85
+    shoe_display=-110 shoe_rack=-121 shoe_shop=-99 shoe_store=-99 shoes=-82 shoes_=-99
+    shooting=-29 shoots=-29 shop=-71 shop_=-106 shop_and=-62 shop_door=-85 shop_past=-85
+    shop_turn=-70 shop_windows=-85 shopping=-85 shopping_carts=-85 short=-11 short_of=-62
+    shorter=49 shortest=113 shortly=20 shot=-29 shots=113 should=27 should_be=-30 should_go=199
+    should_not=195 should_now=-110 should_see=-200 should_stop=-34 should_think=-70
+    should_turn=80 should_you=147 shoulder=113 shouldn't=20 shout=84 shouted=165 shouts=113
+    shove=-29 show=167 show_me=103 showdown=49 showed=113 shower=-155 shower_=-30
+    shower_and=-126 shower_room=-147 shower_turn=-85 showers=-23 showers_=-70 showers_and=-85
+    shown=132 shows=136 shredder=-85 shuffleboard=-51 shuffled=113 shush=49 shut=155
+    shut_down=200 shutdown=113 shutter=-3 shutters=-51 shy=-29 side=-153 side's=-29 side_=-159
+    side_and=-200 side_are=-70 side_as=-21 side_by=-70 side_chapel=-85 side_door=-161
+    side_of=-153 side_right=-3 side_the=-85 side_to=-85 sideboard=-106 sides=34 sides_=43
+    sideways=113 sierra=-29 sight=147 sign=-87 sign_=-111 sign_and=-139 sign_for=-3
+    sign_with=-85 signal=165 signature=49 signed=113 signs=21 silence=165 sill=-50 sill_=-85
+    silly=103 silver=43 simon=165 simple=-3 simpler=49 simplified=49 simply=113 simulation=113
+    since=132 since_the=-8 sincere=49 sing=132 singing=-29 single=10 single_step=95 sink=-128
+    sink_=-200 sink_and=-17 sink_in=4 sink_is=62 sinks=-151 sinks_=-110 sinks_and=-139 sir=84
+    sister=132 sister's=113 sit=123 sit_down=147 sit_on=-21 site=116 sitrep=49 sits=-8
+    sitting=-70 sitting_area=-85 sitting_room=-85 situate=-29 situated=-70 situation=49 six=48
+    six_=46 six_in=136 six_steps=-99 sixth=-110 sixty=20 size=-99 size_bed=-85 skeleton=-161
+    skeleton_=-99 ski=-51 skimming=-29 skinny=-85 skip=97 skip_the=89 skipped=165 skirt=-85
+    skirted=-29 skirting=84 skis=-70 skull=-51 skylight=-84 skylight_=-66 skylight_in=-70
+    skylights=-29 slalom=-29 slats=-3 slatted=20 sleep=200 sleepin=-29 sleeping=46 sleeps=-29
+    sleepy=113 sleeve=49 slept=106 slide=75 slider=-110 slides=-51 sliding=-200
+    sliding_door=-200 sliding_doors=-200 sliding_glass=-121 slight=-200 slight_left=-200
+    slight_right=-199 slightly=-200 slightly_left=-200 slightly_right=-200 slightly_to=-70
+    slinks=-29 slip=43 slippers=-51 slippery=-29 slope=-29 slopes=-29 sloping=-29 slot=-51
+    slots=-29 slow=85 slowing=49 slowly=-139 sm=-29 small=-157 small_door=-180 small_gate=-70
+    small_hallway=-70 small_office=-70 small_room=-85 small_steps=-70 small_table=-171
+    smalls=-29 smart=113 smartest=113 smell=170 smells=74 smelly=-29 smh=81 smidge=-51 smile=-70
+    smoke=113 smooth=-29 snack=-99 snail=62 snake=132 snapped=113 sneak=62 sneaks=-29 sneeze=49
+    snooker=49 snow=165 snuggled=-29 so=65 so_=53 so_and=-70 so_as=-62 so_be=43 so_do=108
+    so_find=-85 so_get=-70 so_go=-126 so_here=53 so_i=73 so_i'll=156 so_i've=53 so_if=-3
+    so_is=80 so_it's=40 so_just=-42 so_keep=46 so_kind=62 so_let's=-85 so_no=53 so_not=-70
+    so_on=103 so_past=-130 so_please=156 so_rotate=66 so_stop=-48 so_take=125 so_that=-176
+    so_that's=-4 so_the=85 so_there=136 so_turn=-34 so_um=-70 so_use=66 so_walk=-58 so_we=147
+    so_you=-48 so_you'd=-110 so_you're=-90 soak=-29 soccer=-29 sock=113 socks=62 sofa=0
+    sofa's=113 sofa_=4 sofa_and=-85 sofa_is=46 sofa_on=-92 sofa_the=-70 sofas=110 sofas_=-3
+    soffit=-29 soft=46 softly=84 software=113 sold=176 soldier=62 solitary=-29 solve=165
+    solved=113 some=-15 some_stairs=-21 somebody=178 somebody_has=136 somebody_is=62 somehow=49
+    someone=200 someone's=-29 someone_else=199 something=200 something_=154 sometimes=-29
+    somewhere=88 son=49 song=84 soon=-76 soon_as=-115 sooner=-29 soonest=49 sooo=53 soooo=49
+    sore=49 sorry=84 sorry_=103 sorry_i=75 sort=-109 sort_of=-104 sought=-29 soul=113 sound=-29
+    sound_desk=-85 sounding=113 sounds=49 soup=91 soup's=49 source=-29 south=165 spa=-121
+    spa_=-86 space=66 space_between=-70 spam=113 span=-29 spare=43 spare_bedroom=-70
+    sparkling=-29 spawned=49 speak=176 speaker=125 speaker_=-3 speakers=-29 speaking=200
+    speaks=113 special=113 species=-29 specifically=-29 speculation=113 speed=195 spell=113
+    spelled=113 spelling=113 spells=113 spending=113 spent=49 spiders=-51 spiky=49 spill=113
+    spilled=62 spilt=-29 spin=148 spin_around=80 spin_on=200 spinning=-70 spiral=-200
+    spiral_staircase=-200 spiral_stairs=-99 spirit's=49 splash=-29 split=81 splits=-185
+    splits_in=-70 spoken=113 spoon=200 sport=49 sports=-29 spot=52 spot_=12 spot_a=-70
+    spotted=113 spread=113 spring=186 sprint=-29 squad=-51 square=-24 square_table=-78
+    squared=84 squares=-51 squeaks=-29 squeeze=-110 squeeze_between=-70 squeezed=-29 squirts=-29
+    squishy=-29 sry=20 st=-21 stable=-51 stables=-51 stack=-48 stack_of=-161 stacked=-110
+    stadium=49 staff=-30 staff_only=-130 stage=-135 stage_=-42 stage_and=-85 stage_behind=-70
+    stage_up=-70 stain=62 stained=-190 stained_glass=-190 stair=-30 stair_=-70 stair_without=-70
+    staircase=-96 staircase_=-119 staircase_and=-188 staircase_b=-3 staircase_but=-85
+    staircase_is=-70 staircase_of=-85 staircase_on=-165 staircase_to=-110 staircase_which=43
+    staircases=-36 stairs=-85 stairs_=-66 stairs_all=-85 stairs_and=-93 stairs_are=-17
+    stairs_beside=-121 stairs_but=-85 stairs_down=-34 stairs_go=-99 stairs_going=-50
+    stairs_into=-70 stairs_next=-139 stairs_not=-62 stairs_on=-131 stairs_one=-70
+    stairs_past=-85 stairs_take=-110 stairs_that=-8 stairs_the=-70 stairs_then=-106
+    stairs_to=-200 stairs_turn=-195 stairs_up=-121 stairs_walk=-92 stairs_were=176
+    stairs_which=-99 stairs_with=-168 stairs_you=-3 stairway=-200 stairway_=-200
+    stairway_and=-188 stairway_on=-110 stairways=113 stairwell=-161 stall=-82 stalls=-62
+    stalls_=-3 stand=-77 stand_=-20 stand_a=-70 stand_and=-122 stand_at=15 stand_by=-4
+    stand_in=3 stand_next=-200 stand_of=-70 stand_on=-77 stand_still=139 stand_then=-92
+    stand_turn=-70 stand_with=-200 standard=-29 standing=-20 standing_in=-143 standing_on=-50
+    stands=18 standstill=-29 star=-130 star_=-70 starboard=-85 staring=-29 stars=15 stars_on=-70
+    start=54 start_=200 start_at=-98 start_by=-200 start_from=-21 start_in=-155 start_there=-70
+    start_with=28 started=186 starting=-37 starting_at=-200 starts=165 starve=113 state=103
+    statement=113 static=113 station=-78 station_=-99 station_and=-34 stationary=-29
+    stationed=-29 statue=-189 statue_=-85 statue_and=-143 statue_of=-168 statues=62 status=165
+    stay=170 stay_=200 stay_here=200 stay_in=93 stay_on=-147 stay_put=195 stay_there=85
+    stay_where=200 stayed=49 staying=-70 stays=43 stead=-29 steady=-51 steam=-131
+    steam_room=-155 steel=-185 steel_door=-85 steep=28 steeper=-29 steeplechase=-29 steeply=-29
+    steer=49 steered=-29 steering=84 step=-50 step_=-5 step_and=24 step_away=-130 step_down=-36
+    step_inside=-70 step_into=-200 step_is=15 step_of=80 step_on=62 step_one=-70 step_out=-157
+    step_over=-200 step_stop=-78 step_turn=-121 stepping=-121 stepping_stones=-85 steps=-79
+    steps_=-70 steps_and=-200 steps_at=-99 steps_back=136 steps_between=-70 steps_down=-200
+    steps_forward=-130 steps_go=-85 steps_going=-85 steps_into=-147 steps_of=-99 steps_on=-200
+    steps_that=-110 steps_then=-188 steps_to=-200 steps_turn=-70 steps_up=-85 steward=-29
+    stewards=49 stick=-29 sticks=-85 stifling=-29 still=177 still_=195 stinky=-29 stirrers=-51
+    stn=-29 stone=-200 stone_bench=-99 stone_floor=-85 stone_lions=-70 stone_stairs=-110
+    stone_steps=-180 stones=-36 stood=55 stool=-200 stool_=-200 stool_and=-139 stool_then=-110
+    stool_with=-70 stools=-200 stools_=-185 stools_and=-147 stools_to=-85 stools_turn=-78
+    stoolss=-41 stop=-190 stop_=-123 stop_1=-139 stop_a=-200 stop_action=199 stop_and=-10
+    stop_as=95 stop_at=-200 stop_be=-70 stop_before=-100 stop_behind=-200 stop_beside=-200
+    stop_between=-200 stop_by=-200 stop_don't=62 stop_facing=-200 stop_following=199
+    stop_halfway=-70 stop_here=50 stop_i=-70 stop_in=-200 stop_inside=-161 stop_is=88
+    stop_just=-200 stop_near=-82 stop_next=-200 stop_now=200 stop_nxt=-70 stop_on=-200
+    stop_once=-200 stop_outside=-200 stop_right=-200 stop_short=-70 stop_stop=113 stop_the=-70
+    stop_there=-200 stop_to=-113 stop_um=-70 stop_under=-200 stop_when=-200 stop_where=39
+    stop_with=-200 stop_you=62 stopped=-27 stopped_at=-62 stopping=13 stopping_=136 stops=-160
+    stops_=-130 stops_at=-36 store=-42 store_=-99 storeroom=-70 storey=-29 storeys=-29 storm=113
+    story=136 stove=-181 stove_=-168 stove_and=-193 stove_in=-70 stove_past=-70 stp=-29
+    straight=-200 straight_=-158 straight_across=-200 straight_ahead=-200 straight_and=-190
+    straight_away=-70 straight_between=-200 straight_down=-200 straight_into=-147
+    straight_line=-70 straight_on=-67 straight_out=-200 straight_over=-110 straight_past=-200
+    straight_straight=-70 straight_then=-105 straight_through=-197 straight_to=-200
+    straight_towards=-70 straight_under=-99 straight_until=-200 straight_with=-70 strait=-51
+    stranger=132 strategy=-29 streamers=-51 street=-8 streets=113 stress=-29 stretcher=-51
+    stretching=-29 strike=113 strikes=113 string=136 stringed=-29 strings=-51 strip=-29
+    striped=-200 striped_blanket=-70 striped_rug=-130 strips=-29 stripy=-85 stroll=-50
+    stroll_through=-3 strollers=-29 strs=-29 stubborn=113 stuck=167 stuck_in=103 student=-3
+    studio=-24 studio_=-85 study=-188 study_=-131 study_and=-180 study_through=-78 stuff=186
+    stuffed=-110 stuffed_bear=-85 stuffy=-29 stunning=-29 style=84 subheading=-70 subj=49
+    subject=20 submarine=49 submit=49 subscribe=113 subsequently=-85 success=200 success_=199
+    successful=113 successive=-29 such=126 suffice=-29 sugar=43 suggest=-29 suggested=-29
+    suit=-155 suit_of=-155 suitable=-29 suitably=-29 suitcase=-29 suitcases=-29 suits=62 sum=106
+    sum_up=106 summarise=113 summary=81 summer=-51 summit=-29 sump=-29 sun=-71 sun_loungers=-70
+    sun_room=-200 sunburn=49 sunday=132 sundays=49 sundial=-70 sunflowers=-51 sunken=-62
+    sunken_living=-3 sunken_lounge=-85 sunny=-29 sunroom=-72 sunroom_=-121 sunroom_and=-70
+    sunset=165 sunshine=-29 super=-51 supermarket=49 supersedes=165 superstar=-29
+    superstitious=-29 supervisor=200 supplies=49 supply=-29 support=84 supported=-29 suppose=38
+    suppose_=-85 suppose_i=-3 suppose_you=-21 sure=-23 surface=-51 surprising=113 surrounded=-29
+    surroundings=-29 surrounds=-29 survey=113 sushi=-29 suspended=62 swallow=113 swan=-62
+    swan_=-85 swap=200 swap_left=200 swapped=-110 sway=-29 swear=81 sweep=-51 sweet=-99
+    sweet_little=-70 sweetheart=84 sweetie=-29 swimmin=-29 swimming=21 swimming_pool=21
+    swimsuit=49 swing=-152 swing's=-29 swing_=-174 swing_and=-161 swing_door=-62 swing_doors=-70
+    swing_go=-85 swinging=-174 swinging_door=-85 swinging_doors=-130 swings=-90 swingy=-29
+    switch=88 switched=165 switches=-110 swivel=-110 swords=-51 swore=81 sworn=-29 system=200
+    t=-121 t_=-70 t_junction=-70 ta=-29 tabel=-110 table=-116 table's=-29 table_=-124
+    table_and=-200 table_around=-99 table_at=-70 table_between=-99 table_by=62
+    table_clockwise=-70 table_for=43 table_go=-85 table_i=62 table_in=-158 table_is=103
+    table_keeping=-121 table_on=-151 table_once=27 table_so=-116 table_that=28 table_then=-200
+    table_to=-55 table_turn=-126 table_walk=-130 table_where=-99 table_which=-70 table_with=-200
+    tables=-1 tables_=-110 tables_with=-70 tablets=-29 tac=113 tack=-51 tackle=-29 tactics=-29
+    tada=-29 tail=43 tailor's=-51 tails=113 taiwan=113 take=-66 take_a=-128 take_about=-70
+    take_it=-80 take_one=-17 take_the=-125 take_those=62 take_two=54 take_you=-121
+    take_your=-121 taken=79 taken_=80 taken_in=62 taken_over=136 taken_up=-85 takes=-3
+    takes_a=-85 taking=33 talent=49 talk=147 talking=132 tall=-114 tall_chair=-70 tall_clock=-85
+    tall_mirror=-85 taller=-29 tallest=62 tan=-200 tan_chair=-92 tank=-200 tank_=-173
+    tank_and=-171 tank_then=-78 tape=-3 tape_=62 tape_on=-70 taped=-29 tapestry=-200
+    tapestry_=-171 tapestry_and=-126 tapestrys=-41 target=123 tartan=-29 task=186 task_=196
+    tasking=-29 tastes=-29 tasting=-110 tasting_table=-85 taxi=81 tbh=49 tbl=-29 tea=-80
+    teacher=113 teacher's=-130 teacher's_desk=-130 teal=-51 team=157 technician=200
+    technician_with=167 teddies=-51 teddy=49 teenager=113 teenager's=-29 teeny=-99 teh=28
+    telephone=-90 telephone_on=-70 telephones=-29 telescope=-161 telescope_=-121
+    telescope_and=-70 television=-76 television_=-168 television_and=-135 television_on=-70
+    television_then=-92 televisions=72 tell=200 tell_me=132 tell_the=103 tell_you=200 teller=-82
+    teller_window=-85 teller_windows=-3 telling=132 tells=200 tells_you=200 telly=-51
+    temperature=-29 tempting=-29 ten=171 tenner=49 tennis=20 tent=-98 tent_=-110 term=-29
+    terminal=84 terminate=113 terminates=-51 terminating=-29 termites=113 terms=165 terrace=-155
+    terrace_=-90 terrace_and=-85 terraces=-29 terrible=49 terry=49 test=199 testing=49 text=200
+    text_=200 text_says=200 text_you=94 texting=49 th=49 than=186 than_a=199 than_the=191
+    thank=139 thank_you=173 thanks=179 that=73 that'd=-29 that'll=-29 that's=-21 that's_a=29
+    that's_all=-85 that's_at=-70 that's_closest=-70 that's_got=-99 that's_it=-90 that's_not=80
+    that's_on=-70 that's_shaped=-70 that's_the=-0 that's_what=62 that's_where=-81 that's_you=-70
+    that's_your=-121 that_=118 that_a=-85 that_all=62 that_and=-62 that_are=68 that_but=-3
+    that_comes=-70 that_corner=-70 that_door=15 that_follow=106 that_follows=199 that_go=28
+    that_goes=86 that_hallway=-3 that_hangs=-130 that_has=-30 that_i=62 that_is=39 that_it=-70
+    that_looks=21 that_means=-21 that_must=62 that_nobody=136 that_none=142 that_one=-87
+    that_order=103 that_robots=200 that_room=113 that_says=-161 that_table=15 that_the=75
+    that_there=118 that_was=200 that_way=55 that_would=30 that_you=137 that_you'll=-85
+    that_you're=95 that_your=62 thats=-58 the=-45 the_2=-121 the_3=-121 the_above=199
+    the_administrator=200 the_aisle=-200 the_alarm=-130 the_alcove=-85 the_altar=-195
+    the_anchor=-110 the_aquarium=-161 the_arcade=-85 the_arch=-200 the_arched=-85 the_arches=-70
+    the_archive=-36 the_archway=-200 the_area=-70 the_armchair=-67 the_arrows=-3 the_art=-21
+    the_atm=-70 the_atrium=-99 the_attic=-92 the_automatic=-110 the_baby=17 the_back=-148
+    the_bakery=-4 the_balcony=-118 the_ballroom=-98 the_bamboo=-70 the_bananas=-70
+    the_banister=44 the_bank=-36 the_baptistery=-85 the_bar=-200 the_barbecue=-130 the_barn=-121
+    the_barometer=-85 the_barrel=-99 the_barrels=-110 the_base=-110 the_basement=82
+    the_basketball=-70 the_bath=-110 the_bathroom=-53 the_bathtub=-116 the_bay=-180 the_bead=-99
+    the_beaded=-121 the_beanbag=-130 the_beanbags=-21 the_bed=-77 the_bedroom=-24 the_beds=-121
+    the_beginning=200 the_bell=-42 the_bench=-200 the_best=147 the_bicycle=-155 the_bidet=-70
+    the_big=-200 the_biggest=-121 the_bike=-139 the_bikes=-85 the_billiard=-85 the_bird=-4
+    the_birdbath=-85 the_black=-200 the_blackboard=-168 the_blue=-200 the_board=44
+    the_boardroom=-36 the_boiler=-147 the_bookcase=-200 the_bookshelf=-50 the_boot=-121
+    the_boots=-110 the_boss=88 the_both=-3 the_bottom=-200 the_bowl=-3 the_branch=-85
+    the_brass=-168 the_bread=-110 the_break=-110 the_breakfast=-189 the_brick=-180
+    the_bridge=-23 the_brochure=-85 the_bronze=-70 the_brown=-200 the_bucket=-99 the_buffet=-121
+    the_building=111 the_bulletin=-130 the_bunk=-200 the_bust=-147 the_cabin=-200
+    the_cabinet=-200 the_cactus=-161 the_cafe=-99 the_cake=-85 the_candle=-177 the_candles=-121
+    the_candy=43 the_canopy=-85 the_captain's=-85 the_car=21 the_card=-110 the_carpet=-90
+    the_carpeted=-168 the_case=-3 the_cash=-195 the_casino=-3 the_cat=125 the_cat's=53
+    the_cedar=-70 the_ceiling=25 the_cellar=-3 the_cello=-70 the_center=-155 the_central=28
+    the_cereal=-121 the_chair=-9 the_chairs=-30 the_chandelier=-200 the_changing=-139
+    the_chapel=-49 the_charging=-17 the_chart=-85 the_checkout=-85 the_chess=-99 the_chest=-99
+    the_chief=200 the_children's=-85 the_chimney=-72 the_china=-161 the_choir=-99
+    the_christmas=-121 the_church=-90 the_circular=-70 the_classroom=-174 the_claw=-70
+    the_cloakroom=-90 the_clock=-105 the_closed=-147 the_closest=-147 the_closet=-125
+    the_coat=-200 the_coats=-90 the_coffee=-187 the_cold=-121 the_column=-151 the_columns=-70
+    the_computer=-135 the_concierge=-85 the_concrete=-70 the_conference=-200
+    the_confessional=-110 the_conservatory=-50 the_contrary=200 the_control=62 the_copier=-195
+    the_corner=-200 the_corridor=-116 the_costumes=-70 the_couch=72 the_counter=-46
+    the_courtyard=-174 the_covered=-85 the_crib=-200 the_crowd=80 the_crypt=-99 the_crystal=-85
+    the_cubbies=-3 the_cubicles=-85 the_cue=-70 the_cupboard=80 the_current=200 the_curtain=-200
+    the_curtained=-85 the_curtains=80 the_curved=-147 the_customer=62 the_dance=-99 the_dark=-50
+    the_darkroom=-85 the_dartboard=-139 the_deck=-200 the_deep=-110 the_deer=-85 the_den=-200
+    the_description=200 the_desk=-200 the_desks=-130 the_dining=-69 the_dinosaur=-50
+    the_direction=10 the_directions=200 the_dishwasher=-200 the_display=-200 the_distance=-130
+    the_diving=-99 the_doctor's=21 the_dog=84 the_door=-144 the_doormat=-161 the_doors=-32
+    the_doorway=-200 the_double=-200 the_drawing=-70 the_dresser=-200 the_dressing=-185
+    the_drinking=-121 the_drinks=-85 the_drive=176 the_drum=-174 the_drums=-99 the_dryer=-155
+    the_easel=-130 the_east=96 the_edge=-200 the_elevator=-192 the_elevators=-168 the_end=-143
+    the_engine=-99 the_entrance=-189 the_entryway=-200 the_episode=199 the_er=-161
+    the_escalator=-200 the_exercise=-52 the_exit=-63 the_eye=3 the_family=-93 the_far=-200
+    the_farther=-99 the_fence=-110 the_fern=-99 the_ficus=-3 the_fifth=-85 the_filing=-130
+    the_final=125 the_finish=80 the_fire=-78 the_fireplace=-139 the_first=-55 the_fish=-200
+    the_fitting=-130 the_five=-130 the_floor=15 the_flower=-155 the_flowers=-99 the_folding=-147
+    the_following=200 the_font=-155 the_foosball=-70 the_foot=-200 the_footbridge=-99
+    the_footstool=-70 the_forklift=-21 the_fountain=-200 the_four=-198 the_fourth=-35
+    the_foyer=-171 the_framed=-70 the_freezer=-174 the_french=-200 the_fridge=41 the_front=-129
+    the_frosted=-110 the_fruit=-21 the_full=28 the_fume=-70 the_furniture=200 the_fuse=-3
+    the_gallery=-174 the_game=-96 the_gap=-130 the_garage=-86 the_garden=-4 the_gas=28
+    the_gate=-179 the_generator=-70 the_giant=-70 the_gift=-155 the_glass=-200 the_globe=-200
+    the_goal=200 the_gold=-139 the_grand=-85 the_grandfather=-200 the_grass=-82 the_gravel=-70
+    the_gray=-200 the_great=-50 the_green=-200 the_greenhouse=-29 the_grey=-200 the_grill=-200
+    the_ground=46 the_guest=-200 the_guitar=-85 the_gumball=-110 the_gym=-189 the_hair=-70
+    the_half=-155 the_hall=-160 the_hallway=-102 the_hammock=-85 the_hand=43 the_handrail=-85
+    the_hanging=-139 the_harp=-161 the_harpsichord=-99 the_hat=-34 the_hatch=-121 the_hay=-70
+    the_head=88 the_hearth=-70 the_heated=-99 the_heavy=-121 the_hedge=-121 the_high=-161
+    the_hmm=-85 the_hole=-70 the_hooks=-21 the_horse=-99 the_hospital=-8 the_hot=-200
+    the_hotel=-80 the_house=86 the_huge=-99 the_i=-70 the_ice=-195 the_indoor=-85
+    the_information=-110 the_inner=-99 the_inside=-85 the_instruction=200 the_instructions=66
+    the_intended=-70 the_iron=-185 the_ironing=-174 the_island=-168 the_jacuzzi=-180
+    the_judge's=-70 the_jukebox=-93 the_jury=-85 the_keeper's=-70 the_key=147 the_keyboard=-21
+    the_kiln=-85 the_king=62 the_kitchen=-33 the_kitchenette=-36 the_l=-70 the_lab=-70
+    the_ladder=-144 the_lady=-99 the_lake=-3 the_lamp=-79 the_landing=-170 the_landlord=199
+    the_lantern=-85 the_large=-200 the_largest=-99 the_last=18 the_laundry=-63 the_lawn=-110
+    the_leather=-200 the_left=-164 the_leftmost=-70 the_length=11 the_letter=113
+    the_library=-200 the_life=-121 the_lifeboat=-130 the_lifeboats=-85 the_lifebuoy=-70
+    the_lifeguard=-70 the_lift=-14 the_light=-130 the_lily=-85 the_line=-147 the_linen=-200
+    the_list=200 the_lit=-85 the_little=-200 the_living=28 the_loading=-82 the_lobby=-200
+    the_locker=-72 the_lockers=-200 the_loft=-73 the_long=-182 the_lounge=-32 the_loungers=-85
+    the_low=-130 the_lower=-161 the_lowest=-70 the_luggage=-70 the_lunch=-70 the_machine=-23
+    the_mail=-3 the_mailbox=-155 the_mailboxes=-147 the_main=-139 the_makeup=-70 the_man=46
+    the_mannequin=-110 the_mannequins=-121 the_map=160 the_marble=-200 the_massage=-119
+    the_master=-144 the_mat=-172 the_mayor=30 the_meeting=-8 the_metal=-200 the_meteorite=-70
+    the_mezzanine=-110 the_microfilm=-85 the_microphone=80 the_microwave=-200 the_middle=-96
+    the_milk=-70 the_mirror=-186 the_mirrored=-85 the_mirrors=-110 the_mop=-110 the_most=62
+    the_moving=-110 the_mud=-200 the_mudroom=-147 the_mummy=-85 the_museum=49 the_music=-155
+    the_narrow=-190 the_nave=-99 the_near=28 the_nearest=-38 the_net=53 the_new=200
+    the_newel=-70 the_newspaper=-110 the_newspapers=-85 the_next=-3 the_nightstand=-200
+    the_north=62 the_notice=-85 the_number=88 the_nurse's=-139 the_nursery=-200 the_nurses=-161
+    the_object=200 the_ocean=-70 the_office=-200 the_oh=-85 the_old=91 the_one=-20 the_ones=-8
+    the_only=-3 the_open=-200 the_opening=-190 the_opposite=123 the_orange=-198 the_order=200
+    the_organ=-174 the_other=22 the_others=170 the_ottoman=-200 the_outdoor=-85 the_outside=-147
+    the_oval=-155 the_oven=-63 the_owner=200 the_paint=-85 the_painting=-55 the_pallets=-85
+    the_pantry=-66 the_paper=-85 the_parking=-85 the_parlor=-3 the_parquet=-70 the_part=200
+    the_passage=-190 the_path=-1 the_patio=-200 the_pavilion=-70 the_pay=-85 the_penguin=-3
+    the_people=-34 the_person=200 the_pews=-180 the_phone=-90 the_photo=-130 the_photos=-99
+    the_piano=-74 the_picture=-12 the_pictures=-70 the_pillar=-200 the_pillars=-85
+    the_pinball=-85 the_ping=-121 the_pink=-165 the_place=165 the_plan=200 the_plant=-62
+    the_plants=62 the_plaque=-130 the_playroom=-139 the_plunge=-147 the_podium=-85 the_point=-70
+    the_police=186 the_pond=-85 the_pool=-200 the_popcorn=-147 the_porch=-200 the_portrait=-168
+    the_post=62 the_poster=34 the_potted=-200 the_pottery=-99 the_pretty=-70 the_previous=200
+    the_printer=-180 the_projector=-21 the_promenade=-85 the_pulpit=-151 the_pump=-85
+    the_puppet=-85 the_purple=-200 the_rack=-155 the_racks=-85 the_radiator=-106
+    the_radiators=-85 the_rail=-147 the_railing=-200 the_railings=-70 the_rain=-50 the_ramp=-200
+    the_reading=-72 the_real=78 the_rear=-121 the_reception=-200 the_record=-110 the_red=-200
+    the_refrigerator=-200 the_remainder=195 the_remaining=100 the_rest=200 the_restaurant=-110
+    the_restrooms=-85 the_returns=-3 the_reverse=200 the_revolving=-190 the_right=-172
+    the_robot=27 the_rocking=-195 the_rolled=-70 the_roller=-70 the_roof=104 the_room=-106
+    the_rooms=199 the_rope=-185 the_round=-200 the_route=200 the_row=-200 the_rowing=-121
+    the_rows=-99 the_rubber=-70 the_rug=-141 the_rules=170 the_run=170 the_safety=196
+    the_salad=-99 the_salon=-70 the_same=108 the_sandbox=-70 the_sauna=-200 the_scale=-190
+    the_scales=-70 the_school=-70 the_science=-3 the_scoreboard=-70 the_screen=-185
+    the_scullery=-110 the_sculpture=-171 the_sea=156 the_seats=-70 the_second=-171
+    the_security=-161 the_sentence=200 the_servants=-70 the_server=80 the_service=28
+    the_set=-174 the_sewing=-161 the_shed=-85 the_shelf=-200 the_shelves=-155 the_shelving=-70
+    the_shiny=-110 the_ship=-3 the_shoe=-200 the_shoes=-99 the_shop=15 the_shopping=-85
+    the_short=-24 the_shower=-107 the_showers=-147 the_shredder=-70 the_side=-200
+    the_sideboard=-98 the_sign=-30 the_sill=-50 the_silver=-70 the_sink=-181 the_sinks=-147
+    the_site=116 the_sitting=-110 the_six=-99 the_sixth=-110 the_skeleton=-85 the_skylight=-113
+    the_sleeping=-85 the_sliding=-200 the_small=-200 the_snack=-85 the_sofa=33 the_sound=-110
+    the_spa=-149 the_space=-70 the_spare=-70 the_speaker=62 the_spiral=-200 the_spot=125
+    the_square=-13 the_stack=-139 the_stacked=-99 the_staff=62 the_stage=-200 the_stained=-147
+    the_stair=-70 the_staircase=-74 the_stairs=-92 the_stairway=-200 the_stairwell=-147
+    the_stand=-70 the_star=-99 the_start=200 the_station=-85 the_statue=-132 the_steam=-168
+    the_steel=-110 the_steep=-85 the_step=62 the_stepping=-85 the_steps=-97 the_stone=-200
+    the_stool=-200 the_stools=-85 the_stop=100 the_store=-70 the_stove=-200 the_street=-8
+    the_striped=-200 the_studio=-72 the_study=-200 the_stuffed=-70 the_suit=-130 the_sun=-113
+    the_sundial=-70 the_sunken=-99 the_sunroom=-61 the_supervisor=200 the_swimming=-110
+    the_swing=-200 the_swinging=-147 the_swings=-99 the_t=-121 the_table=-4 the_tables=-110
+    the_tall=-200 the_tan=-200 the_tape=-99 the_tapestry=-177 the_target=136 the_task=199
+    the_tasting=-110 the_tea=-147 the_teacher's=-130 the_telephone=-121 the_telescope=-147
+    the_television=-98 the_tent=-130 the_terrace=-174 the_text=200 the_the=-200 the_theater=-200
+    the_thermostat=-70 the_thing=86 the_third=-180 the_three=-200 the_threshold=-200
+    the_throne=-161 the_ticket=-200 the_tile=-121 the_tiled=-70 the_tiles=3 the_till=-99
+    the_time=126 the_tiny=-99 the_toaster=30 the_toilet=25 the_toilets=-70 the_tomatoes=-85
+    the_top=-200 the_tour=136 the_towel=-200 the_towels=15 the_tower=-62 the_toy=-147
+    the_tracks=-85 the_train=11 the_trash=-200 the_treadmill=-200 the_treadmills=-110
+    the_tree=-21 the_trip=200 the_trophies=-70 the_trophy=-155 the_trunk=-110 the_tub=-200
+    the_turns=199 the_turnstile=-155 the_turnstiles=-85 the_tv=-200 the_two=-137
+    the_typewriter=-70 the_um=-200 the_umbrella=-200 the_unit=200 the_update=199 the_upper=80
+    the_uppermost=-85 the_upstairs=-3 the_urn=-85 the_user=200 the_user's=200 the_utility=-200
+    the_vacuum=-85 the_vanity=-190 the_vase=-87 the_vault=-3 the_velvet=-139 the_vending=-175
+    the_very=-55 the_vestibule=-85 the_vestry=-99 the_volcano=-70 the_waiting=-193 the_walk=106
+    the_wall=-61 the_walls=80 the_ward=43 the_wardrobe=-200 the_washer=-200 the_washing=-183
+    the_water=-200 the_way=-33 the_wedding=30 the_weight=-110 the_well=-121 the_wet=-70
+    the_whale=-121 the_wheel=-21 the_wheelbarrow=-85 the_wheelchair=-85 the_wheelchairs=-85
+    the_while=126 the_white=-200 the_whiteboard=-200 the_whole=136 the_wicker=-195 the_wide=-85
+    the_wigs=-85 the_window=-98 the_windows=-91 the_windowsill=-70 the_wine=-167 the_wobbly=-99
+    the_woman=43 the_wood=-110 the_wooden=-200 the_word=200 the_words=200 the_workbench=-161
+    the_workshop=-21 the_wrong=200 the_yard=3 the_yellow=-200 the_yoga=-70 theater=-200
+    theater_room=-200 theater_with=-70 theatre=-21 their=144 theirs=49 them=-21 them_=-17
+    them_all=62 them_and=-175 them_in=200 them_on=-62 them_to=-130 themselves=-70 then=-200
+    then_=106 then_a=-190 then_after=-139 then_another=-99 then_as=-126 then_at=-200
+    then_bear=-116 then_climb=-151 then_come=-161 then_continue=-177 then_cross=-200
+    then_descend=-171 then_down=-110 then_enter=-195 then_er=-121 then_follow=-200
+    then_forward=-70 then_go=-200 then_hang=-147 then_head=-200 then_hmm=-70 then_i=-72
+    then_i'd=-3 then_immediately=-99 then_in=-21 then_it=-85 then_it's=-200 then_just=-70
+    then_keep=-200 then_left=-200 then_look=-70 then_make=-126 then_move=-171 then_once=-171
+    then_out=-147 then_pass=-200 then_past=-200 then_proceed=-200 then_right=-185 then_rite=-70
+    then_slightly=-70 then_stand=-110 then_step=-188 then_stop=-200 then_straight=-99
+    then_take=-200 then_that=-139 then_the=-118 then_there's=-185 then_through=-121 then_to=-139
+    then_turn=-200 then_up=-99 then_veer=-85 then_wait=-200 then_walk=-200 then_well=-70
+    then_when=-168 then_you=-200 then_you'd=-110 then_you'll=-110 then_you're=-82 thence=-29
+    theory=113 therapist=113 there=-58 there'll=-72 there'll_be=-72 there's=-64 there's_a=-123
+    there's_an=-50 there's_no=144 there's_only=-17 there's_the=-141 there_=-76 there_and=-111
+    there_are=-68 there_at=-70 there_but=-99 there_for=-17 there_go=-121 there_if=-70
+    there_is=-27 there_isn't=118 there_it=-139 there_it's=-70 there_kindly=-70 there_make=-70
+    there_might=-70 there_one=-110 there_should=-168 there_so=-110 there_take=-85 there_the=62
+    there_to=43 there_turn=-99 there_was=132 there_were=118 there_will=-200 there_with=-36
+    there_without=-70 there_you=-85 thereafter=-155 thereby=-29 therefore=80 thereof=-70
+    theres=-34 theres_a=-17 thereupon=-29 thermal=113 thermostat=-70 thermostat_=-70 these=165
+    these_commands=199 these_directions=200 they=140 they'll=49 they're=-65 they're_both=-70
+    they've=-21 they_are=193 they_go=-85 they_have=-3 they_say=195 they_tell=176 they_turn=-99
+    they_were=200 theyre=-70 thick=-29 thin=-50 thing=57 thing's=49 thing_=88 thing_is=-42
+    thing_number=-70 thing_to=-90 thing_with=95 thing_you=78 things=183 things_=147 think=39
+    think_=82 think_and=-99 think_it=-130 think_it's=-17 think_of=193 think_that's=-85
+    think_the=53 think_um=-85 think_you=68 thinking=175 thinking_about=161 thinks=113 third=-136
+    third_=-42 third_column=-85 third_desk=-70 third_door=-100 third_right=-92 third_row=-130
+    third_step=-85 third_window=-110 thirdly=-29 thirteen=113 thirtieth=113 thirty=12 this=200
+    this_=200 this_at=134 this_building=200 this_corridor=-85 this_down=53 this_floor=195
+    this_home=136 this_house=200 this_is=200 this_line=170 this_message=200 this_moment=136
+    this_morning=147 this_one=68 this_place=118 this_room=34 this_route=200 this_run=183
+    this_says=156 this_sentence=200 this_step=80 this_task=200 this_text=200 tho=-29 thorough=49
+    thoroughly=49 those=2 those_=-110 those_and=-85 those_are=-70 those_two=-85 thou=113
+    though=56 thought=77 thoughts=113 thread=113 threaded=-29 three=-52 three_=-110
+    three_and=-70 three_doors=-174 three_floors=-3 three_four=62 three_in=103 three_is=-70
+    three_little=-70 three_o'clock=-70 three_stairs=-126 three_stairway=-110 three_steps=-200
+    three_times=200 threshold=-200 threshold_and=-200 throne=-67 throne_=-99 throne_and=15
+    through=-192 through_=-200 through_90=-70 through_a=17 through_and=-26 through_both=-70
+    through_door=-70 through_it=-134 through_its=-70 through_that=-4 through_the=-200
+    through_them=-70 through_there=-85 through_those=-70 through_two=62 throughout=84 throw=200
+    throwing=49 thrown=113 throws=-29 thru=-195 thru_=-70 thru_the=-155 thumbs=-29 thumping=-29
+    thunderstorm=113 thursday=113 thx=-3 thyself=113 tic=113 tick=-29 ticked=113 ticket=-66
+    ticket_booth=-110 ticket_desk=-85 ticket_machine=-110 tickle=-29 ticks=-29 tiddles=49
+    tide=113 tidy=113 tidying=49 tie=132 tied=-51 tiger=-3 tight=-85 til=-110 tile=-195
+    tiled=-130 tiles=19 tiles_=-110 till=-110 till_it=-70 till_the=-190 till_there's=-70
+    till_you=-200 time=178 time_=177 time_and=-85 time_i=97 time_you=200 timeout=113 timer=-29
+    times=187 times_=200 times_before=136 tin=199 tinned=-29 tins=-29 tinsel=-85 tiny=-168
+    tiny_bit=-70 tiny_chairs=-70 tips=113 tiptoe=-70 tiptoes=49 tired=147 titchy=-29 title=165
+    tl=113 to=-21 to_=200 to_a=-113 to_advance=-70 to_an=-168 to_and=-121 to_another=62
+    to_approach=136 to_arrive=-85 to_ascend=-121 to_be=133 to_begin=-62 to_blue=-3 to_carry=142
+    to_come=113 to_descend=136 to_disregard=125 to_do=78 to_drop=81 to_end=180 to_enter=-17
+    to_exit=-70 to_face=-30 to_find=60 to_follow=129 to_gate=-85 to_get=-30 to_go=74 to_have=96
+    to_his=-70 to_it=-138 to_its=-28 to_keep=-99 to_leave=193 to_look=-61 to_make=125 to_me=200
+    to_move=136 to_my=147 to_one=15 to_open=3 to_pass=-155 to_proceed=-155 to_put=-36
+    to_reach=43 to_reaching=-70 to_read=154 to_remain=43 to_rest=-121 to_return=118 to_row=-70
+    to_say=-5 to_see=111 to_sit=96 to_stand=-121 to_stay=199 to_stop=13 to_take=53 to_tell=200
+    to_that=-110 to_the=-125 to_them=15 to_think=136 to_this=200 to_tile=-85 to_turn=-63
+    to_undo=66 to_wait=15 to_walk=123 to_where=89 to_which=136 to_whom=103 to_write=106
+    to_you=200 to_your=-63 to_zero=136 toast=49 toaster=30 tobacco=-29 tobacconist=-29 tock=-29
+    today=200 today's=11 today_=200 toddle=-51 toddler=-29 todo=113 toe=84 toes=-51 together=62
+    together_=53 toilet=-1 toilet_=50 toilet_ahead=-92 toilet_and=-200 toilet_is=62 toilets=43
+    tokens=113 told=200 told_me=200 told_to=200 told_you=196 tolerance=-29 tomatoes=-85
+    tomatoes_and=-85 tomb=-51 tombs=-51 tomorrow=199 tones=49 tonight=96 tonight_=147 tons=113
+    too=114 too_=130 too_and=-70 too_far=-66 took=53 tool=43 tool_bench=-70 toolbox=-29 tools=-3
+    top=-167 top_=-144 top_and=-15 top_by=-70 top_floor=-70 top_go=-121 top_of=-200
+    top_stair=-70 top_take=-85 top_there=-70 top_turn=-121 top_you=-70 top_you'll=-70
+    tornado=113 toss=113 touch=-9 touch_the=15 touchdown=-29 touched=-29 touches=-29 touching=43
+    tour=125 toward=-147 toward_the=-200 towards=-200 towards_it=-85 towards_the=-200 towel=-200
+    towel_=-99 towel_rack=-200 towels=-48 towels_=-113 tower=-98 tower_=-70 town=113 toxic=113
+    toy=-185 toy_chest=-130 toys=-85 trace=113 track=-70 track's=49 tracking=113 tracks=-85
+    tractor=33 tractor_=43 tractors=-29 trade=113 traded=113 traffic=200 trailer=-70 train=22
+    train_goes=62 train_set=-99 trained=113 training=113 trains=-51 trajectory=-29
+    trampoline=-51 transfer=-29 transferred=49 transition=-29 translate=136 translated=113
+    translating=113 translation=-51 translator=113 transport=113 trap=200 trap_=200 trapdoor=-51
+    trapped=165 trash=-200 trash_can=-200 travel=154 travels=-29 traverse=-99 traverse_the=-85
+    traversed=-29 tray=62 tread=-29 treadmill=-200 treadmill_=-200 treadmill_and=-130
+    treadmill_turn=-92 treadmills=-139 treadmills_=-70 treads=-85 treasure=53 treasure's=49
+    treat=200 treat_all=200 treat_the=200 treatment=-99 tree=-79 tree_=-67 tree_and=-85
+    tree_in=-3 treehouse=-51 trees=-85 trespassing=113 trestle=-51 tried=81 trigger=113 trip=200
+    tripod=-3 tripod_=-3 trips=49 trolley=-50 trolley_=-70 trolleys=-51 trophies=-99
+    trophies_=-70 trophy=-119 trophy_cabinet=-85 trophy_case=-90 trot=-29 trotting=-29
+    trouble=20 trough=-99 trucks=-29 true=136 truly=113 trumpet=113 trun=-110 trunk=3 trunk_=62
+    trust=200 trust_me=176 trusted=165 truth=113 try=62 trying=81 ts=113 tsunami=113 tub=-200
+    tub_=-200 tub_and=-147 tub_to=-78 tucked=-29 tuesday=186 tuesdays=49 tulips=-21 tumble=-51
+    tummy=-29 tummy's=49 tune=-51 tuner=-29 tunnel=20 tunr=113 turn=-130 turn_=103 turn_180=-110
+    turn_90=-200 turn_about=-70 turn_and=55 turn_around=-128 turn_at=-130 turn_away=88
+    turn_back=189 turn_go=62 turn_in=28 turn_into=-110 turn_is=114 turn_left=-200 turn_of=-85
+    turn_off=113 turn_on=136 turn_right=-200 turn_round=-0 turn_sharp=-185 turn_sharply=-70
+    turn_slightly=-200 turn_so=-99 turn_the=200 turn_to=-200 turn_toward=-70 turn_until=-99
+    turn_your=-200 turned=57 turned_into=62 turned_left=53 turned_right=80 turning=72
+    turning_left=-85 turning_on=94 turns=187 turns_=175 turns_right=-70 turnstile=-174
+    turnstile_=-110 turnstile_and=-85 turnstiles=-85 tutor=49 tv=-200 tv_=-200 tv_and=-161
+    tv_on=-70 tvs=-29 twang=-29 twelve=15 twelve_=-70 twenty=53 twice=148 twice_=125
+    twice_without=116 twin=-3 twins=49 twirl=178 twirl_in=134 twist=-29 twit=-29 two=-60
+    two's=-29 two_=69 two_and=-121 two_armchairs=-99 two_beds=-70 two_bookshelves=-70
+    two_chairs=62 two_closed=-85 two_computer=-85 two_couches=-85 two_doors=-73 two_doorways=-70
+    two_flights=-125 two_floors=-121 two_hallways=-99 two_leather=-85 two_lefts=-3 two_long=-85
+    two_of=-3 two_paintings=-85 two_pillars=-85 two_rooms=-121 two_rows=-110 two_sets=-99
+    two_sinks=-99 two_small=-70 two_sofas=-70 two_staircases=-21 two_steps=-56 two_stone=-70
+    two_three=28 two_white=-70 txt=49 ty=-29 type=62 typed=165 typewriter=-85 typewriter_=-70
+    typing=103 typo=165 tyre=113 u=13 u_=-99 u_turn=-174 ugh=106 uh=3 uiop=113 ull=-70 um=-144
+    um_at=-70 um_i=-72 um_it's=-3 um_right=-70 um_the=-195 um_with=-70 um_you=-139 um_you'd=-85
+    umbrella=-192 umbrella_=-36 umbrella_stand=-200 unavailable=113 unchanged=113 uncle=147
+    under=-76 under_a=-70 under_it=-147 under_no=136 under_the=-145 undergoing=-29 underneath=-8
+    underneath_the=-70 understand=157 understood=199 understood_as=199 understudy=-29
+    undertaking=49 undo=200 undo_what=174 unfamiliar=49 unicorn=-85 uniform=-29 unit=200
+    unit_is=199 unit_shall=136 units=159 universe=113 unknown=113 unlawful=113 unless=200
+    unless_you=199 unlike=49 unlit=-29 unplug=113 unplugged=113 unreachable=113 unsafe=113
+    unspecified=-29 unsubscribe=113 until=-52 until_further=199 until_i=103 until_it=-174
+    until_the=-19 until_there's=-85 until_you=-166 until_you're=-147 until_you've=43 unusual=-29
+    up=-80 up_=12 up_2=-78 up_a=-110 up_against=-70 up_all=-174 up_and=-6 up_at=28 up_both=-62
+    up_by=-85 up_five=-85 up_four=-85 up_from=-70 up_in=49 up_it=-121 up_on=-85 up_one=-81
+    up_or=28 up_right=-130 up_the=-194 up_them=-168 up_there=116 up_those=-85 up_three=-168
+    up_to=-87 up_two=-151 up_until=-110 up_up=-70 up_with=15 up_you=-70 up_your=62 update=200
+    updated=113 upfield=-29 upgraded=113 upholstered=-51 upholstery=-29 upon=-163 upon_a=62
+    upon_arriving=-70 upon_the=-190 upon_your=-99 upper=66 uppermost=-85 ups=-51 upside=170
+    upside_down=170 upstairs=85 upstairs_=100 upstairs_in=-85 upward=-21 upwards=-51 ur=20
+    ur_left=-110 ur_right=-99 urer=113 urgent=132 urgently=113 urn=-130 urn_=-99 urs=-29 us=156
+    us_=43 us_a=-70 use=74 use_it=62 use_the=14 use_to=-21 used=105 used_=33 used_to=100
+    useless=113 user=200 user's=200 uses=165 using=-124 using_the=-200 usual=113 usually=20
+    utility=-200 utility_room=-200 utilized=-51 utmost=-29 vacated=-29 vacuum=29
+    vacuum_cleaner=33 vague=113 valid=199 validity=113 van=-4 van_and=-70 vanity=-200
+    vanity_=-85 vanity_and=-151 vanitys=-41 various=-29 vase=-121 vase_=-200 vase_of=-70
+    vase_on=-116 vases=-130 vault=-4 vault_=-3 vaulting=-51 vector=-29 veer=-200 veer_a=-85
+    veer_left=-174 veer_right=-151 veer_slightly=-85 veering=-51 vegetables=-29 vehicle=20
+    velocity=-29 velodrome=49 velvet=-139 velvet_rope=-99 vending=-182 vending_machine=-200
+    vending_machines=-62 veranda=-70 verb=199 verification=-29 verify=-29 version=200
+    versions=113 vertical=-51 very=20 very_first=28 very_last=-70 very_sharp=-70 vessel=-29
+    vessel's=-29 vestibule=-85 vestry=-99 vests=-29 vetoed=113 via=-161 via_the=-130 vibe=-29
+    vicinity=-29 vicious=-29 view=-174 view_=-85 viewing=-51 viewpoint=113 villain=113 vine=-3
+    vineyard=-29 violin=113 vip=49 virus=113 vise=-51 visibility=49 visible=62 vision=113
+    visit=88 visit_the=136 visitor=-51 visitors=46 visually=-29 voice=176 void=200 void_=200
+    void_so=66 voids=113 volcano=-70 voltage=113 volunteer=49 volunteered=49 voted=113
+    votive=-51 vowels=113 w=-27 w_the=-50 waffle=-51 waffles=49 waist=-29 wait=-106 wait_=-104
+    wait_at=-200 wait_beside=-155 wait_by=-162 wait_for=147 wait_here=51 wait_in=-200
+    wait_just=-200 wait_near=-200 wait_next=-200 wait_on=-121 wait_outside=31 wait_there=-200
+    wait_under=-130 wait_until=136 waited=-70 waiters=-29 waiting=-16 waiting_=43
+    waiting_area=-180 waiting_for=62 waiting_room=-121 waits=-51 wake=84 wakes=113 wakey=49
+    wales=49 walk=-166 walk_=200 walk_3=-85 walk_a=-170 walk_across=-200 walk_ahead=-130
+    walk_all=-139 walk_along=-200 walk_alongside=-200 walk_and=170 walk_around=-200
+    walk_away=-112 walk_back=129 walk_behind=-110 walk_beside=-70 walk_between=-200 walk_by=-200
+    walk_down=-200 walk_forward=-200 walk_from=-139 walk_in=-49 walk_inside=-200 walk_into=-132
+    walk_is=136 walk_on=-200 walk_out=-200 walk_over=-8 walk_past=-200 walk_round=-85
+    walk_straight=-200 walk_the=-20 walk_through=-200 walk_to=-165 walk_toward=-139
+    walk_towards=-166 walk_under=-200 walk_until=-200 walk_up=-200 walk_with=-70 walked=-59
+    walked_along=-70 walker=113 walking=3 walking_=66 walking_past=-200 walks=125 walkway=-200
+    walkway_to=-110 walkway_with=-70 wall=-54 wall_=-133 wall_and=-89 wall_at=103 wall_ends=-70
+    wall_is=-70 wall_of=-26 wall_on=-87 wall_past=-110 wall_so=-70 wall_that=113 wall_that's=-85
+    wall_to=26 wall_until=-99 wall_with=-155 walled=-29 wallpaper=-99 wallpaper_=-70 walls=51
+    walls_=25 walls_and=3 wally=49 walnut=84 wander=80 want=5 want_=-72 want_a=62 want_is=-85
+    want_the=-174 want_to=29 want_you=45 wanted=97 wanted_to=62 wanting=20 wants=200
+    wants_you=200 ward=-17 wardrobe=-153 wardrobe_=-193 wardrobe_and=-116 warehouse=62 warm=21
+    warmed=49 warmer=-51 warn=103 warning=199 warranty=165 was=200 was_=-70 was_a=140 was_in=106
+    was_meant=147 was_on=106 was_the=200 was_thinking=147 was_written=200 wash=21
+    wash_station=-70 washbasin=-29 washer=-200 washer_=-188 washer_and=-116 washing=-195
+    washing_machine=-186 washing_machines=-78 washstand=-51 washtub=-51 wasn't=53 wasps=113
+    wasteful=-29 wat=113 watch=-8 watches=-29 watching=80 watchtower=49 water=-132 water's=-51
+    water_cooler=-200 water_fountain=-139 water_heater=-155 water_on=-99 water_tank=-70
+    water_trough=-85 waterfall=-85 wave=-121 waved=113 waving=53 waxed=-29 way=24 way_=130
+    way_across=-70 way_along=-110 way_and=113 way_around=-99 way_down=-195 way_into=-70
+    way_is=117 way_of=-132 way_out=-121 way_over=-70 way_round=190 way_through=15 way_to=-99
+    way_up=-110 way_you=78 waypoint=80 waypoints=-29 ways=-51 we=138 we'd=84 we'll=26 we're=78
+    we're_going=-29 we're_not=62 we've=106 we've_got=12 we've_had=118 we_=53 we_are=200
+    we_call=170 we_can=43 we_go=-21 we_had=109 we_have=121 weak=49 weapons=-3 wear=113
+    wearing=118 weather=147 weather's=49 weave=-29 weaving=-29 web=113 wedding=75 wedge=-29
+    wednesday=113 wee=-3 week=186 week's=132 week_=176 weekend=113 weekly=113 weeks=132
+    weigh=113 weighbridge=-51 weighing=62 weight=-130 weight_bench=-70 weight_rack=-70
+    weights=-99 welcome=50 welcome_to=53 welcoming=-29 well=50 well_=57 well_and=-3 well_i=-50
+    wellies=-51 wen=-29 went=57 wept=49 were=200 were_mirrored=142 were_told=200 weren't=-29
+    west=132 western=-29 westward=-29 wet=44 whale=-147 whale_skeleton=-99 what=200 what's=132
+    what_=-3 what_a=183 what_i=119 what_is=156 what_it=157 what_the=200 what_they=113
+    what_this=156 what_was=113 what_you=139 what_you're=62 whatever=200 whatever_is=200
+    whatever_the=200 whatever_you=113 wheee=-29 wheel=32 wheel_=15 wheelbarrow=-85
+    wheelchair=-99 wheelchairs=-98 wheelhouse=-51 wheels=168 wheels_=100 wheels_are=199 when=-35
+    when_i=190 when_it=113 when_the=22 when_there's=-70 when_they=199 when_you=-130
+    when_you're=-156 when_you've=-26 when_your=-3 whenever=188 whenever_you=200 where=50
+    where_a=66 where_i=103 where_it=127 where_one=-36 where_people=-99 where_the=-73
+    where_there's=-70 where_they=125 where_u=136 where_we're=-3 where_you=95 where_you'll=43
+    where_your=-3 whereafter=-29 wherein=-29 whereupon=-110 whereupon_you=-70 wherever=200
+    wherever_it=200 wherever_you=147 whether=147 which=-17 which_are=-85 which_has=-8 which_i=91
+    which_is=-178 which_one=-130 which_point=-70 which_the=-121 which_there=-85 which_was=118
+    which_you=10 whichever=-99 while=197 while_=116 whirl=113 whiskers=113 whisky=-29 whisper=49
+    whispered=113 whistle=84 white=-200 white_door=-161 white_doors=-36 white_tiles=-110
+    white_towels=-85 whiteboard=-200 whiteboard_=-161 whiteboard_turn=-70 whizz=-51 who=200
+    who's=132 whoa=-51 whoever=200 whole=121 whole_time=62 whole_way=33 whom=103 whom_it=103
+    whoopsie=-29 whopping=-29 whose=62 why=190 wicker=-200 wicker_bench=-78 wicker_chair=-85
+    wide=-121 wider=-110 width=84 wife=49 wifi=113 wigs=-85 wild=113 will=-30 will_be=-58
+    will_find=62 will_pass=-85 will_see=-200 willow=-51 win=80 winch=-51 wind=62 wind_chimes=-3
+    winders=-29 winding=-51 window=-98 window's=-29 window_=-139 window_and=-71 window_at=-121
+    window_in=-34 window_is=-17 window_on=-105 window_seat=-131 window_side=-121 window_so=-78
+    window_that=-70 window_then=-85 window_turn=-126 window_with=-121 window_you=136
+    windows=-144 windows_=-200 windows_and=-99 windows_on=-139 windows_to=-70 windowsill=-70
+    wine=-165 wine_bar=-3 wine_barrel=-85 wine_bottles=-85 wine_cellar=-77 wine_fridge=-85
+    wine_rack=-200 winery=-51 wing=135 wink=-51 winner=-51 winter=-51 wipe=165 wiped=113
+    wire=-51 wires=113 wise=113 wish=199 wishes=113 wishing=-51 with=-67 with_a=-103
+    with_all=-121 with_an=11 with_feet=-21 with_flowers=-85 with_four=43 with_full=116
+    with_glass=-121 with_green=-99 with_immediate=199 with_it=114 with_its=62 with_lots=-110
+    with_me=172 with_no=28 with_one=-3 with_regard=-70 with_round=-85 with_stars=-99
+    with_the=-94 with_three=-110 with_tinsel=-85 with_two=-195 with_windows=-85 with_you=77
+    with_your=-59 withdraw=-29 withdrawing=-29 withdrawn=200 withdrawn_this=81 within=31
+    within_the=43 without=20 without_a=100 without_any=62 without_entering=-147
+    without_going=-190 without_moving=116 without_stopping=62 witness=-51 wizard=113 wknd=49
+    wlak=-110 wobbly=-121 wobbly_leg=-70 woke=113 wolf=113 woman=15 women=-29 won=156 won't=180
+    won_the=200 wonder=-29 wonderful=20 wood=-48 wood_=80 wood_and=62 wood_floor=-70
+    wood_stove=-99 wooden=-200 wooden_bench=-121 wooden_bridge=-70 wooden_deck=-70
+    wooden_door=-200 wooden_floor=-168 wooden_gate=-99 wooden_one=-70 wooden_pews=-85
+    wooden_stairs=-36 wooden_steps=-110 wooden_table=-110 woof=49 word=200 word_=199 words=200
+    words_in=200 work=183 workbench=-168 workbench_=-121 worked=81 workers=113 working=62
+    workshop=-36 world=176 worn=-70 worry=30 worth=132 would=85 would_ask=-70 would_be=45
+    would_have=144 would_like=-21 would_you=-21 wouldn't=135 wow=12 wreath=-110 wreath_on=-70
+    wrestler=-29 wristwatch=20 write=200 write_it=106 writer=199 writing=113 written=200
+    written_=200 written_next=134 wrong=200 wrong_=43 wrong_way=200 wrongly=113 wrote=200
+    wrote_this=199 wrought=-51 x=200 x_ray=-3 xc=113 xd=113 xff=113 xx=-51 xylophone=-51 yard=54
+    yard_=28 yaw=62 ye=113 yea=-29 yeah=113 year=144 years=135 years_=103 yell=-29 yellow=-112
+    yellow_blanket=-36 yellow_door=-50 yellow_line=-130 yellow_lines=-70 yellow_lockers=-85
+    yellows=49 yep=-29 yes=-39 yes_i=-3 yes_left=-70 yesterday=186 yesterday's=132 yet=56
+    yet_=30 yew=-29 yo=84 yoga=-110 yoga_mats=-85 yonder=-29 you=39 you'd=-73 you'd_be=-90
+    you'd_go=-131 you'd_have=62 you'd_stop=-147 you'd_turn=-110 you'd_um=-70 you'd_you'd=-70
+    you'll=-91 you'll_be=-60 you'll_come=-161 you'll_find=-61 you'll_go=-85 you'll_know=-110
+    you'll_notice=-70 you'll_pass=-147 you'll_see=-200 you'll_spot=-70 you'll_stop=-70
+    you'll_want=-161 you're=20 you're_a=200 you're_at=-131 you're_done=-147 you're_facing=-50
+    you're_going=-146 you're_in=-56 you're_inside=-3 you're_looking=-147 you're_not=94
+    you're_now=-70 you're_off=-3 you're_on=-85 you're_out=-99 you're_outside=-85
+    you're_standing=10 you're_the=195 you're_there=-155 you're_to=-3 you've=112 you've_been=200
+    you've_gone=1 you've_got=-30 you've_passed=-70 you_=61 you_a=191 you_and=-15 you_are=45
+    you_arrive=-85 you_at=8 you_be=80 you_began=193 you_begin=54 you_bump=-99 you_came=40
+    you_can=0 you_can't=107 you_come=-156 you_could=56 you_did=200 you_do=151 you_don't=85
+    you_end=66 you_enter=-200 you_exit=-70 you_feel=176 you_find=-130 you_for=147 you_from=28
+    you_get=-193 you_go=-166 you_have=116 you_hear=200 you_hit=28 you_hold=62 you_i=-21
+    you_if=170 you_in=147 you_into=43 you_is=114 you_just=19 you_keep=80 you_know=130
+    you_leave=62 you_like=185 you_look=66 you_lose=200 you_make=62 you_may=106 you_might=-62
+    you_move=199 you_must=200 you_need=-2 you_no=170 you_not=-85 you_on=118 you_ought=136
+    you_out=43 you_pass=-15 you_please=15 you_proceed=-139 you_push=-70 you_reach=-200
+    you_read=200 you_remember=53 you_say=103 you_see=-27 you_shall=-8 you_should=-11 you_so=154
+    you_stand=97 you_start=28 you_stay=62 you_stop=-184 you_take=-136 you_that=200 you_the=200
+    you_then=-116 you_think=200 you_to=144 you_turn=-52 you_um=-99 you_undo=66 you_up=95
+    you_wait=-110 you_walk=-72 you_want=-200 you_went=15 you_were=200 you_will=-190
+    you_won't=103 you_would=34 you_you=-70 young=113 your=27 your_attention=-70 your_back=-194
+    your_destination=-110 your_developer=161 your_eyes=186 your_feet=95 your_final=43
+    your_first=170 your_head=129 your_job=136 your_journey=15 your_left=-179 your_memory=200
+    your_mission=62 your_name=62 your_operator=172 your_orders=178 your_own=200 your_path=62
+    your_place=95 your_position=28 your_present=199 your_right=-200 your_route=147
+    your_second=-70 your_steps=44 your_stop=-70 your_stopping=-110 your_target=80 your_walk=199
+    your_way=-48 your_wheels=200 youre=-70 yours=91 yourself=44 yourself_=170 yourself_and=28
+    yourself_at=-85 yourself_in=-110 youth=49 youve=49 ystrday=49 yummy=-29 z=113 zeno=113
+    zero=167 zero_=62 zone=-121 zoo=81 zxcv=113
     """
 )
 WORDS = {term: int(odds) / 100 for term, odds in (w.split("=") for w in _WORDS)}
