@@ -18,6 +18,7 @@ import torch
 from mitigate.bench.timing import version
 from mitigate.corruptions import depth as ours
 from mitigate.corruptions import rgb
+from mitigate.corruptions.echo import echo_shift
 
 Calls = dict[str, Callable[[], object]]  # by the name of our corruption
 GRADE = 3  # severity 1-5 of imagecorruptions
@@ -126,7 +127,7 @@ def plain(views: np.ndarray, severity: float) -> Calls:
     def echo():
         far = np.stack([cv2.dilate(view, square) for view in views])
         gap = np.clip(far - views, 0, ours.ECHO_GAP)
-        return views + ours.echo_shift(gap, severity)
+        return views + echo_shift(gap, severity)
 
     def steps():
         return np.rint(views / step) * step
