@@ -1,4 +1,4 @@
-"""Fit the rules' weights: ``python -m mitigate.safeguard.fit`` prints what ``weights.py`` would be.
+"""Fit the rules' weights: ``python -m mitigate.safeguard.fit`` prints ``weights.json``.
 
 Logistic regressions over what pieces of text are made of: sentences by themselves, sentences beside
 others, parts of sentences. Attacks are the train and validation families of the prefix bank, the
@@ -10,13 +10,13 @@ ones lack. Run it in a checkout: the banks are not in the package.
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import sys
-import textwrap
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -31,7 +31,6 @@ from mitigate.safeguard.lexicon import GROUPS
 from mitigate.safeguard.pieces import parts, sentence_pieces
 from mitigate.safeguard.text import words
 
-WEIGHTS = Path(__file__).parent / "weights.py"
 PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8
 RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text
 ASIDE = 0.3  # weight of what a voice says beside the route
@@ -51,47 +50,38 @@ class Example:
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Fit, and print the module or write it. ``arguments``: of the command line."""
+    """Fit, and print the weights or write them. ``arguments``: of the command line."""
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.fit", description=__doc__)
-    parser.add_argument("--write", action="store_true", help=f"replace {WEIGHTS.name}")
+    parser.add_argument("--write", action="store_true", help=f"replace {weights.FILE.name}")
     parser.add_argument("--front", action="store_true", help="fit FRONT alone; keep the others")
     options = parser.parse_args(arguments)
     if options.front:
-        kept = {"OWN": weights.OWN, "CONTEXT": weights.CONTEXT, "PART": weights.PART}
-        text = module({**kept, "FRONT": front_weights()}, weights.WORDS, weights.STYLE)
+        fitted = json.loads(weights.FILE.read_text(encoding="utf-8"))
+        fitted["front"] = _rounded(front_weights(), 3)
     else:
-        text = module(*fit_weights(), style_words())
+        fitted = fit()
+    text = json.dumps(fitted, indent=1) + "\n"
     if not options.write:
         print(text, end="")
         return
-    with atomic_text(WEIGHTS) as file:
+    with atomic_text(weights.FILE) as file:
         file.write(text)
-    print(f"wrote {WEIGHTS}", file=sys.stderr)
+    print(f"wrote {weights.FILE}", file=sys.stderr)
 
 
-def module(
-    fitted: Mapping[str, Mapping[str, float]], table: Mapping[str, float], marks: Iterable[str]
-) -> str:
-    """Return the text of ``weights.py``."""
-    lines = [
-        '"""Weights of the rules, written by ``python -m mitigate.safeguard.fit --write``."""\n',
-        "from __future__ import annotations\n",
-        "from mitigate.corruptions.language.words import bag\n",
-    ]
-    for name, found in fitted.items():
-        lines.append(f"{name}: dict[str, float] = {{")
-        lines += [f'    "{key}": {value:.3f},' for key, value in found.items()]
-        lines.append("}")
-    scores = [f"{term}={100 * value:.0f}" for term, value in sorted(table.items())]
-    for name, listed in (("STYLE", sorted(marks)), ("_WORDS", scores)):
-        lines.append(f'{name} = bag(\n    """')
-        lines += textwrap.wrap(
-            " ".join(listed), 96, initial_indent="    ", subsequent_indent="    ",
-            break_on_hyphens=False,
-        )  # fmt: skip
-        lines.append('    """\n)')
-    lines.append('WORDS = {term: int(odds) / 100 for term, odds in (w.split("=") for w in _WORDS)}')
-    return "\n".join(lines) + "\n"
+def fit() -> dict[str, Any]:
+    """Return what ``weights.json`` holds."""
+    found, table = fit_weights()
+    regressions = {name: _rounded(weight, 3) for name, weight in found.items()}
+    return {
+        **regressions,
+        "style": style_words(),
+        "words": _rounded(dict(sorted(table.items())), 2),
+    }
+
+
+def _rounded(found: Mapping[str, float], digits: int) -> dict[str, float]:
+    return {name: round(value, digits) for name, value in found.items()}
 
 
 def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
@@ -112,8 +102,8 @@ def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
         for e, row in zip(examples, rows, strict=True):
             if e.fold == out:
                 strange[e.text, e.markup] = rules.probability(fitted, row)
-    fitted = {"OWN": own, "CONTEXT": _context(own, whole, strange), "PART": _part(own, tables)}
-    return {**fitted, "FRONT": front_weights(examples)}, whole
+    fitted = {"own": own, "context": _context(own, whole, strange), "part": _part(own, tables)}
+    return {**fitted, "front": front_weights(examples)}, whole
 
 
 def front_weights(examples: Sequence[Example] | None = None) -> dict[str, float]:
