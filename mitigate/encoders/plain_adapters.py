@@ -5,7 +5,7 @@
     encoder.eval()
     encoder = attach(encoder, "runs/encoder/agent")  # the folder of `make train RECIPE=encoder`
 
-Needs Python 3.6, torch 1.9 and numpy or newer, and nothing else. The folder is data: JSON of a
+Needs Python 3.6, torch 1.7 and numpy or newer, and nothing else. The folder is data: JSON of a
 fixed form and safetensors, compared with their sha256 and read here; nothing in it is run.
 """
 
@@ -20,8 +20,8 @@ import torch.nn.functional as F
 
 WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
 LONGEST = 1 << 24  # bytes of a header (ours)
-# of safetensors: name -> numpy's; BF16 is read as int16 and viewed as what it is
-TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<i2", "I64": "<i8", "U8": "<u1"}
+# of safetensors: name -> numpy's; BF16, which numpy lacks, is the upper half of a float32
+TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "U8": "<u1"}
 NUMBERS = {"channels": 1 << 20, "reduction": 1 << 20, "middle": 1 << 20, "kernel": 99, "batch": 1}
 
 
@@ -195,8 +195,10 @@ def parse(data, path="the file"):
             if not 0 <= begin <= end <= len(body):
                 raise ValueError(f"{name} lies outside the file")
             values = np.frombuffer(body[begin:end], TYPES[entry["dtype"]])
+            if entry["dtype"] == "BF16":
+                values = (values.astype("<u4") << 16).view("<f4")
             tensor = torch.from_numpy(values.reshape(entry["shape"]).copy())
-            found[name] = tensor.view(torch.bfloat16) if entry["dtype"] == "BF16" else tensor
+            found[name] = tensor.bfloat16() if entry["dtype"] == "BF16" else tensor
         return found
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise ValueError(f"{path} is damaged ({error}): fetch it again.") from error
@@ -208,8 +210,9 @@ def backbone_sha(model):
     for name, value in sorted(model.state_dict().items()):
         if isinstance(value, torch.Tensor):
             sha.update(f"{name} {value.dtype} {tuple(value.shape)}".encode())
-            value = value.detach().cpu().contiguous().reshape(-1)
-            if value.dtype == torch.bfloat16:
-                value = value.view(torch.int16)
-            sha.update(value.numpy().tobytes())
+            value = value.detach().cpu().contiguous()
+            if value.dtype == torch.bfloat16:  # its two bytes are the upper ones of a float32
+                sha.update((value.float().numpy().view("<u4") >> 16).astype("<u2").tobytes())
+            else:
+                sha.update(value.numpy().tobytes())
     return sha.hexdigest()[:12]
