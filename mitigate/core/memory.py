@@ -1,9 +1,11 @@
-"""What was computed lately, by what it was computed from: a bounded memory."""
+"""Memory that stays bounded: results that are kept for a while, and what was freed."""
 
 from __future__ import annotations
 
+import ctypes
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
+from contextlib import suppress
 from typing import Any
 
 
@@ -32,6 +34,13 @@ class Memory:
         while self.held > self.limit and len(self._kept) > 1:
             self.held -= _bytes(self._kept.popitem(last=False)[1])
         return made
+
+
+def give_back() -> None:
+    """Return freed memory to the system where the C library keeps it (glibc): among arrays of ever
+    other sizes it keeps more and more. Takes a few milliseconds."""
+    with suppress(AttributeError, OSError, TypeError):  # another C library
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def _bytes(parts: tuple) -> int:

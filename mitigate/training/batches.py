@@ -18,6 +18,7 @@ from typing import Any
 import torch
 
 from mitigate.core import precision
+from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import WorkersDied, context, portable
 from mitigate.training.ranks import Ranks
@@ -27,6 +28,7 @@ MOST = 4  # workers worth starting: the recipes make 2 to 4 pieces of a step
 AHEAD = 3  # steps whose pieces are ordered before they are needed (ours)
 PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
 STUCK = 60.0  # seconds without a word after which an awaited worker is reported (ours)
+TRIM_EVERY = 8  # jobs of a worker; after each it costs 7 % of their time, after 8 less than 1 %
 DEATHS = 1  # times that a worker is started anew before the training stops
 
 
@@ -236,7 +238,7 @@ def _packed(recipe: Recipe) -> bytes:
 def _serve(connection: Connection) -> None:
     """The life of a worker: messages in, the results of jobs out, until the connection ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the training ends it
-    recipe, kind, weights = Recipe(), "fp32", {}
+    recipe, kind, weights, done = Recipe(), "fp32", {}, 0
     with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:
             name, *given = connection.recv()
@@ -249,6 +251,9 @@ def _serve(connection: Connection) -> None:
                         weights[entry].copy_(value)
             else:
                 connection.send(_answer(recipe, given[0], kind))
+                done += 1
+                if done % TRIM_EVERY == 0:
+                    give_back()
 
 
 def _answer(recipe: Recipe, job: Any, kind: str) -> tuple[str, Any]:

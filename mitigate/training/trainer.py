@@ -18,6 +18,7 @@ from torch import Tensor
 from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate.core import checkpoint, seeding
+from mitigate.core.memory import give_back
 from mitigate.core.precision import choose, computing, device_of
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, held
@@ -238,6 +239,7 @@ class Trainer:
             "config": self.config,
         }
         checkpoint.save(self.folder, state, keep=self.keep)
+        give_back()
 
     def _keep_precision(self, config: dict[str, Any]) -> None:
         """Go on in the precision of the checkpoint, if none was asked for by name."""

@@ -1,10 +1,15 @@
-"""The bounded memory of results."""
+"""Results are kept up to a limit; what was freed is given back."""
 
 from __future__ import annotations
 
-import numpy as np
+import os
+import platform
+from pathlib import Path
 
-from mitigate.core.memory import Memory
+import numpy as np
+import pytest
+
+from mitigate.core.memory import Memory, give_back
 
 
 def made(memory, key, log, size=8):
@@ -35,3 +40,18 @@ def test_a_result_larger_than_the_limit_is_kept_alone():
     made(memory, "a", log)
     made(memory, "b", log)
     assert len(memory) == 1 and memory.held == 8
+
+
+@pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="of glibc alone")
+def test_what_was_freed_between_what_is_kept_goes_back_to_the_system():
+    pieces = [bytearray(60_000) for _ in range(3000)]  # below the size that is mapped by itself
+    kept = pieces[::100]
+    del pieces
+    before = resident()
+    give_back()
+    assert resident() < before - 100_000_000 and len(kept) == 30
+
+
+def resident() -> int:
+    """Bytes of memory that this process holds."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
