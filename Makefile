@@ -60,9 +60,10 @@ test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
 test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
 	$(BIN)/python -m tools.faults $(ARGS)
 
-lint: $(VENV)/.stamp ## check style and formatting
+lint: $(VENV)/.stamp ## check style, formatting and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/mypy
 
 bench: $(VENV)/.stamp-bench ## time the corruptions beside their peers, and the renderer
 	$(BIN)/python -m mitigate.bench $(ARGS)

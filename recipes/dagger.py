@@ -10,7 +10,7 @@ falls over the training. For agents whose walks are plain data (tensors, lists, 
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -85,7 +85,7 @@ class Dagger(Imitate):
         known = [(s, n) for s in range(0, step, self.every) for n in range(self._pieces)]
         rng = generator(self.rollouts.seed, "kept walks", step)
         count = max(0, min(count, len(known)))
-        chosen = rng.choice(len(known), count, replace=False) if count else []
+        chosen: Iterable[int] = rng.choice(len(known), count, replace=False) if count else []
         return [_read(self._file(*known[i])) for i in chosen]
 
     def _file(self, step: int, number: int) -> Path:

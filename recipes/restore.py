@@ -63,7 +63,7 @@ class Restore(Recipe):
         self.agent, self.modality, self.single, self.seed = agent, modality, single, seed
         self.w_grad = w_grad
         agent.requires_grad_(False)
-        self.net: SensorRestorer = agent.parts()[modality].requires_grad_(True)  # type: ignore[assignment]
+        self.net: SensorRestorer = agent.parts()[modality].requires_grad_(True)
         self.net.gate.requires_grad_(False)
         self.pairs = pairs_of(
             agent, world, training, schedule.only(modality),

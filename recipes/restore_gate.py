@@ -83,7 +83,7 @@ class RestoreGate(Recipe):
         self.modality, self.instants, self.held, self.batch_size = modality, instants, held, batch
         self.single, self.touched, self.seed = single, touched, seed
         self.agent = agent.requires_grad_(False)
-        self.net: SensorRestorer = agent.parts()[modality]  # type: ignore[assignment]
+        self.net: SensorRestorer = agent.parts()[modality]
         self.net.gate.requires_grad_(True)
         own = schedule.only(modality)
         how = {"sensor": modality, "panoramas": 4, "seed": seed, "frames": frames}

@@ -69,12 +69,13 @@ class SafeguardTagger(Recipe):
         return {"groups": groups, "episode_ids": [f"lesson {number}" for number, *_ in lessons]}
 
     def _group(self, lessons: list[Taught], rng: np.random.Generator) -> dict[str, Tensor]:
-        group = collate([encoded for _, encoded, _, _ in lessons])
+        _, encoded, acts, before = zip(*lessons, strict=True)
+        group = collate(encoded)
         size = group["words"].shape
-        for name, column in (("acts", 2), ("before", 3)):
+        for name, rows in (("acts", acts), ("before", before)):
             group[name] = torch.full(size, IGNORED)
-            for row, lesson in enumerate(lessons):
-                group[name][row, : len(lesson[column])] = torch.tensor(lesson[column])
+            for row, numbers in enumerate(rows):
+                group[name][row, : len(numbers)] = torch.tensor(numbers)
         for name in ("words", "pieces"):
             group[name][torch.from_numpy(rng.random(tuple(size)) < self.forget)] = 0
         return group

@@ -276,7 +276,7 @@ def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
 
 def _follow(made: dict[str, nn.Module]) -> None:
     """Tell each adapter of the gate in front of it: the one in the same encoder."""
-    corrects = [n for n, m in made.items() if not isinstance(m, (FrameGate, TokenAdapter))]
+    corrects = {n: m for n, m in made.items() if isinstance(m, (ConvAdapter, RingAdapter))}
     held: dict[str, tuple[str, FrameGate]] = {}  # by adapter: the module around both, and the gate
     for name, gate in made.items():
         if not isinstance(gate, FrameGate):
@@ -289,7 +289,7 @@ def _follow(made: dict[str, nn.Module]) -> None:
             if n not in held or len(around) > len(held[n][0]):
                 held[n] = (around, gate)
     for name, (_, gate) in held.items():
-        made[name].gates = [gate]
+        corrects[name].gates = [gate]
 
 
 def _statistics(model: nn.Module) -> dict[str, Tensor]:

@@ -109,8 +109,10 @@ class StepwiseAgent(nn.Module):
         """All steps of the pieces."""
         steps = [step for piece in pieces for step in piece]
         answers = torch.tensor([step["answer"] for step in steps])
+        frames, clean = (_stacked([step[kind] for step in steps]) for kind in ("frames", "clean"))
         return StepDecisions(
-            *(_stacked([step[kind] for step in steps]) for kind in ("frames", "clean")),
+            frames,
+            clean,
             [step["text"] for step in steps],
             nn.functional.one_hot(answers, self.actions).float(),
             torch.ones(len(steps)),

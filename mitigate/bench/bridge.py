@@ -33,7 +33,8 @@ LEVEL = {"hfov": 90, "position": [0, 1.25, 0]}
 
 def cameras() -> tuple[dict[str, np.ndarray], list[dict[str, Any]]]:
     """ETPNav's observation with random frames, and what the hook says of its cameras."""
-    rng, frames, told = generator("bench", "bridge"), {}, []
+    rng, frames = generator("bench", "bridge"), {}
+    told: list[dict[str, Any]] = []
     for kind, size in (("rgb", 224), ("depth", 256)):
         for k in range(12):
             name = f"{kind}_{30 * k}" if k else kind

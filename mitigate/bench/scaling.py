@@ -19,6 +19,7 @@ import tempfile
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,7 @@ BEGIN = "<!-- table: python -m mitigate.bench.scaling --write -->"
 END = "<!-- end of the table -->"
 SUITE = 13  # conditions of the default suite
 LOOKS, SIZE = 60, 128  # calls of an episode; pixels of a side
+_environment: Any = None  # of a process of the pool: its mitigate_hook.Walk
 _SPEED = re.compile(r"steps_per_s ([\d.]+)")
 
 

@@ -153,13 +153,9 @@ def stage_of(recipe: Recipe, name: str, stage: str, steps: int, workers: Workers
         updates.append(time.perf_counter() - arrived)
     alone = [_seconds(update, batch) for _ in range(steps)]
     whole = [a + b for a, b in zip(waits, updates, strict=True)]
-    return Stage(
-        name,
-        stage,
-        kind,
-        *(1e3 * _median(values[-steps:]) for values in (whole, waits, alone)),
-        parts={part: 1e3 * seconds for part, seconds in _parts(recipe, kind, steps).items()},
-    )
+    spent = [1e3 * _median(values[-steps:]) for values in (whole, waits, alone)]
+    parts = {part: 1e3 * seconds for part, seconds in _parts(recipe, kind, steps).items()}
+    return Stage(name, stage, kind, spent[0], spent[1], spent[2], parts)
 
 
 def _update(recipe: Recipe, kind: str, device: torch.device) -> Callable[[dict], None]:

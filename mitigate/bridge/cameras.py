@@ -169,7 +169,8 @@ class Rig:
     def lay_out(self, kinds: Sequence[str]) -> tuple[dict[str, int], int]:
         """Return where the frame of each camera of these kinds begins in memory, and the size of
         all. Raises ValueError for more than ``LARGEST``."""
-        offsets, at = {}, 0
+        offsets: dict[str, int] = {}
+        at = 0
         for group in self.groups:
             if group.cameras[0].kind in kinds:
                 step = group.cameras[0].bytes
@@ -219,8 +220,9 @@ class Rig:
             views, cameras = _views(memory, offsets, group), group.cameras
             whole = len(cameras) == len(views) == VIEWS and cameras[0].hfov == HFOV_DEGREES
             alone = zip(cameras, group.views, strict=True)
-            parts = [((camera,), np.s_[view : view + 1]) for camera, view in alone]
-            parts = [(cameras, np.s_[:])] if whole else parts
+            parts: list[tuple[tuple[Camera, ...], slice]] = [(cameras, slice(None))]
+            if not whole:
+                parts = [((camera,), slice(view, view + 1)) for camera, view in alone]
             for concerned, where in parts:
                 made = restored(cameras[0], views[where], restorer)
                 if made is not None:

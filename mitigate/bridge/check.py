@@ -54,7 +54,7 @@ class FirstLook:
 
 def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
     with open(path, "wb") as file:
-        np.savez(file, **frames)
+        np.savez(file, **frames)  # type: ignore[arg-type]
 
 
 def check(cfg: DictConfig, command: Sequence[str]) -> Path:
@@ -88,7 +88,8 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path:
     with np.load(file, allow_pickle=False) as frames:
         picture = sheet(rig, dict(frames), list(dict.fromkeys(fitting)), told.first, cfg.seed)
     path = out / "sheet.png"
-    write_atomically(path, lambda p: p.write_bytes(cv2.imencode(".png", picture[..., ::-1])[1]))
+    png = cv2.imencode(".png", picture[..., ::-1])[1].tobytes()
+    write_atomically(path, lambda p: p.write_bytes(png))
     print(f"wrote {path}: what the agent would see at its first frame", flush=True)
     return path
 
@@ -120,12 +121,12 @@ def described(told: Told, rig: Rig) -> list[str]:
         many = f", {len(group.cameras)} as one panorama" if len(group.cameras) > 1 else ""
         hfov = "" if first.hfov is None else f", hfov {first.hfov:g}"
         lines.append(f"{what}; {size} {first.dtype}{hfov}{many}{_range(group)}")
-    first, said = told.first, []
-    if first:
-        said.append(f"episode {first['episode']} of {first['scene']}")
-        if first.get("category"):
-            said.append(f"goal category {first['category']!r}")
-        said.append(f"instruction {first['text']!r}" if first.get("text") else "no instruction")
+    episode, said = told.first, []
+    if episode:
+        said.append(f"episode {episode['episode']} of {episode['scene']}")
+        if episode.get("category"):
+            said.append(f"goal category {episode['category']!r}")
+        said.append(f"instruction {episode['text']!r}" if episode.get("text") else "no instruction")
     return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(said), "conditions:"]
 
 
@@ -149,7 +150,7 @@ def sheet(
     key = Key(seed, f"{scene}/{first.get('episode', '')}", 0)
     heading = frames[".heading"]
     by_kind = {group.cameras[0].kind: group for group in reversed(rig.groups)}
-    rows = [("clean", kind, None) for kind in by_kind]
+    rows: list[tuple[str, str, Corruption | None]] = [("clean", kind, None) for kind in by_kind]
     rows += [(c.name, c.modality, c) for c in corruptions]
     drawn = []
     for name, kind, corruption in rows:

@@ -146,7 +146,8 @@ def _run_all(
 
 
 def _run_here(waiting: Sequence[Any], jobs: int) -> list[str]:
-    left, running, problems = list(waiting), [], []
+    left, problems = list(waiting), []
+    running: list[Any] = []
     spoke = time.monotonic()
     try:
         while left or running:

@@ -132,7 +132,8 @@ def _short(folder: str) -> str:
 
 def warm(corruption: Corruption) -> None:
     """Compile what the corruption needs, before anyone waits for it."""
-    frames = {"rgb": np.zeros((32, 32, 3), np.uint8), "depth": np.ones((32, 32, 1), np.float32)}
+    rgb, depth = np.zeros((32, 32, 3), np.uint8), np.ones((32, 32, 1), np.float32)
+    frames: dict[str, np.ndarray] = {"rgb": rgb, "depth": depth}
     for part in corruption.parts:
         if part.modality in frames:
             corrupt(frames[part.modality], part.name, part.severity, key=0)

@@ -18,7 +18,7 @@ from omegaconf import DictConfig, OmegaConf
 from mitigate.bridge.cell import Cell
 from mitigate.bridge.conditions import cells
 from mitigate.core.progress import Progress
-from mitigate.scale.launcher import results
+from mitigate.scale.launcher import chosen, results
 
 PAUSE = 0.2  # seconds between two looks at a command that runs
 
@@ -88,10 +88,10 @@ def run_there(
         name,
         Path.cwd(),
     )
-    groups, launcher = [[cell.name] for cell in left], OmegaConf.to_object(cfg.launcher)
+    groups, launcher = [[cell.name] for cell in left], chosen(cfg.launcher)
     problems = []
     with Progress("conditions", len(left), unit="condition") as progress:
-        for found in results(launcher, task, groups, cfg.jobs, progress):  # type: ignore[arg-type]
+        for found in results(launcher, task, groups, cfg.jobs, progress):
             if found is None:
                 continue
             cell, problem = left[found[0]], str(found[1])

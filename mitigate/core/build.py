@@ -35,8 +35,7 @@ def build(node: DictConfig, **given: Any) -> Any:
     it was raised.
     """
     try:
-        plain = OmegaConf.to_container(node, resolve=True)
-        assert isinstance(plain, dict)
+        plain = _plain(node)
         makers = {k: Maker(v) for k, v in plain.items() if isinstance(v, dict) and PARTIAL in v}
         rest = OmegaConf.create({k: v for k, v in plain.items() if k not in makers})
         make = instantiate(rest, _partial_=True, _convert_="all")

@@ -83,7 +83,7 @@ def _without_hydras_line() -> Iterator[None]:
     """Leave out the line with which Hydra announces an error: users' are explained in a paragraph,
     and others come with a traceback."""
     stream = _Quieter(sys.stderr)
-    with redirect_stderr(stream):  # type: ignore[type-var]
+    with redirect_stderr(stream):
         yield
 
 

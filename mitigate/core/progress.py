@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 from tqdm import tqdm
 
 if TYPE_CHECKING:
-    from typing import Self
+    from typing_extensions import Self
 
 EVERY = 10.0  # seconds without a line after which the clock prints one (ours)
 REDRAW = 1.0  # seconds between the clock's redraws of a bar (ours)

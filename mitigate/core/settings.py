@@ -87,7 +87,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
     return settings
 
 
-def unknown(file: Path, key: str, allowed: Collection[str]) -> str:
+def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
     """Return what is wrong with ``key`` (dotted) in ``file``, of which ``allowed`` are known."""
     parent, _, name = key.rpartition(".")
     problem = names.unknown(f"setting of {parent}", _short(name), sorted(allowed))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
-from omegaconf import MISSING, DictConfig, OmegaConf
+from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf, seeding
 from mitigate.core.files import atomic_text, find, sha256
@@ -24,7 +24,7 @@ from mitigate.evaluation.columns import changed, column_of, name_of
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.safeguard.addresses import check_arguments, check_choice
-from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
+from mitigate.scale import launcher  # registers the kinds of conf/launcher
 
 if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
     from torch import nn
@@ -137,7 +137,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             split=cfg.split,
             seed=cfg.seed,
             workers=cfg.workers,
-            launcher=OmegaConf.to_object(cfg.launcher),
+            launcher=launcher.chosen(cfg.launcher),
             safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
             restorer=restorer,
             identity=identity(agent, world().sensors, fronts(front, restorer)),

@@ -236,8 +236,8 @@ def replay(
                     made = lines(told, drive, answers["clean"][drive.name], here[drive.name])
                     file.writelines(json.dumps(line) + "\n" for line in made)
                     progress.advance(note=f"{name}, {corruption.name}")
-            clean = answers["clean"]
-            found[name] = {n: changes.compare(drives, clean, a) for n, a in answers.items()}
+            known = answers["clean"]
+            found[name] = {n: changes.compare(drives, known, a) for n, a in answers.items()}
             pictures += _picture(
                 name, agent, drives, met, found[name], answers, seed, out, restorer
             )

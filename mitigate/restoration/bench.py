@@ -38,9 +38,9 @@ def costs(restorer: Restorer, seconds: float) -> dict[tuple[str, str], tuple[flo
         for sensor, net in restorer.parts().items():
             kept, times = net.threshold.clone(), []
             for threshold in (torch.inf, -torch.inf):
-                net.threshold.fill_(threshold)  # type: ignore[operator]
+                net.threshold.fill_(threshold)
                 times.append(_clocked(restorer, sensor, shown[sensor], seconds))
-            net.threshold.copy_(kept)  # type: ignore[operator]
+            net.threshold.copy_(kept)
             found[size, sensor] = (times[0], times[1])
     return found
 

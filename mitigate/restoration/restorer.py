@@ -64,9 +64,9 @@ class Restorer(nn.Module):
         """By sensor, the part that is for it (``training/stages.py``)."""
         return {sensor: (sensor,) for sensor in self.nets}
 
-    def parts(self) -> dict[str, nn.Module]:
+    def parts(self) -> dict[str, SensorRestorer]:
         """The networks by sensor."""
-        return dict(self.nets.items())
+        return {sensor: self._net(sensor) for sensor in self.nets}
 
     def settings(self) -> dict[str, Any]:
         """All that makes it besides weights."""

@@ -102,8 +102,8 @@ def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
         for e, row in zip(examples, rows, strict=True):
             if e.fold == out:
                 strange[e.text, e.markup] = rules.probability(fitted, row)
-    fitted = {"own": own, "context": _context(own, whole, strange), "part": _part(own, tables)}
-    return {**fitted, "front": front_weights(examples)}, whole
+    made = {"own": own, "context": _context(own, whole, strange), "part": _part(own, tables)}
+    return {**made, "front": front_weights(examples)}, whole
 
 
 def front_weights(examples: Sequence[Example] | None = None) -> dict[str, float]:

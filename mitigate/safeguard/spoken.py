@@ -49,7 +49,7 @@ def spoken(split: str) -> tuple[Spoken, ...]:
     if split not in SPLITS:
         raise ValueError(unknown("split", split, SPLITS))
     kept = {"validation": VALIDATION, "test": TEST}.get(split)
-    found = []
+    found: list[Spoken] = []
     for file in sorted(FOLDER.glob("*.jsonl")):
         held_out = file.stem in (*VALIDATION, *TEST)
         if file.stem in kept if kept else not held_out:

@@ -60,6 +60,9 @@ class Tagger(nn.Module):
     """Args: base: language model whose word vectors are taken where a training begins without.
     width: of a word inside. spelling: of its letters. dropout: while training."""
 
+    keys: Tensor
+    vectors: Tensor
+
     def __init__(
         self, base: str = SMOLLM2, width: int = 112, spelling: int = 32, dropout: float = 0.2
     ) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from hydra.core.config_store import ConfigStore
+from omegaconf import DictConfig, OmegaConf
 
 from mitigate.core import workers
 from mitigate.core.progress import Progress
@@ -47,6 +48,13 @@ class SlurmConfig(LauncherConfig):
 
 for _kind in (LauncherConfig, RayConfig, SlurmConfig):
     ConfigStore.instance().store(group="launcher", name=f"{_kind.name}_schema", node=_kind)
+
+
+def chosen(node: DictConfig) -> LauncherConfig:
+    """The launcher that a config names."""
+    launcher = OmegaConf.to_object(node)
+    assert isinstance(launcher, LauncherConfig)
+    return launcher
 
 
 def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -> int:

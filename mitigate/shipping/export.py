@@ -149,7 +149,8 @@ def _write(
         checkpoint.load_weights(shipped, draft)
     found = _metrics(run, rows, {checkpoint.weights_sha(a) for a in (agent, shipped)})
     made: dict[str, Any] = {"program": False, "latency_ms": {}}
-    made["checked"], wanted = {"walks": others.WALKS}, {}
+    made["checked"] = {"walks": others.WALKS}
+    wanted: dict[str, Tensor] = {}
     if walks is None:
         made, wanted = _programs(draft, agent, shipped, onnx)
     card = {

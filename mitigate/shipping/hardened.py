@@ -60,7 +60,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
 def _check_same(agent: Any, config: Path) -> None:
     """Raise ValueError if ``agent`` says of itself other settings than those in ``config``."""
     held = settings.read(config).get("agent")
-    own = getattr(agent, "settings", dict)()
+    own: dict[str, Any] = getattr(agent, "settings", dict)()
     if not isinstance(held, dict):
         raise ValueError(f"{config} has no settings of an agent. {_AGAIN}")
     wrong = [name for name, value in own.items() if name in held and held[name] != value]

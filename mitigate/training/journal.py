@@ -13,7 +13,7 @@ import numpy as np
 from mitigate.core import progress
 
 if TYPE_CHECKING:
-    from typing import Self
+    from typing_extensions import Self
 
 CPU = (
     "cpu_s_per_step"  # scalar: this process's CPU seconds, all threads, a step since the last line

@@ -26,7 +26,7 @@ def policy_parts(agent: Any) -> list[str]:
     return [name for name in agent.parts() if name not in encoders]
 
 
-def train_only(agent: Any, parts: Iterable[str] | str | None) -> None:
+def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     """Freeze all of ``agent`` but ``parts``, names of its ``parts()``; "policy": all but the
     encoders; None: all train.
 
@@ -102,8 +102,9 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
 def without_adapters(agent: nn.Module) -> nn.Module:
     """A copy of ``agent`` without what was added to make it robust: ``agent.as_teacher()``, if it
     has that."""
-    if hasattr(agent, "as_teacher"):
-        return agent.as_teacher()
+    own = getattr(agent, "as_teacher", None)
+    if own is not None:
+        return own()
     copied = copy.deepcopy(agent)
     remove_adapters(copied)
     return copied

@@ -18,7 +18,7 @@ from typing import Any
 from hydra.core.config_store import ConfigStore
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
-from omegaconf import MISSING, DictConfig, OmegaConf
+from omegaconf import MISSING, DictConfig
 from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf, seeding
@@ -27,7 +27,7 @@ from mitigate.core.progress import Progress
 from mitigate.core.workers import cores
 from mitigate.evaluation.evaluate import write_table
 from mitigate.safeguard.addresses import check_arguments
-from mitigate.scale import programs
+from mitigate.scale import launcher, programs
 
 COMMANDS = ("train", "evaluate")
 LOGS = "logs"
@@ -70,7 +70,7 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
             progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
             progress.advance()
 
-        programs.run(chains, cfg.jobs, OmegaConf.to_object(cfg.launcher), progress, told)
+        programs.run(chains, cfg.jobs, launcher.chosen(cfg.launcher), progress, told)
     if len(problems) < len(chains):
         write_table([Path(cfg.runs)], Path(cfg.runs))
     if problems:

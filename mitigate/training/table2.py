@@ -17,14 +17,14 @@ from typing import Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
-from omegaconf import MISSING, DictConfig, OmegaConf
+from omegaconf import MISSING, DictConfig
 
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import Progress
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import ROWS, load
-from mitigate.scale import programs
+from mitigate.scale import launcher, programs
 
 COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"
 
@@ -184,7 +184,7 @@ def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
             progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
             progress.advance()
 
-        programs.run(chains, cfg.jobs, OmegaConf.to_object(cfg.launcher), progress, told)
+        programs.run(chains, cfg.jobs, launcher.chosen(cfg.launcher), progress, told)
     return problems
 
 

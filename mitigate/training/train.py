@@ -249,7 +249,7 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
             return {k: data(v) for k, v in value.items() if not str(k).startswith("_")}
         return value
 
-    own = getattr(agent, "settings", dict)()
+    own: dict[str, Any] = getattr(agent, "settings", dict)()
     barred = getattr(agent, OWN_CONFIG_ONLY, ())
     held = {name: value for name, value in data(plain(node)).items() if name not in barred}
     return {"_target_": node._target_, **held, **data(own)}
@@ -258,7 +258,7 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
 def _check_settings(node: DictConfig, agent: nn.Module) -> None:
     """Raise ValueError for settings of an agent that could not be given back to its class."""
     known = {*signature(get_object(node._target_)).parameters, *map(str, node)}
-    own = getattr(agent, "settings", dict)()
+    own: dict[str, Any] = getattr(agent, "settings", dict)()
     wrong = sorted(name for name in own if name not in known)
     if wrong:
         raise ValueError(

@@ -193,8 +193,8 @@ class Trainer:
             raise LossNotFinite(self._diverged(step, loss, norm, batch))
         self.optimizer.step()
         self.scheduler.step()
-        values = {**values, "grad_norm": norm, "batch_s": waited}
-        return {name: float(value) for name, value in values.items()}
+        values = {**values, "grad_norm": norm}
+        return {**{name: float(value) for name, value in values.items()}, "batch_s": waited}
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"

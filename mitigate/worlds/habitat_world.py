@@ -313,6 +313,5 @@ def _navmesh(given: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]
         given = str(scenes.parent / "navmesh.json")
         if not Path(given).is_file():
             return dict(NAVMESH)
-    if isinstance(given, str):
-        given = json.loads(Path(given).read_text(encoding="utf-8"))
-    return {**NAVMESH, **{n: v for n, v in dict(given).items() if n != "camera_height"}}
+    held = json.loads(Path(given).read_text(encoding="utf-8")) if isinstance(given, str) else given
+    return {**NAVMESH, **{n: v for n, v in dict(held).items() if n != "camera_height"}}

@@ -70,7 +70,9 @@ class WorldEnv(EnvBase):
                 f"worker={worker} of workers={workers}: worker counts from 0 to {workers - 1}."
             )
         self.world, self.actions, self.seed = world, actions, seed
-        self.episodes = episodes if hasattr(episodes, "draw") else _listed(episodes)
+        self.episodes: TrainingEpisodes | Sequence[Episode] = (
+            episodes if isinstance(episodes, TrainingEpisodes) else _listed(episodes)
+        )
         self.worker, self.workers = worker, workers
         self._number = worker
         self._make_specs()
@@ -109,7 +111,7 @@ class WorldEnv(EnvBase):
 
     def _drawn(self, number: int) -> tuple[Episode, str]:
         """Episode ``number`` and its unique name: a function of (list or seed, number)."""
-        if hasattr(self.episodes, "draw"):
+        if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
             episode, again = self.episodes.draw(rng, (0, 1)), number
         else:

@@ -35,10 +35,13 @@ class World(Protocol):
     sensors: what each entry of an observation is; the frames that are corrupted are called "rgb"
     and "depth", and the place is "pose". rule: what its ``measures`` count as success, in words,
     such as "STOP and geodesic < 3 m"; it is part of every row. done: no step may follow.
+    ``truth()`` (optional): labels of what is seen from here, arrays by name.
     """
 
-    sensors: Mapping[str, Sensor]
     rule: str
+
+    @property
+    def sensors(self) -> Mapping[str, Sensor]: ...
 
     @property
     def done(self) -> bool: ...
@@ -56,9 +59,6 @@ class World(Protocol):
         """The oracle of the episode that is on; None in a world that has none: agents can be
         evaluated there, not trained by imitation."""
 
-    def truth(self) -> Mapping[str, np.ndarray]:
-        """Labels of what is seen from here, by name; a world that has none needs no such method."""
-
 
 @runtime_checkable
 class Placeable(Protocol):
@@ -68,7 +68,9 @@ class Placeable(Protocol):
     """
 
     scenes: Sequence[str]
-    sensors: Mapping[str, Sensor]
+
+    @property
+    def sensors(self) -> Mapping[str, Sensor]: ...
 
     def enter(self, scene: str) -> None: ...
 
@@ -82,6 +84,7 @@ class Placeable(Protocol):
         the others may be 0. ``rgb`` False: colours are not needed."""
 
 
+@runtime_checkable
 class TrainingEpisodes(Protocol):
     """Where the episodes of a training come from."""
 

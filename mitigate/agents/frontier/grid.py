@@ -61,9 +61,13 @@ class Grid:
         shows there, and that it does within 2 m; worth [n], how likely it is over there.
         """
         self._looks += 1
+        x, y = pose[:2] - self.origin
         _scan(
             np.ascontiguousarray(depth, np.float32),
-            *(float(v) for v in (*pose[:2] - self.origin, pose[2], self.eye)),
+            float(x),
+            float(y),
+            float(pose[2]),
+            float(self.eye),
             np.clip(_logit(seen), -3, 3).astype(np.float32),
             seen.astype(np.float32),
             worth.astype(np.float32),

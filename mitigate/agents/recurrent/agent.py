@@ -66,7 +66,11 @@ class RecurrentAgent(nn.Module):
                 raise ValueError(unknown("sensor in blind", name, (*sensors, "instruction")))
         if not sensors:
             raise ValueError("sensors=[] leaves the agent nothing to see: name rgb, depth or both.")
-        given = {"rgb_width": rgb_width, "depth_width": depth_width, "policy": policy}
+        given: dict[str, Any] = {
+            "rgb_width": rgb_width,
+            "depth_width": depth_width,
+            "policy": policy,
+        }
         given |= {"sensors": list(sensors), "blind": list(blind), "adapters": adapters}
         self._settings = copy.deepcopy({**given, "size": size})
         self.sensors, self.blind = tuple(sensors), tuple(blind)

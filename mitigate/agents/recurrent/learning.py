@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -52,7 +52,9 @@ class WalkDecisions:
 
     def to(self, device: Any) -> WalkDecisions:
         """Return the steps on ``device``."""
-        moved = {n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)}
+        moved: dict[str, Any] = {
+            n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)
+        }
         return replace(self, **moved, seen={n: v.to(device) for n, v in self.seen.items()})
 
     def padded(self, flat: Tensor) -> Tensor:
@@ -122,7 +124,7 @@ class Walk:
         if clean:
             before = self.observation.clean
             seen |= {f"clean_{n}": checked.frame(before, n, 1) for n in self.sensors}
-        truth = getattr(self.world, "truth", dict)()
+        truth: Mapping[str, np.ndarray] = getattr(self.world, "truth", dict)()
         labels = (*(agent_labels(self.sensors) if frames else ()), "goal")
         seen |= {name: truth[name] for name in labels if name in truth}
         weight = INFLECTION if action != self.before else 1.0
@@ -210,7 +212,8 @@ def join(agent: RecurrentAgent, pieces: Sequence[Piece]) -> WalkDecisions:
 def decide(agent: RecurrentAgent, decisions: WalkDecisions, *, clean: bool = False) -> Output:
     """As ``agents/agent.py`` says; features "views" [N, F] and "state" [N, width]."""
     seen, prefix = decisions.seen, "clean_" if clean else ""
-    views, losses = seen.get(f"{prefix}views"), {}
+    losses: dict[str, Tensor] = {}
+    views = seen.get(f"{prefix}views")
     if views is None:
         frames = {name: seen[f"{prefix}{name}"] for name in agent.sensors}
         views, losses = perceive(agent, frames, {} if clean else seen)

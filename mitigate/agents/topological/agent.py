@@ -60,6 +60,7 @@ class TopologicalAgent(nn.Module):
     """
 
     views = VIEWS
+    rgb_encoder: RGBEncoder | ImageNetEncoder
 
     def __init__(
         self,
@@ -80,7 +81,7 @@ class TopologicalAgent(nn.Module):
                 f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSES)}."
             )
         self.blind = tuple(blind)
-        self._settings = copy.deepcopy(
+        self._settings: dict[str, Any] = copy.deepcopy(
             {
                 "width": width,
                 "planner": planner,

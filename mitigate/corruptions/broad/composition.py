@@ -42,9 +42,10 @@ def stream(value: int) -> np.random.Generator:
     return np.random.Generator(np.random.Philox(value))
 
 
-def field(rng: np.random.Generator, height: int, width: int, cell: float) -> np.ndarray:
+def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.ndarray:
     """float32 [H, W]: a smooth random map of mean 0 and standard deviation about 1, whose cells
     have ``cell`` of the shorter side."""
+    height, width = shape
     size = max(1.0, cell * min(height, width))
     rows, columns = (2 + round(length / size) for length in (height, width))
     cells = rng.standard_normal((rows, columns)).astype(np.float32)
@@ -57,8 +58,9 @@ def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 
 
-def shapes(rng: np.random.Generator, height: int, width: int, area: float) -> np.ndarray:
+def shapes(rng: np.random.Generator, shape: tuple[int, int], area: float) -> np.ndarray:
     """bool [H, W]: one to eight ellipses, polygons and bars over about ``area`` of the map."""
+    height, width = shape
     mask = np.zeros((height, width), np.uint8)
     count = int(rng.integers(1, 9))
     for _ in range(count):
@@ -76,18 +78,19 @@ def shapes(rng: np.random.Generator, height: int, width: int, area: float) -> np
 _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 
 
-def displaced(rng: np.random.Generator, height: int, width: int, reach: float) -> tuple:
+def displaced(rng: np.random.Generator, shape: tuple[int, int], reach: float) -> tuple:
     """Where each pixel is read, float32 maps x and y [H, W]: moved by a smooth random map of cells
     from 0.06 to 0.6 of the side and turned, scaled and shifted as a whole; ``reach``, as a share of
     the side, is about the largest move."""
-    side, cell = min(height, width), log_uniform(rng, 0.06, 0.6)
+    (height, width), cell = shape, log_uniform(rng, 0.06, 0.6)
+    side = min(height, width)
     y, x = np.mgrid[:height, :width].astype(np.float32)
     local = rng.uniform(0.0, 1.0)
     slope = reach * side * local * min(1.0, 3.0 * cell)  # small cells fold if they move far
     turn, scale = (1.0 - local) * reach * rng.uniform(-1.5, 1.5, 2)
     shift = (1.0 - local) * reach * side * rng.uniform(-1.0, 1.0, 2)
     right, down = x - (width - 1) / 2, y - (height - 1) / 2
-    bent = 0.4 * slope * np.stack([field(rng, height, width, cell) for _ in range(2)])
+    bent = 0.4 * slope * np.stack([field(rng, shape, cell) for _ in range(2)])
     map_x = x + scale * right - turn * down + shift[0] + bent[0]
     map_y = y + turn * right + scale * down + shift[1] + bent[1]
     return map_x.astype(np.float32), map_y.astype(np.float32)

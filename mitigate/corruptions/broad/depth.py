@@ -27,7 +27,7 @@ def curve(views, strength, rng, now):
 def uneven(views, strength, rng, now):
     """Errors that go together over a patch, added, or growing with z or its square."""
     power, amount = rng.choice((0, 1, 2)), strength * rng.uniform(0.02, 0.25)
-    error = field(rng, *views.shape[1:], log_uniform(rng, 0.02, 0.6))
+    error = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.6))
     moving = rng.random() < 0.5
     out = np.empty_like(views)
     for place, view in enumerate(views):
@@ -66,7 +66,7 @@ def steps(views, strength, rng, now):
 
 def warped(views, strength, rng, now):
     """Pixels moved by smooth random maps, or as a whole."""
-    map_x, map_y = displaced(rng, *views.shape[1:], 0.12 * strength)
+    map_x, map_y = displaced(rng, views.shape[1:], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
     return _each(
         views, lambda view: cv2.remap(view, map_x, map_y, cv2.INTER_NEAREST, borderMode=border)
@@ -89,7 +89,7 @@ def holes(views, strength, rng, now):
     """The share up to 0.7 a of the pixels, chosen by a random mixture of a smooth map, chance,
     distance and edges, reads nothing, or near or far."""
     weights = rng.dirichlet(np.full(4, 0.5)) * (1, 1, rng.choice((-1, 1)), 1)
-    place = field(rng, *views.shape[1:], log_uniform(rng, 0.02, 0.5))
+    place = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.5))
     share, fill, out = 0.7 * strength * rng.random(), _fill(rng), views.copy()
     for view in out:
         edges = np.abs(cv2.Laplacian(np.nan_to_num(view), cv2.CV_32F, ksize=3))
@@ -103,9 +103,9 @@ def holes(views, strength, rng, now):
 def hidden(views, strength, rng, now):
     """Shapes, the same in all views or others in each, that read nothing, near or far."""
     area, fill, alike = 0.5 * strength * rng.uniform(0.1, 1.0), _fill(rng), rng.random() < 0.6
-    mask, out = shapes(rng, *views.shape[1:], area), views.copy()
+    mask, out = shapes(rng, views.shape[1:], area), views.copy()
     for view in out:
-        mask = mask if alike else shapes(now, *views.shape[1:], area)
+        mask = mask if alike else shapes(now, views.shape[1:], area)
         view[mask] = fill
     return out
 

@@ -28,7 +28,7 @@ def exposure(views, strength, rng, now):
     if rng.random() < 0.3:
         stops = stops * now.uniform(0.0, 1.0)
     if rng.random() < 0.4:
-        uneven = field(rng, *views.shape[1:3], rng.uniform(0.3, 1.0))
+        uneven = field(rng, views.shape[1:3], rng.uniform(0.3, 1.0))
         stops = stops * (1.0 + 0.5 * uneven)[..., None]
     return np.clip(views * np.exp2(np.asarray(stops, np.float32) / GAMMA), 0.0, 1.0)
 
@@ -107,7 +107,7 @@ def coarse(views, strength, rng, now):
 def warped(views, strength, rng, now):
     """Pixels moved by smooth random maps (PRIME's diffeomorphisms), or as a whole."""
     source = now if rng.random() < 0.3 else rng
-    map_x, map_y = displaced(source, *views.shape[1:3], 0.12 * strength)
+    map_x, map_y = displaced(source, views.shape[1:3], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
     return _each(
         views, lambda view: cv2.remap(view, map_x, map_y, cv2.INTER_LINEAR, borderMode=border)
@@ -136,7 +136,7 @@ def covered(views, strength, rng, now):
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)
     turned, most = rng.random() < 0.3, (0.4 + 0.6 * rng.random()) * min(1.0, 1.5 * strength)
-    cover = field(rng, height, width, log_uniform(rng, 0.02, 0.8))
+    cover = field(rng, (height, width), log_uniform(rng, 0.02, 0.8))
     opacity = most * np.clip((cover - level) / soft + 0.5, 0.0, 1.0)
     out = np.empty_like(views)
     for place, view in enumerate(views):
@@ -149,9 +149,9 @@ def hidden(views, strength, rng, now):
     """Shapes before the lens, or others in each view, of a colour, of noise or of other parts."""
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
-    mask, colour, out = shapes(rng, height, width, area), _colour(rng), views.copy()
+    mask, colour, out = shapes(rng, (height, width), area), _colour(rng), views.copy()
     for view in out:
-        mask = mask if alike else shapes(now, height, width, area)
+        mask = mask if alike else shapes(now, (height, width), area)
         if kind < 0.6:
             view[mask] = colour
         elif kind < 0.8:

@@ -26,6 +26,7 @@ class ApartmentsEnv(WorldEnv):
     """
 
     key = "apartments env"
+    world: ApartmentsWorld
 
     def __init__(
         self,

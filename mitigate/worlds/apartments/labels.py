@@ -40,11 +40,11 @@ def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndar
     return (fine[world][:, None] >= STEP * (np.arange(DISTANCES) + 1) - 1e-3).astype(np.float32)
 
 
-def ahead(free: np.ndarray) -> np.ndarray:
+def ahead(directions: np.ndarray) -> np.ndarray:
     """Of :func:`free_directions` those in a view of 90 degrees ahead: [30, 12], left to right."""
     half = round(ANGLES * HFOV_DEGREES / 720)
     middle = round(ANGLES / VIEWS / 2)  # bin 0 is half a view's step to the left
-    return np.roll(free, half - middle, 0)[: 2 * half]
+    return np.roll(directions, half - middle, 0)[: 2 * half]
 
 
 def band(size: int) -> tuple[int, int]:

@@ -39,7 +39,7 @@ _POOL = 60  # training paths of one apartment
 _PER_APARTMENT = 10  # episodes of one apartment in the fixed lists
 
 
-def to_vlnce(xy: np.ndarray) -> tuple[float, float, float]:
+def to_vlnce(xy: np.ndarray | tuple[float, float]) -> tuple[float, float, float]:
     """Plan position to a VLN-CE position (x, y up, z)."""
     return round(float(xy[0]), 4), 0.0, round(-float(xy[1]), 4)
 

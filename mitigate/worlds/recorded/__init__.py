@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 
 from mitigate.worlds.recorded.bags import Bag
@@ -56,14 +57,16 @@ def open_recording(
         raise ValueError(f"{path} is no bag ({', '.join(BAGS)}).{packed}")
     if not is_drive(path):
         below = [p for p in sorted(path.iterdir()) if _is_bag(p) or (p.is_dir() and is_drive(p))]
-        options = {"topics": topics, "hfov": hfov, "unit": unit, "yaw": yaw, "cameras": cameras}
         if not below:
             raise FileNotFoundError(
                 f"{path} holds no drive, here or one folder below: no bag, no recording.json (by "
                 "mitigate run record=FOLDER), no rgb.txt and depth.txt (TUM RGB-D), no folders "
                 "rgb/ and depth/."
             )
-        return [drive for one in below for drive in open_recording(one, **options)]
+        again = partial(
+            open_recording, topics=topics, hfov=hfov, unit=unit, yaw=yaw, cameras=cameras
+        )
+        return [drive for one in below for drive in again(one)]
     if topics.given or yaw:
         raise ValueError(f"{path} is no bag: leave topics.* and yaw= out.")
     return list(open_folder(path, hfov, unit, cameras))

@@ -87,9 +87,9 @@ def open_folder(
     if cameras:
         raise ValueError(f"cameras= chooses of a recording by mitigate run, which {path} is not.")
     if tum.is_one(path):
-        *found, dropped = tum.read(path, hfov)
-        per_count = tum.UNIT if unit is None else unit
-        return [Frames(path.name, words(path / WORDS), *found, False, dropped, per_count)]
+        lenses, files, times, poses, dropped = tum.read(path, hfov)
+        said, per_count = words(path / WORDS), tum.UNIT if unit is None else unit
+        return [Frames(path.name, said, lenses, files, times, poses, False, dropped, per_count)]
     if (path / tum.TRAJECTORY).is_file():
         raise ValueError(f"{path} has {tum.TRAJECTORY}, but not its lists {', '.join(tum.LISTS)}.")
     return [_simple(path, hfov, unit)]

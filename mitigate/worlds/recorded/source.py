@@ -87,13 +87,26 @@ class Source(Protocol):
     frame of the other camera was near.
     """
 
-    name: str
-    instruction: str
-    cameras: Mapping[str, Lens]
-    times: np.ndarray
-    poses: np.ndarray | None
-    stepped: bool
-    dropped: int
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def instruction(self) -> str: ...
+
+    @property
+    def cameras(self) -> Mapping[str, Lens]: ...
+
+    @property
+    def times(self) -> np.ndarray: ...
+
+    @property
+    def poses(self) -> np.ndarray | None: ...
+
+    @property
+    def stepped(self) -> bool: ...
+
+    @property
+    def dropped(self) -> int: ...
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Of each instant ``chosen``, in order, the frame of each camera: uint8 [H, W, 3], or
