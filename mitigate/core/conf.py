@@ -14,6 +14,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr
+from importlib import import_module
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -28,6 +29,16 @@ from mitigate.core.names import unknown
 from mitigate.core.signals import raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
+TYPES = {  # module that registers the types of conf/<name>.yaml when it is imported
+    "evaluate": "mitigate.evaluation.evaluate",
+    "export_drive": "mitigate.replay.export_drive",
+    "replay": "mitigate.replay.replay",
+    "run": "mitigate.bridge.run",
+    "sweep": "mitigate.training.sweep",
+    "table1": "mitigate.training.table1",
+    "table2": "mitigate.training.table2",
+    "train": "mitigate.training.train",
+}
 HYDRAS = "Error executing job with overrides"  # hydra.core.utils, JobReturn.return_value
 KINDS = {
     "Integer": "a whole number, such as 4",
@@ -155,6 +166,7 @@ def load_config(
     folder with more configs."""
     if further is not None:
         overrides = [*overrides, f"hydra.searchpath=[file://{further.resolve()}]"]
+    import_module(TYPES[primary])
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(CONF), version_base="1.3"):
         return compose(primary, list(overrides))

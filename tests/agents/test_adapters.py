@@ -12,7 +12,6 @@ import pytest
 import torch
 from torch import Tensor, nn
 
-import mitigate.training.train  # noqa: F401  (the schema of its config)
 from mitigate.agents import adapters
 from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
 from mitigate.core import conf

@@ -7,7 +7,6 @@ import pytest
 import yaml
 from omegaconf import OmegaConf
 
-import mitigate.training.train  # noqa: F401 - the schema and the resolvers of its config
 from mitigate.core import build, conf
 from mitigate.corruptions import NAMES, Corruption, DepthSensor, Key, Record, Schedule, corrupt
 from mitigate.corruptions.curves import curves

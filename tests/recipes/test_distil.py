@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import torch
 
-import mitigate.training.train  # noqa: F401  (the schema of its config)
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import checkpoints, weights_sha

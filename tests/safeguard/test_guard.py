@@ -7,7 +7,6 @@ import time
 
 import pytest
 
-import mitigate.evaluation.evaluate  # noqa: F401  (registers the types of conf/evaluate.yaml)
 from mitigate.core import conf
 from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction

@@ -125,7 +125,6 @@ def add(
     """
     from mitigate.core import conf
     from mitigate.core.build import maker
-    from mitigate.evaluation import evaluate  # noqa: F401 - registers the types of conf/evaluate
 
     place = Path(folder) / f"{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('.-') or 'entry'}.json"
     if place.exists() and not overwrite:
