@@ -1,6 +1,7 @@
 """What ``mitigate.bench.soak`` watches: ``python -m mitigate.bench.loads NAME FOLDER``, for ever.
 
-training: rollouts and steps of the shipped agent, a checkpoint every 20 steps. evaluation: 20
+training: rollouts and steps of the shipped agent in 64 apartments, so that what is kept of each is
+there after some minutes, a checkpoint every 20 steps. evaluation: 20
 episodes under the suite by two workers, again and again with other seeds. bridge: episodes of 20
 looks with RGB and depth, each condition of the suite in turn, each with a server of its own.
 """
@@ -31,7 +32,12 @@ def training(folder: Path) -> None:
         "rollouts=4",
         "evaluation.enabled=false",
     ]
-    options += [f"trainer.steps={ENDLESS}", "trainer.save_every=20", f"folder={folder}"]
+    options += [
+        "env.layouts=64",
+        f"trainer.steps={ENDLESS}",
+        "trainer.save_every=20",
+        f"folder={folder}",
+    ]
     run(conf.load_config("train", [*options, f"runs={folder.parent}"]))
 
 

@@ -91,7 +91,7 @@ class Apartment:
         return np.pad(blocked[1:-1, 1:-1], 1, constant_values=True)
 
 
-@lru_cache(maxsize=2048)
+@lru_cache(maxsize=512)  # of 0.3 MB each; another takes 8 ms
 def apartment_of(scene_id: str) -> Apartment:
     """The apartment of a scene id "apartments/<split>/<seed>". Raises ``ValueError`` for others."""
     parts = scene_id.split("/")
