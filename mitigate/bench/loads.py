@@ -1,9 +1,9 @@
 """What ``mitigate.bench.soak`` watches: ``python -m mitigate.bench.loads NAME FOLDER``, for ever.
 
 training: rollouts and steps of the shipped agent in 64 apartments, so that what is kept of each is
-there after some minutes, a checkpoint every 20 steps. evaluation: 20
-episodes under the suite by two workers, again and again with other seeds. bridge: episodes of 20
-looks with RGB and depth, each condition of the suite in turn, each with a server of its own.
+there after some minutes, a checkpoint every 20 steps. evaluation: 20 episodes under the suite by two
+workers, again and again with other seeds. bridge: episodes of 20 looks with RGB and depth, each
+condition of the suite in turn, each with a server of its own.
 """
 
 from __future__ import annotations
@@ -30,15 +30,14 @@ def training(folder: Path) -> None:
         "recipe=da_per_episode",
         "experiment=frozen",
         "rollouts=4",
-        "evaluation.enabled=false",
-    ]
-    options += [
         "env.layouts=64",
         f"trainer.steps={ENDLESS}",
         "trainer.save_every=20",
+        "evaluation.enabled=false",
         f"folder={folder}",
+        f"runs={folder.parent}",
     ]
-    run(conf.load_config("train", [*options, f"runs={folder.parent}"]))
+    run(conf.load_config("train", options))
 
 
 def evaluation(folder: Path) -> None:
