@@ -1,8 +1,8 @@
 """What ``mitigate.bench.soak`` watches: ``python -m mitigate.bench.loads NAME FOLDER``, for ever.
 
 training: rollouts and steps of the shipped agent in 64 apartments, so that what is kept of each is
-there after some minutes, a checkpoint every 20 steps. evaluation: 20 episodes under the suite by two
-workers, again and again with other seeds. bridge: episodes of 20 looks with RGB and depth, each
+there after some minutes, a checkpoint every 20 steps. evaluation: 20 episodes under the suite by
+two workers, again and again with other seeds. bridge: episodes of 20 looks with RGB and depth, each
 condition of the suite in turn, each with a server of its own.
 """
 
