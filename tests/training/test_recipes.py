@@ -31,6 +31,8 @@ def test_every_recipe_trains_two_steps(tmp_path, name):
             OmegaConf.update(stage, "recipe.refresh_episodes", 1, force_add=True)
     if "variants" in (cfg.stages.get("planner") or {}).get("recipe", {}):
         cfg.stages.planner.recipe.variants = 1
+    if "size" in cfg.agent and "size" in cfg.env:
+        cfg.agent.size = cfg.env.size = 32
     for stage in cfg.stages.values():  # frames that a gate learns from
         if "held" in stage.recipe:
             stage.recipe.held, stage.recipe.instants = 2, 4
