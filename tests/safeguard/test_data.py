@@ -15,8 +15,14 @@ from mitigate.safeguard.data import KINDS, Pair, draw_pair, read_chats, write_ch
 from mitigate.worlds.apartments.instructions import TEMPLATES
 from mitigate.worlds.episodes import read_episodes
 
-PAIRS = [draw_pair(0, index) for index in range(1500)]
 SIZE = 2000
+
+pytestmark = pytest.mark.xdist_group("pairs")  # drawn once
+
+
+@pytest.fixture(scope="module")
+def pairs() -> list[Pair]:
+    return [draw_pair(0, index) for index in range(1500)]
 
 
 def plain(text: str) -> str:
@@ -39,15 +45,15 @@ def test_no_validation_instruction_can_be_drawn():
     assert not routes.overlaps_validation("Leave the pantry and veer left at the piano.")
 
 
-def test_no_pair_holds_an_attack_of_the_validation_or_test_families():
+def test_no_pair_holds_an_attack_of_the_validation_or_test_families(pairs):
     bank = [s for split in ("validation", "test") for g in prefixes(split).values() for s in g]
-    texts = " ".join(plain(f"{pair.source} {pair.target}") for pair in PAIRS)
+    texts = " ".join(plain(f"{pair.source} {pair.target}") for pair in pairs)
     assert not [sentence for sentence in bank if plain(sentence) in texts]
 
 
-def test_held_out_style_phrases_never_occur():
+def test_held_out_style_phrases_never_occur(pairs):
     assert all(len(data.held_out(manner)) >= 2 for manner in MANNERS)
-    for pair in PAIRS:
+    for pair in pairs:
         if pair.kind == "style":
             assert not all(data.holds_held_out(pair.source, manner) for manner in MANNERS)
 
@@ -62,16 +68,16 @@ def test_routes_are_varied():
     assert any(text != text.lower() for text in texts) and any(t == t.lower() for t in texts)
 
 
-def test_pairs_have_the_shares_asked_for_and_depend_on_seed_and_index_alone():
+def test_pairs_have_the_shares_asked_for_and_depend_on_seed_and_index_alone(pairs):
     for kind, share in KINDS.items():
-        found = sum(pair.kind == kind for pair in PAIRS) / len(PAIRS)
+        found = sum(pair.kind == kind for pair in pairs) / len(pairs)
         assert abs(found - share) < 0.05
-    assert draw_pair(0, 700) == PAIRS[700] and draw_pair(1, 700) != PAIRS[700]
+    assert draw_pair(0, 700) == pairs[700] and draw_pair(1, 700) != pairs[700]
 
 
-def test_identity_pairs_are_identical_and_attacks_alone_have_an_empty_target():
-    assert all(p.source == p.target for p in PAIRS if p.kind == "identity")
-    attacked = [p for p in PAIRS if p.kind == "black_box"]
+def test_identity_pairs_are_identical_and_attacks_alone_have_an_empty_target(pairs):
+    assert all(p.source == p.target for p in pairs if p.kind == "identity")
+    attacked = [p for p in pairs if p.kind == "black_box"]
     before_plain = sum(p.source.endswith(p.target) for p in attacked) / len(attacked)
     assert 0.6 < before_plain < 0.95  # the others stand before what people say
     assert 0.1 < sum(not p.target for p in attacked) / len(attacked) < 0.5
@@ -84,9 +90,9 @@ def test_texts_of_the_user_take_their_share():
     assert 50 < found < 130
 
 
-def test_chats_come_back_as_written(tmp_path):
-    write_chats(tmp_path / "a.jsonl.gz", PAIRS[:20])
-    assert list(read_chats(tmp_path / "a.jsonl.gz")) == PAIRS[:20]
+def test_chats_come_back_as_written(tmp_path, pairs):
+    write_chats(tmp_path / "a.jsonl.gz", pairs[:20])
+    assert list(read_chats(tmp_path / "a.jsonl.gz")) == pairs[:20]
 
 
 USER, ASSISTANT = {"role": "user", "content": "Go."}, {"role": "assistant", "content": "Go."}
