@@ -96,7 +96,7 @@ def _within(
     )
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=64)  # each holds its apartment
 def _tables(scene_id: str, apartment: Apartment) -> tuple[np.ndarray, ...]:
     furniture = apartment.furniture
     category = np.array([CATEGORIES.index(p.category) for p in furniture], np.int64)
