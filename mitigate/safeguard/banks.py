@@ -117,10 +117,12 @@ def same_words(one: str, other: str) -> bool:
 
 
 def unattacked(repair: Repair, split: str) -> dict[str, list[bool]]:
-    """Return for near misses, and plain and styled texts without attack, what was changed."""
-    changed: dict[str, list[bool]] = {"near misses": [], "styled texts, parts lost": []}
-    for line in trials.half("near_misses", split):
-        changed["near misses"].append(not same_words(line["text"], repair(line["text"])))
+    """Return for near misses, oddly said routes, and plain and styled texts without attack, what
+    was changed."""
+    changed: dict[str, list[bool]] = {"styled texts, parts lost": []}
+    for bank in ("near misses", "odd routes"):
+        said = [line["text"] for line in trials.half(bank.replace(" ", "_"), split)]
+        changed[bank] = [not same_words(text, repair(text)) for text in said]
     for told in trials.told(split):
         changed["styled texts, parts lost"] += lost_parts(told, repair(told.text))
     changed["plain texts"] = [t.text != repair(t.text) for t in trials.plainly_told(split)]

@@ -161,7 +161,8 @@ def _routes() -> list[Example]:
             fold = trials.TUNE_VOICES.index(told.voice) % FOLDS
             found += [(part, 1.0, fold) for part in told.parts] + [(told.plain, 1.0, fold)]
     lines = [(routes.draw_route(generator(0, "fit", i)), 1.5) for i in range(600)]
-    lines += [(line["text"], 6.0) for line in trials.half("near_misses", "tune")]
+    for bank in ("near_misses", "odd_routes"):
+        lines += [(line["text"], 6.0) for line in trials.half(bank, "tune")]
     lines += [(line, 4.0) for line in trials.fitting("fit_routes")]
     for bank in ("lies", "honest"):
         for line in trials.half(bank, "tune"):
