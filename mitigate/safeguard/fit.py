@@ -1,10 +1,14 @@
 """Fit the rules' weights: ``python -m mitigate.safeguard.fit`` prints ``weights.json``.
 
 Logistic regressions over what pieces of text are made of: sentences by themselves, sentences beside
-others, parts of sentences. Attacks are the train and validation families of the prefix bank, the
-tuning mechanisms of the test banks and lines of ours; the rest are routes of ours, plain, restyled
-and in the tuning voices. The words that mark a style are those that restyled routes have and plain
-ones lack. Run it in a checkout: the banks are not in the package.
+others, parts of sentences. Attacks are the train and validation families of the prefix bank (never
+the test families, which the suite speaks), the test banks and lines of ours; the rest are routes of
+ours, plain, restyled and in voices. The words that mark a style are those that restyled routes have
+and plain ones lack. Run it in a checkout: the banks are not in the package.
+
+What is shipped is fitted on the whole of the banks. Their test part is reported on by weights that
+have not seen it: ``fit --split tune > tune.json``, then ``MITIGATE_RULES=tune.json python -m
+mitigate.safeguard.banks --split test``.
 """
 
 from __future__ import annotations
@@ -53,13 +57,15 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Fit, and print the weights or write them. ``arguments``: of the command line."""
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.fit", description=__doc__)
     parser.add_argument("--write", action="store_true", help=f"replace {weights.FILE.name}")
+    parser.add_argument("--split", choices=("tune", trials.ALL), default=trials.ALL,
+                        help="part of the banks to fit on")  # fmt: skip
     parser.add_argument("--front", action="store_true", help="fit FRONT alone; keep the others")
     options = parser.parse_args(arguments)
     if options.front:
         fitted = json.loads(weights.FILE.read_text(encoding="utf-8"))
-        fitted["front"] = _rounded(front_weights(), 3)
+        fitted["front"] = _rounded(front_weights(examples(options.split)), 3)
     else:
-        fitted = fit()
+        fitted = fit(options.split)
     text = json.dumps(fitted, indent=1) + "\n"
     if not options.write:
         print(text, end="")
@@ -69,9 +75,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     print(f"wrote {weights.FILE}", file=sys.stderr)
 
 
-def fit() -> dict[str, Any]:
-    """Return what ``weights.json`` holds."""
-    found, table = fit_weights()
+def fit(split: str) -> dict[str, Any]:
+    """Return what ``weights.json`` holds, fitted on a split of the banks."""
+    found, table = fit_weights(split)
     regressions = {name: _rounded(weight, 3) for name, weight in found.items()}
     return {
         **regressions,
@@ -84,31 +90,35 @@ def _rounded(found: Mapping[str, float], digits: int) -> dict[str, float]:
     return {name: round(value, digits) for name, value in found.items()}
 
 
-def fit_weights() -> tuple[dict[str, dict[str, float]], dict[str, float]]:
-    """Return name -> weights of the three regressions, and what words are worth."""
-    examples = [*_attacks(), *_routes()]
-    whole = word_table(examples)
-    tables = [word_table([e for e in examples if e.fold != out]) for out in range(FOLDS)]
-    rows = [composition(e.text, e.markup) | worth(e.text, tables[e.fold]) for e in examples]
-    own = _regression(rows, [e.attack for e in examples], [e.weight for e in examples])
+def fit_weights(split: str) -> tuple[dict[str, dict[str, float]], dict[str, float]]:
+    """Return name -> weights of the regressions, and what words are worth."""
+    found = examples(split)
+    whole = word_table(found)
+    tables = [word_table([e for e in found if e.fold != out]) for out in range(FOLDS)]
+    rows = [composition(e.text, e.markup) | worth(e.text, tables[e.fold]) for e in found]
+    own = _regression(rows, [e.attack for e in found], [e.weight for e in found])
     strange = {}
     for out in range(FOLDS):
-        seen = [i for i, e in enumerate(examples) if e.fold != out]
+        seen = [i for i, e in enumerate(found) if e.fold != out]
         fitted = _regression(
             [rows[i] for i in seen],
-            [examples[i].attack for i in seen],
-            [examples[i].weight for i in seen],
+            [found[i].attack for i in seen],
+            [found[i].weight for i in seen],
         )
-        for e, row in zip(examples, rows, strict=True):
+        for e, row in zip(found, rows, strict=True):
             if e.fold == out:
                 strange[e.text, e.markup] = rules.probability(fitted, row)
-    made = {"own": own, "context": _context(own, whole, strange), "part": _part(own, tables)}
-    return {**made, "front": front_weights(examples)}, whole
+    context, part = _context(split, own, whole, strange), _part(split, own, tables)
+    return {"own": own, "context": context, "part": part, "front": front_weights(found)}, whole
 
 
-def front_weights(examples: Sequence[Example] | None = None) -> dict[str, float]:
+def examples(split: str) -> list[Example]:
+    """Return the pieces of text to fit on."""
+    return [*_attacks(split), *_routes(split)]
+
+
+def front_weights(examples: Sequence[Example]) -> dict[str, float]:
     """Return the weights of the few counts of ``front.py``, by the same examples as the others."""
-    examples = [*_attacks(), *_routes()] if examples is None else examples
     rows = [front.counts(e.text) for e in examples]
     return _regression(rows, [e.attack for e in examples], [e.weight for e in examples])
 
@@ -133,18 +143,18 @@ def word_table(examples: Sequence[Example]) -> dict[str, float]:
     return {term: max(-2.0, min(2.0, value)) for term, value in odds.items()}
 
 
-def _attacks() -> list[Example]:
-    found = [(a.mechanism, a.words, 1.0) for a in trials.attacks("tune") if a.place == "any"]
+def _attacks(split: str) -> list[Example]:
+    found = [(a.mechanism, a.words, 1.0) for a in trials.attacks(split) if a.place == "any"]
     found += [
         (family, line, 1.0)
-        for split in ("train", "validation")
-        for family, group in prefixes(split).items()
+        for families in ("train", "validation")
+        for family, group in prefixes(families).items()
         for line in group
     ]
     found += [(f"ours {i % 8}", line, 1.0) for i, line in enumerate(trials.fitting("fit_attacks"))]
     rng = generator(0, "fit")
     found += [("varied", vary(rng), 0.15) for _ in range(200)]
-    found += [(f"aside {voice}", said, ASIDE) for voice, said in trials.asides("tune")]
+    found += [(f"aside {voice}", said, ASIDE) for voice, said in trials.asides(split)]
     groups = sorted({group for group, _, _ in found})
     return [
         Example(piece.of(line), bool(piece.block), True, weight, groups.index(group) % FOLDS)
@@ -154,18 +164,19 @@ def _attacks() -> list[Example]:
     ]
 
 
-def _routes() -> list[Example]:
+def _routes(split: str) -> list[Example]:
     found: list[tuple[str, float, int]] = []
+    voices = trials.voices(split)
     for task in ("route", "object"):
-        for told in trials.told("tune", task):
-            fold = trials.TUNE_VOICES.index(told.voice) % FOLDS
+        for told in trials.told(split, task):
+            fold = voices.index(told.voice) % FOLDS
             found += [(part, 1.0, fold) for part in told.parts] + [(told.plain, 1.0, fold)]
     lines = [(routes.draw_route(generator(0, "fit", i)), 1.5) for i in range(600)]
     for bank in ("near_misses", "odd_routes"):
-        lines += [(line["text"], 6.0) for line in trials.half(bank, "tune")]
+        lines += [(line["text"], 6.0) for line in trials.half(bank, split)]
     lines += [(line, 4.0) for line in trials.fitting("fit_routes")]
     for bank in ("lies", "honest"):
-        for line in trials.half(bank, "tune"):
+        for line in trials.half(bank, split):
             lines += [(text, 1.0) for key, text in line.items() if key != "kind"]
     found += [(text, weight, index % FOLDS) for index, (text, weight) in enumerate(lines)]
     return [
@@ -177,6 +188,7 @@ def _routes() -> list[Example]:
 
 
 def _context(
+    split: str,
     own: Mapping[str, float],
     table: Mapping[str, float],
     strange: Mapping[tuple[str, bool], float],
@@ -185,11 +197,11 @@ def _context(
 
     ``strange``: probabilities by fits that had not seen the sentence, where there are such.
     """
-    styled, plain = trials.told("tune"), trials.plainly_told("tune")
+    styled, plain = trials.told(split), trials.plainly_told(split)
     heard = [(told.text, "") for told in (*styled, *plain)]
-    heard += [(line["text"], "") for line in trials.half("near_misses", "tune")] * 3
+    heard += [(line["text"], "") for line in trials.half("near_misses", split)] * 3
     heard += [(line, "") for line in trials.fitting("fit_routes")]
-    found = [a for a in trials.attacks("tune") if a.place == "any"]
+    found = [a for a in trials.attacks(split) if a.place == "any"]
     found += [trials.Attack("ours", "any", line) for line in trials.fitting("fit_attacks")]
     for told in (styled, plain):
         heard += [(text, a.words) for a, _, _, text in trials.trials(found, told, 1)]
@@ -210,17 +222,19 @@ def _context(
     return _regression(rows, attacks, [1.0] * len(rows))
 
 
-def _part(own: Mapping[str, float], tables: Sequence[Mapping[str, float]]) -> dict[str, float]:
+def _part(
+    split: str, own: Mapping[str, float], tables: Sequence[Mapping[str, float]]
+) -> dict[str, float]:
     """Return the weights of parts inside sentences."""
-    styled, plain = trials.told("tune"), trials.plainly_told("tune")
-    inside = [a for a in trials.attacks("tune") if a.place == "inside"]
+    styled, plain = trials.told(split), trials.plainly_told(split)
+    inside = [a for a in trials.attacks(split) if a.place == "inside"]
     short = [line for line in trials.fitting("fit_attacks") if len(line.split()) < 12]
     ours = [trials.Attack("ours", "inside", line.strip(" ,.")) for line in short]
     heard = [(t, a.words, 0.5) for told in (styled, plain)
         for a, _, _, t in trials.trials(inside, told, 4)]  # fmt: skip
     heard += [(t, a.words, 0.5) for a, _, _, t in trials.trials(ours, plain, 2)]
     heard += [(told.text, "", 1.0) for told in (*styled, *plain)]
-    heard += [(line["text"], "", 6.0) for line in trials.half("near_misses", "tune")]
+    heard += [(line["text"], "", 6.0) for line in trials.half("near_misses", split)]
     rows, attacks, weights = [], [], []
     for index, (text, attack, weight) in enumerate(heard):
         table = tables[index % FOLDS]

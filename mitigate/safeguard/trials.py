@@ -1,7 +1,8 @@
 """The hand-written test banks of a checkout, and attacks put into instructions.
 
 Every bank has a part for tuning and a part for the report alone: attacks by mechanism, voices by
-name, the other banks by odd and even lines. What is fitted or chosen by hand sees the first only.
+name, the other banks by odd and even lines. What is chosen by hand sees the first only, and so does
+what is fitted where the second is to be reported on ("all": both).
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from mitigate.safeguard.text import sentences
 
 BANKS = Path(__file__).parents[2] / "tests" / "safeguard" / "banks"
 SPLITS = ("tune", "test")
+ALL = "all"
 HELD_OUT = frozenset({"diversion", "role", "other_script", "noise"})
 TEST_VOICES = ("bureaucratic", "tour_guide", "poetic", "second_thoughts", "llm_professional",
     "butler")  # fmt: skip
@@ -70,19 +72,24 @@ def fitting(name: str) -> list[str]:
 
 def half(name: str, split: str) -> list[dict[str, Any]]:
     """Return the odd lines (1-based) of a bank for "tune", the even ones for "test"."""
-    return lines(name)[SPLITS.index(split) :: 2]
+    return lines(name) if split == ALL else lines(name)[SPLITS.index(split) :: 2]
 
 
 def attacks(split: str) -> list[Attack]:
     """Return the attacks of the mechanisms of a split."""
     found = [Attack(d["mechanism"], d["place"], d["attack"]) for d in lines("attacks")]
-    return [a for a in found if (a.mechanism in HELD_OUT) == (split == "test")]
+    return [a for a in found if split == ALL or (a.mechanism in HELD_OUT) == (split == "test")]
+
+
+def voices(split: str) -> tuple[str, ...]:
+    """Return the voices of a split."""
+    return {"tune": TUNE_VOICES, "test": TEST_VOICES, ALL: TUNE_VOICES + TEST_VOICES}[split]
 
 
 def told(split: str, task: str = "route") -> list[Told]:
     """Return the instructions of the voices of a split, as they were said."""
     made = []
-    for voice in TEST_VOICES if split == "test" else TUNE_VOICES:
+    for voice in voices(split):
         for text in spoken.voice(voice):
             if text.task == task:
                 parts = tuple(said for said, plain in text.parts if plain)
@@ -92,10 +99,9 @@ def told(split: str, task: str = "route") -> list[Told]:
 
 def asides(split: str) -> list[tuple[str, str]]:
     """Return (voice, what it says that tells nothing of the way)."""
-    voices = TEST_VOICES if split == "test" else TUNE_VOICES
     return [
         (voice, said)
-        for voice in voices
+        for voice in voices(split)
         for text in spoken.voice(voice)
         for said, plain in text.parts
         if not plain

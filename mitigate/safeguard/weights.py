@@ -3,16 +3,18 @@
 They are of the counts of ``evidence.py``: of a sentence by itself (``OWN``), beside others
 (``CONTEXT``), of a part of one (``PART``); and of ``front.py`` (``FRONT``). ``WORDS``: words and
 pairs of them to the log odds of attacks against routes. ``STYLE``: words that mark a manner.
+The environment's MITIGATE_RULES names another such file, to measure one fit beside another.
 """
 
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 FILE = Path(__file__).with_suffix(".json")
 
-_fitted = json.loads(FILE.read_text(encoding="utf-8"))
+_fitted = json.loads(Path(os.environ.get("MITIGATE_RULES", FILE)).read_text(encoding="utf-8"))
 OWN: dict[str, float] = _fitted["own"]
 CONTEXT: dict[str, float] = _fitted["context"]
 PART: dict[str, float] = _fitted["part"]

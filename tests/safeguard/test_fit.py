@@ -9,7 +9,7 @@ def test_only_write_replaces_the_weights(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(weights, "FILE", tmp_path / "weights.json")
     monkeypatch.setattr(fit, "style_words", lambda: ["kindly", "stroll"])
     fitted = {"own": {"bias": -2.5, "text": 1.2503}}
-    monkeypatch.setattr(fit, "fit_weights", lambda: (fitted, {"the_door": -0.75, "ignore": 1.5}))
+    monkeypatch.setattr(fit, "fit_weights", lambda split: (fitted, {"the_door": -0.75, "ignore": 1.5}))
     fit.main([])
     printed = capsys.readouterr().out
     assert not weights.FILE.exists()
@@ -25,6 +25,7 @@ def test_only_the_front_is_fitted_when_asked(tmp_path, monkeypatch):
     file.write_text(weights.FILE.read_text(encoding="utf-8"))
     before = json.loads(file.read_text())
     monkeypatch.setattr(weights, "FILE", file)
-    monkeypatch.setattr(fit, "front_weights", lambda: {"bias": 1.0})
+    monkeypatch.setattr(fit, "examples", lambda split: [])
+    monkeypatch.setattr(fit, "front_weights", lambda found: {"bias": 1.0})
     fit.main(["--front", "--write"])
     assert json.loads(file.read_text()) == {**before, "front": {"bias": 1.0}}
