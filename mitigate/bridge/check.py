@@ -25,6 +25,7 @@ from mitigate.corruptions.gallery import depth_picture
 
 SHOWN = 4  # cameras of a panorama in a row of the sheet
 SIDE, TITLE, LABEL = 160, 24, 170  # pixels: height of a picture, of a title, width of the names
+HEADING = "heading"  # beside the cameras in the file of the first frames
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
 
 
@@ -43,13 +44,18 @@ class FirstLook:
     ) -> None:
         """Write the frames, once."""
         if not self.file.is_file():
-            frames = {camera.name: camera.read(memory, offsets) for camera in rig.cameras}
+            frames = {of(c.name): c.read(memory, offsets) for c in rig.cameras}
             heading = told.get("heading")
-            frames[".heading"] = np.array([] if heading is None else [heading])
+            frames[HEADING] = np.array([] if heading is None else [heading])
             write_atomically(self.file, lambda path: _save(path, frames))
 
     def end(self, told: Mapping[str, Any]) -> None:
         """Nothing: one look is enough."""
+
+
+def of(camera: str) -> str:
+    """Return the name of a camera's frame in the file: none that `numpy.savez` takes itself."""
+    return f"camera {camera}"
 
 
 def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
@@ -57,8 +63,8 @@ def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
         np.savez(file, **frames)  # type: ignore[arg-type]
 
 
-def check(cfg: DictConfig, command: Sequence[str]) -> Path:
-    """Run ``command`` up to its first frames; return the path of the sheet.
+def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
+    """Run ``command`` up to its first frames; return the path of the sheet, None without cameras.
 
     Raises ValueError if it ends before, or shows nothing within ``LATE`` seconds.
     """
@@ -85,6 +91,9 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path:
         print(f"  {other.name}: {f'not applicable, {reason}' if reason else 'applies'}")
         if not reason:
             fitting += [p for p in other.corruption.parts if p.modality in (RGB, DEPTH)]
+    if not rig.groups:
+        print("no frame was named as rgb or depth: there is nothing to draw", flush=True)
+        return None
     with np.load(file, allow_pickle=False) as frames:
         picture = sheet(rig, dict(frames), list(dict.fromkeys(fitting)), told.first, cfg.seed)
     path = out / "sheet.png"
@@ -148,7 +157,7 @@ def sheet(
     """Return uint8 RGB: a row for clean and each corruption, with the cameras of its modality."""
     scene = str(first.get("scene", "")).rpartition("/")[2]
     key = Key(seed, f"{scene}/{first.get('episode', '')}", 0)
-    heading = frames[".heading"]
+    heading = frames[HEADING]
     by_kind = {group.cameras[0].kind: group for group in reversed(rig.groups)}
     rows: list[tuple[str, str, Corruption | None]] = [("clean", kind, None) for kind in by_kind]
     rows += [(c.name, c.modality, c) for c in corruptions]
@@ -157,7 +166,7 @@ def sheet(
         group = by_kind[kind]
         views = np.zeros(group.shape, group.cameras[0].dtype)
         for camera, view in zip(group.cameras, group.views, strict=True):
-            views[view] = frames[camera.name]
+            views[view] = frames[of(camera.name)]
         if corruption is not None:
             at = float(heading[0]) if heading.size else None
             views = corrupted(group, views, corruption, key, at)

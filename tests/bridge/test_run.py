@@ -227,6 +227,28 @@ def test_a_check_says_what_the_program_sees_and_draws_it(tmp_path, monkeypatch, 
     assert cv2.imread(str(sheet)).shape[0] == 4 * 164  # clean of each kind, and two corruptions
 
 
+@pytest.mark.parametrize("name", ["file", "allow_pickle", "heading", "a/b", "é"])
+def test_a_check_draws_cameras_of_any_name(name, tmp_path):
+    cameras, program = {name: {"type": "rgb"}}, tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook, numpy\n"
+        f"frames = {{{name!r}: numpy.full((8, 8, 3), 90, 'uint8')}}\n"
+        f"mitigate_hook.connect('a').corrupt(frames, cameras={cameras})\n"
+    )
+    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
+    assert cv2.imread(str(check(cfg, [sys.executable, str(program)]))) is not None
+
+
+def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
+    program = tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook\nmitigate_hook.connect('a').corrupt({'pose': [0, 0]})\n"
+    )
+    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
+    assert check(cfg, [sys.executable, str(program)]) is None
+    assert "nothing to draw" in capsys.readouterr().out
+
+
 def test_options_and_command_are_told_apart():
     assert split_command(["suite=full", "--", "bash", "run.sh", "--", "x"]) == (
         ["suite=full"],

@@ -9,7 +9,8 @@ def test_only_write_replaces_the_weights(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(weights, "FILE", tmp_path / "weights.json")
     monkeypatch.setattr(fit, "style_words", lambda: ["kindly", "stroll"])
     fitted = {"own": {"bias": -2.5, "text": 1.2503}}
-    monkeypatch.setattr(fit, "fit_weights", lambda split: (fitted, {"the_door": -0.75, "ignore": 1.5}))
+    table = {"the_door": -0.75, "ignore": 1.5}
+    monkeypatch.setattr(fit, "fit_weights", lambda split: (fitted, table))
     fit.main([])
     printed = capsys.readouterr().out
     assert not weights.FILE.exists()

@@ -9,6 +9,13 @@ import pytest
 
 from mitigate.scale.launcher import RayConfig, SlurmConfig
 
+# a worker that dies while it starts is noticed so soon (Ray's own default is a minute)
+HEAD = {
+    "num_cpus": 1,
+    "include_dashboard": False,
+    "_system_config": {"worker_register_timeout_seconds": 15},
+}
+
 
 @pytest.fixture(scope="session")
 def cluster():
@@ -18,7 +25,7 @@ def cluster():
 
     path = os.environ.get("PYTHONPATH")
     os.environ["PYTHONPATH"] = os.pathsep.join([str(Path(__file__).parents[2]), path or ""])
-    made = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
+    made = Cluster(initialize_head=True, head_node_args=HEAD)
     made.nodes = [made.add_node(num_cpus=1) for _ in range(2)]
     ray.init(address=made.address, log_to_driver=False)
     yield made
