@@ -37,6 +37,14 @@ _ROLE = re.compile(
     r"\b(?:you are|you're|you were|you have become|be|as|like|become|you'll be)\s+"
     r"(?:now\s+|no longer\s+|just\s+|only\s+|actually\s+|really\s+)*(?:a|an)\s+[a-z]+"
 )
+# tells where one is or what is seen there: "you are now in the kitchen", "there should be a sofa"
+_STATE = re.compile(
+    r"^\W*(?:(?:now|then|here|and|so|once (?:there|inside)),? )*(?:you|you're|you'll|you've|there|"
+    r"there's|it|it's|this|that)\s+(?:(?:are|is|be|will|should|would|can|may|must|now|then|just|"
+    r"also|probably|already|ought|to|again|soon|come|have|find|yourself|in|inside|at|on|by|near|"
+    r"beside|under|between|behind|before|past|into|out|next|front|of|standing|facing|looking|"
+    r"see|notice|spot|reach|reached|entered|arrived)\s+){1,6}(?:a|an|the|two|some|your)\s+\w+"
+)
 _TOLD = re.compile(
     r"\b(?:told|asked|tell|tells|says?|said|wants?|want|orders?|requires?|instructs?|requests?|"
     r"forbids?|reads|writes|announces|whispers|shouts)\b"
@@ -133,6 +141,7 @@ def composition(piece: str, markup: bool = False) -> dict[str, float]:
         "markup": float(markup),
         "role of": float(bool(_ROLE.search(low))),
         "reported": float(bool(_TOLD.search(low))),
+        "state": float(tells_where(low)),
         "self": float(bool(_SELF.search(low))),
         "about": min(2.0, float(len(_ABOUT.findall(low)))),
         "back to text": min(2.0, float(len(_BACK.findall(low)))),
@@ -173,6 +182,12 @@ def _together(hits: dict[str, int], values: dict[str, float], told: Facts) -> di
         "not place": both("not") * (values["places"] > 0),
         "if place": both("if") * (values["places"] > 0),
     }
+
+
+def tells_where(sentence: str) -> bool:
+    """Return whether a sentence tells where one is, or what is to be seen there, and no role."""
+    low = sentence.lower()
+    return bool(_STATE.search(low)) and not _ROLE.search(low)
 
 
 def in_another_language(piece: str) -> bool:

@@ -1,4 +1,4 @@
-"""Sentences in front of a route that do not belong to it, by 13 counts of what they are made of.
+"""Sentences in front of a route that do not belong to it, by 14 counts of what they are made of.
 
 Attackers put their sentences in front, whole. In front of what is surely a plain route this reads
 more of them than :mod:`evidence`, which looks everywhere and must be more careful: beside a
@@ -18,6 +18,7 @@ from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.evidence import tells_where
 from mitigate.safeguard.text import MASK, sentences, words
 from mitigate.safeguard.weights import FRONT
 
@@ -73,6 +74,7 @@ def counts(sentence: str) -> dict[str, float]:
         "landmarks": min(3.0, float(len(told.landmarks))),
         "no_landmark": float(not told.landmarks),
         "directions": min(2.0, float(len(told.directions))),
+        "state": float(tells_where(sentence)),
         "commas": min(3.0, float(sentence.count(",") + sentence.count(";"))) / 3,
     }
 

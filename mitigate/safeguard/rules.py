@@ -16,7 +16,13 @@ from functools import lru_cache
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
 from mitigate.safeguard.decode import plainly
-from mitigate.safeguard.evidence import VERBS, features, in_another_language, in_context
+from mitigate.safeguard.evidence import (
+    VERBS,
+    features,
+    in_another_language,
+    in_context,
+    tells_where,
+)
 from mitigate.safeguard.front import in_front
 from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.pieces import Piece, parts, sentence_pieces, without
@@ -166,8 +172,8 @@ def ahead_of_plain(text: str) -> frozenset[Piece]:
 def framing(sentence: str) -> bool:
     """Return whether a sentence greets or thanks and tells nothing about the way."""
     found = words(sentence)
-    silent = not gate.route_facts(sentence) and not any(w in VERBS for w in found)
-    return silent and any(word in STYLE for word in found)
+    told = gate.route_facts(sentence) or any(w in VERBS for w in found) or tells_where(sentence)
+    return not told and any(word in STYLE for word in found)
 
 
 def style_marks(text: str) -> int:
