@@ -1,7 +1,7 @@
 """Show, check and add entries of the leaderboard (docs/leaderboard.md).
 
 mitigate leaderboard show --out leaderboard.html
-mitigate leaderboard check docs/leaderboard/stacked.json
+mitigate leaderboard check docs/leaderboard/harden.json
 mitigate leaderboard add rows.jsonl.gz --name mine --training-data "R2R-CE train"
 """
 
