@@ -87,6 +87,17 @@ def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -
     return found
 
 
+def begun_from(node: DictConfig, weights: str | None) -> DictConfig:
+    """Return ``node`` with the settings that it does not name, such as the vocabulary, as in the
+    ``weights`` that a training begins from; None: as it is. Errors as of :func:`carried`."""
+    if weights is None:
+        return node
+    open_ = {k: v for k, v in carried(node, weights).items() if k not in node}
+    merged = OmegaConf.merge(OmegaConf.create(_plain(node)), open_)
+    assert isinstance(merged, DictConfig)
+    return merged
+
+
 def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     """Return the settings of the agent that ``weights`` belong to, none if they do not say.
 

@@ -25,7 +25,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
 from mitigate.core import checkpoint, conf, precision, seeding
-from mitigate.core.build import OWN_CONFIG_ONLY, build_agent, maker
+from mitigate.core.build import OWN_CONFIG_ONLY, begun_from, build_agent, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.locks import FolderLock
 from mitigate.core.progress import duration, say
@@ -117,7 +117,8 @@ def run(cfg: DictConfig) -> Path:
 
 
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
-    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
+    node = cfg.agent if cfg.init_parts else begun_from(cfg.agent, cfg.init)
+    agent = build_agent(node, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
     _check_settings(cfg.agent, agent)
     OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
     for name, stage in cfg.stages.items():

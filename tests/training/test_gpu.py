@@ -46,11 +46,11 @@ def losses(said):
 
 @pytest.mark.parametrize("agent,recipe", KINDS)
 def test_it_loses_on_the_gpu_what_it_loses_on_the_processor(tmp_path, capfd, agent, recipe):
-    found = {}
-    for device in ("cpu", GPU):
-        trained(tmp_path / device, device, f"agent={agent}", f"recipe={recipe}")
-        found[device] = losses("".join(capfd.readouterr()))
-    assert found["cpu"] and found[GPU] == pytest.approx(found["cpu"], rel=0.02, abs=1e-3)
+    found = []
+    for place, device in (("processor", "cpu"), ("gpu", GPU)):
+        trained(tmp_path / place, device, f"agent={agent}", f"recipe={recipe}")
+        found.append(losses("".join(capfd.readouterr())))
+    assert found[0] and found[1] == pytest.approx(found[0], rel=0.02, abs=1e-3)
 
 
 @pytest.mark.parametrize("first,then", [("cpu", GPU), (GPU, "cpu")])
@@ -64,16 +64,17 @@ def test_a_run_begun_on_one_goes_on_on_the_other(tmp_path, first, then):
 
 
 def test_the_shipped_agent_walks_as_on_the_processor(tmp_path):
-    node, rows = conf.load_config("train", []).agent, {}
-    for device in ("cpu", GPU):
-        rows[device] = evaluate(
+    node, rows = conf.load_config("train", []).agent, []
+    for place, device in (("processor", "cpu"), ("gpu", GPU)):
+        walked = evaluate(
             load(node, "checkpoints/base").to(device),
             partial(ApartmentsWorld, 64),
             load_episodes("val_seen")[:6],
             [CLEAN, Corruption("spatter", 0.6)],
             name="base",
-            out=tmp_path / f"{device}.jsonl",
+            out=tmp_path / f"{place}.jsonl",
             split="val_seen",
         )
-    same = [a["success"] == b["success"] for a, b in zip(rows["cpu"], rows[GPU], strict=True)]
+        rows.append(walked)
+    same = [a["success"] == b["success"] for a, b in zip(*rows, strict=True)]
     assert sum(same) >= len(same) - 1  # a choice of equals may turn out otherwise

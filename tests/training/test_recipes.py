@@ -6,11 +6,16 @@ import pytest
 from omegaconf import OmegaConf
 
 from mitigate.core import checkpoint, conf
-from mitigate.core.build import build
+from mitigate.core.build import build, settings_of
 from mitigate.training import train
 from tests.safeguard.conftest import write_tiny_model
 
 TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
+OTHERS = (  # kinds of agent from their shipped weights, each through a kind of recipe
+    ("recurrent", "da_per_episode"),
+    ("recurrent_rgb", "ts_distill"),
+    ("frontier", "conv_adapter"),
+)
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
 
 
@@ -40,3 +45,15 @@ def test_every_recipe_trains_two_steps(tmp_path, name):
     for stage in cfg.stages:
         assert checkpoint.checkpoints(folder / stage)[-1].name == "step-00000002.pt"
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
+
+
+@pytest.mark.parametrize("agent,recipe", OTHERS)
+def test_other_kinds_of_agent_go_on_from_their_shipped_weights(tmp_path, agent, recipe):
+    options = [f"agent={agent}", f"recipe={recipe}", "debug=smoke", "workers=0", "env.size=32"]
+    cfg = conf.load_config("train", [*options, "evaluation.enabled=false", f"runs={tmp_path}"])
+    cfg.agent.size, cfg.rollouts = 32, 1
+    for stage in cfg.stages.values():
+        stage.trainer.steps = 1
+    folder = train.run(cfg)
+    carried = settings_of(cfg.agent, f"checkpoints/{agent}/base")
+    assert settings_of(cfg.agent, folder / "agent").get("vocabulary") == carried.get("vocabulary")
