@@ -2,7 +2,8 @@
 
 Attacks at every place of plain and styled instructions, and what of the route was lost with them;
 legitimate sentences that look like attacks; lies and honest rewrites before the gate.
-``--split test`` is what nothing was fitted on or chosen by.
+``--split test`` is what no threshold was chosen by; the shipped weights are fitted on it, so
+measure others there: ``MITIGATE_RULES=tune.json`` (:mod:`mitigate.safeguard.fit`).
 """
 
 from __future__ import annotations
