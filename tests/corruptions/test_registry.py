@@ -77,7 +77,7 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
 
 
 def test_a_corruption_of_another_package_joins_a_suite_a_schedule_and_the_list(installed, tmp_path):
-    options = ["episodes=2", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
+    options = ["episodes=1", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
     said = run(installed, ROOT, "-m", "mitigate.evaluate", *options, f"out={tmp_path}/out")
     assert "| Rain |" in said and "PRS-SR (Other)" in said
     rows = [json.loads(x) for x in (tmp_path / "out/rows.jsonl").read_text().splitlines()]
@@ -86,7 +86,7 @@ def test_a_corruption_of_another_package_joins_a_suite_a_schedule_and_the_list(i
     changed = (tmp_path / "rain.py").read_text().replace('version="1"', 'version="2"')
     (tmp_path / "rain.py").write_text(changed)
     said = run(installed, ROOT, "-m", "mitigate.evaluate", *options, f"out={tmp_path}/out")
-    assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 8
+    assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 4
     assert "rain" in run(installed, tmp_path, "-m", "mitigate.corrupt", "--list")
     code = (
         "from mitigate.corruptions import *\n"
