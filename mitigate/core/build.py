@@ -88,11 +88,12 @@ def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -
 
 
 def begun_from(node: DictConfig, weights: str | None) -> DictConfig:
-    """Return ``node`` with the settings that it does not name, such as the vocabulary, as in the
-    ``weights`` that a training begins from; None: as it is. Errors as of :func:`carried`."""
+    """Return ``node`` with the settings that it leaves open (null, or not named: adapters, the
+    vocabulary) as in the ``weights`` that a training begins from; None: as it is. Errors as of
+    :func:`carried`."""
     if weights is None:
         return node
-    open_ = {k: v for k, v in carried(node, weights).items() if k not in node}
+    open_ = {k: v for k, v in carried(node, weights).items() if node.get(k) is None}
     merged = OmegaConf.merge(OmegaConf.create(_plain(node)), open_)
     assert isinstance(merged, DictConfig)
     return merged

@@ -6,15 +6,16 @@ import pytest
 from omegaconf import OmegaConf
 
 from mitigate.core import checkpoint, conf
-from mitigate.core.build import build, settings_of
+from mitigate.core.build import build, carried
 from mitigate.training import train
 from tests.safeguard.conftest import write_tiny_model
 
 TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
-OTHERS = (  # kinds of agent from their shipped weights, each through a kind of recipe
-    ("recurrent", "da_per_episode"),
-    ("recurrent_rgb", "ts_distill"),
-    ("frontier", "conv_adapter"),
+OTHERS = (  # kinds of agent from shipped weights, each through a kind of recipe
+    ("recurrent", "da_per_episode", "recurrent/base"),
+    ("recurrent_rgb", "ts_distill", "recurrent_rgb/base"),
+    ("frontier", "conv_adapter", "frontier/base"),
+    ("topological", "da_per_episode", "hardened/harden"),
 )
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
 
@@ -47,13 +48,17 @@ def test_every_recipe_trains_two_steps(tmp_path, name):
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 
-@pytest.mark.parametrize("agent,recipe", OTHERS)
-def test_other_kinds_of_agent_go_on_from_their_shipped_weights(tmp_path, agent, recipe):
+@pytest.mark.parametrize("agent,recipe,weights", OTHERS)
+def test_a_training_goes_on_with_the_words_and_adapters_of_its_weights(
+    tmp_path, agent, recipe, weights
+):
     options = [f"agent={agent}", f"recipe={recipe}", "debug=smoke", "workers=0", "env.size=32"]
+    options.append(f"init=checkpoints/{weights}")
     cfg = conf.load_config("train", [*options, "evaluation.enabled=false", f"runs={tmp_path}"])
     cfg.agent.size, cfg.rollouts = 32, 1
     for stage in cfg.stages.values():
         stage.trainer.steps = 1
     folder = train.run(cfg)
-    carried = settings_of(cfg.agent, f"checkpoints/{agent}/base")
-    assert settings_of(cfg.agent, folder / "agent").get("vocabulary") == carried.get("vocabulary")
+    before, after = (carried(cfg.agent, w) for w in (f"checkpoints/{weights}", folder / "agent"))
+    assert before.get("vocabulary") in (None, after.get("vocabulary"))
+    assert recipe == "conv_adapter" or after["adapters"] == before["adapters"]
