@@ -34,6 +34,23 @@ class Agent(Protocol):
     def act(self, observation: Mapping[str, np.ndarray]) -> int: ...
 
 
+@runtime_checkable
+class SideBySide(Protocol):
+    """An agent that can walk several episodes at once, which costs less than one after the other.
+
+    together: how many, at most. ``begin(instruction)`` returns what it must remember of an episode;
+    ``act_all`` answers an observation of each of n episodes, n actions, and changes their memories.
+    No answer depends on the other episodes, nor on how many there are.
+    """
+
+    together: int
+
+    def begin(self, instruction: str) -> Any: ...
+    def act_all(
+        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
+    ) -> list[int]: ...
+
+
 @dataclass
 class Output:
     """What an agent makes of B decisions.

@@ -1,12 +1,13 @@
-"""One episode in a world: what the agent hears and sees, and how well it went."""
+"""Episodes in a world: what the agent hears and sees, and how well it went."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from mitigate.agents.agent import Agent
+from mitigate.agents.agent import Agent, SideBySide
 from mitigate.corruptions import (
     Corruption,
     Key,
@@ -37,14 +38,68 @@ def run_episode(
     ``repaired``: what a safeguard makes of instructions; one that is not in it stays as it is.
     ``restorer``: goes over the frames before the agent reads them.
     """
-    met = Corrupted(world, corruption, seed)
-    shown: World = met if restorer is None else Restored(met, restorer)
-    observation = shown.reset(episode)
+    walk = _Walk(world, episode, corruption, seed, restorer)
     with instructed(agent, episode, corruption, seed, repaired):
-        while not met.done:
-            observation = shown.step(agent.act(observation))
-    found = {**met.measures(), "decisions": met.looks}
-    return {name: found.pop(name) for name in MEASURES if name in found} | found
+        while not walk.done:
+            walk.step(agent.act(walk.observation))
+    return walk.measures()
+
+
+def run_side_by_side(
+    agent: SideBySide,
+    worlds: Sequence[World],
+    jobs: Sequence[tuple[Episode, Corruption, int]],
+    repaired: Mapping[str, str] | None = None,
+    restorer: Restorer | None = None,
+) -> Iterator[dict[str, Any]]:
+    """Run (episode, corruption, seed) of each job, as many at a time as there are worlds, and yield
+    their measures in order, as :func:`run_episode` gives them."""
+    waiting, free = deque(enumerate(jobs)), list(worlds)
+    under_way: dict[int, tuple[_Walk, World, Any]] = {}
+    measured: dict[int, dict[str, Any]] = {}
+    for number in range(len(jobs)):
+        while number not in measured:
+            while waiting and free:
+                begun, job = waiting.popleft()
+                world, text = free.pop(), instruction(*job)
+                memory = agent.begin((repaired or {}).get(text, text))
+                under_way[begun] = _Walk(world, *job, restorer), world, memory
+            walks, _, memories = zip(*under_way.values(), strict=True)
+            actions = agent.act_all([walk.observation for walk in walks], memories)
+            for walk, action in zip(walks, actions, strict=True):
+                walk.step(action)
+            for ended in [key for key, (walk, _, _) in under_way.items() if walk.done]:
+                walk, world, _ = under_way.pop(ended)
+                measured[ended] = walk.measures()
+                free.append(world)
+        yield measured.pop(number)
+
+
+class _Walk:
+    """An episode under way, and what the agent sees of it: ``observation``."""
+
+    def __init__(
+        self,
+        world: World,
+        episode: Episode,
+        corruption: Corruption,
+        seed: int,
+        restorer: Restorer | None,
+    ) -> None:
+        self.met = Corrupted(world, corruption, seed)
+        self.shown: World = self.met if restorer is None else Restored(self.met, restorer)
+        self.observation = self.shown.reset(episode)
+
+    @property
+    def done(self) -> bool:
+        return self.met.done
+
+    def step(self, action: int) -> None:
+        self.observation = self.shown.step(action)
+
+    def measures(self) -> dict[str, Any]:
+        found = {**self.met.measures(), "decisions": self.met.looks}
+        return {name: found.pop(name) for name in MEASURES if name in found} | found
 
 
 def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:

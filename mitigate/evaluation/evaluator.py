@@ -2,8 +2,9 @@
 
 An episode is run alone, so its result does not depend on how many run beside it; rows are written
 as they come, and an interrupted evaluation continues where it stopped. The conditions of an episode
-run one after the other in one process, which keeps what it rendered and what the agent encoded:
-equal frames give equal features, so no row depends on what was kept.
+run in one process, which keeps what it rendered and what the agent encoded: equal frames give equal
+features, so no row depends on what was kept. An agent that can (``agents/agent.py``: SideBySide)
+walks several at once.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from typing import Any, ClassVar
 
 import torch
 
-from mitigate.agents.agent import Agent
+from mitigate.agents.agent import Agent, SideBySide
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.identity import identity as identity_of
@@ -28,7 +29,7 @@ from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
-from mitigate.evaluation.episode import instruction, run_episode
+from mitigate.evaluation.episode import instruction, run_episode, run_side_by_side
 from mitigate.restoration.restorer import Restorer
 from mitigate.safeguard.guard import Safeguard
 from mitigate.scale.launcher import LauncherConfig, count, results
@@ -80,16 +81,31 @@ class EpisodeTask:
         """Rows of ``jobs``, which should be of one episode: frames and features are kept."""
         assert self.world is not None, "work() is called while ready()"
         with remembering(self.agent), remembering(self.world):
-            for episode, condition, label in jobs:
-                seed = label["seed"]
-                measures = run_episode(
-                    self.agent, self.world, episode, condition, seed, self.repaired, self.restorer
-                )
+            told = [(episode, condition, label["seed"]) for episode, condition, label in jobs]
+            measured = self._measures(self.world, told)
+            for (_, _, label), measures in zip(jobs, measured, strict=True):
                 yield {**label, **measures}
+
+    def _measures(
+        self, world: World, told: Sequence[tuple[Episode, Corruption, int]]
+    ) -> Iterator[dict[str, Any]]:
+        """Of (episode, corruption, seed) each, in order."""
+        count, beside = _together(self.agent, world), getattr(world, "beside", None)
+        if beside is not None and count > 1:
+            worlds = [world, *(beside() for _ in range(count - 1))]
+            yield from run_side_by_side(self.agent, worlds, told, self.repaired, self.restorer)
+            return
+        for job in told:
+            yield run_episode(self.agent, world, *job, self.repaired, self.restorer)
 
     def name(self, job: Job) -> str:
         """The episode and its condition."""
         return f"episode {job[0].episode_id}, {job[1].name}"
+
+
+def _together(agent: Any, world: Any) -> int:
+    """How many episodes the agent walks at once in such worlds."""
+    return agent.together if isinstance(agent, SideBySide) and hasattr(world, "beside") else 1
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
@@ -146,7 +162,9 @@ def evaluate(
     repaired = {decision.original: decision.text for decision in decided}
     if todo:
         task, title = EpisodeTask(agent, world, repaired, restorer), f"{name}, {split}"
-        _run(task, todo, len(jobs), out, workers, launcher, title)
+        at_once = _together(agent, made)
+        groups = _groups(todo, 2 * at_once if at_once > 1 else 1)
+        _run(task, groups, len(jobs), out, workers, launcher, title)
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
 
 
@@ -193,17 +211,17 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
 
 def _run(
     task: EpisodeTask,
-    jobs: list[Job],
+    groups: list[list[Job]],
     total: int,
     out: Path,
     workers: int | None,
     launcher: LauncherConfig,
     title: str,
 ) -> None:
-    """Run the jobs, an episode's in one process, and append their rows to ``out`` as they come."""
-    groups = [list(group) for _, group in groupby(jobs, lambda job: job[0].episode_id)]
-    started = min(count(launcher, workers, len(jobs), WORTH), len(groups))
-    with Progress(title, total, unit="episode", start=total - len(jobs)) as progress:
+    """Run the jobs, a group's in one process, and append their rows to ``out`` as they come."""
+    todo = sum(map(len, groups))
+    started = min(count(launcher, workers, todo, WORTH), len(groups))
+    with Progress(title, total, unit="episode", start=total - todo) as progress:
         if started > 1:
             progress.say(f"{title}: {started} {launcher.name} workers")
         try:
@@ -212,6 +230,17 @@ def _run(
             raise processes.WorkersDied(
                 f"{error} The finished rows are in {out}: the same command goes on from there."
             ) from None
+
+
+def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
+    """The jobs of each episode, or of so many of them that they are ``least`` or more."""
+    groups: list[list[Job]] = []
+    for _, group in groupby(jobs, lambda job: job[0].episode_id):
+        if groups and len(groups[-1]) < least:
+            groups[-1] += group
+        else:
+            groups.append(list(group))
+    return groups
 
 
 def _write(found: Iterable[tuple[int, Any] | None], out: Path, progress: Progress) -> None:

@@ -35,7 +35,8 @@ class World(Protocol):
     sensors: what each entry of an observation is; the frames that are corrupted are called "rgb"
     and "depth", and the place is "pose". rule: what its ``measures`` count as success, in words,
     such as "STOP and geodesic < 3 m"; it is part of every row. done: no step may follow.
-    ``truth()`` (optional): labels of what is seen from here, arrays by name.
+    ``truth()`` (optional): labels of what is seen from here, arrays by name. ``beside()``
+    (optional): another world like this one, for an episode at the same time.
     """
 
     rule: str

@@ -2,16 +2,19 @@
 
 It stands where VLN-CE's recurrent agents do, with RGB alone where single-camera language models
 do. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action.
+``begin`` and ``act_all`` do the same for several episodes side by side.
 """
 
 from __future__ import annotations
 
 import copy
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import torch
+import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents import camera
@@ -23,12 +26,21 @@ from mitigate.agents.encoders import SIZE
 from mitigate.agents.recurrent import learning
 from mitigate.agents.recurrent.learning import Piece, WalkDecisions
 from mitigate.agents.recurrent.odometer import Odometer
-from mitigate.agents.recurrent.policy import ACTIONS, Policy, State
-from mitigate.agents.text import Vocabulary, pad
+from mitigate.agents.recurrent.policy import ACTIONS, Policy, State, Text
+from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary, pad
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
+
+
+@dataclass
+class Walk:
+    """What it remembers of an episode: words and state of one row, and its steps."""
+
+    text: Text
+    state: State
+    odometer: Odometer
 
 
 class RecurrentAgent(nn.Module):
@@ -44,6 +56,7 @@ class RecurrentAgent(nn.Module):
 
     views = 1
     actions = ACTIONS
+    together = 8  # episodes side by side (ours): a step of one costs 2.5 times as much alone
     loss_weights = learning.LOSS_WEIGHTS
 
     def __init__(
@@ -130,27 +143,57 @@ class RecurrentAgent(nn.Module):
     # closed loop ------------------------------------------------------------------------------
 
     @torch.inference_mode()
-    def reset(self, instruction: str) -> None:
-        """Start an episode. Raises TypeError if ``instruction`` is no string; warns if the agent
-        knows none of its words."""
+    def begin(self, instruction: str) -> Walk:
+        """What it remembers of an episode. Raises TypeError if ``instruction`` is no string; warns
+        if the agent knows none of its words."""
         checked.instruction(instruction, self.vocabulary)
-        self._text = self.policy.read(self.tokens([instruction]))
-        self._state, self._odometer = State.start(self._text), Odometer()
+        tokens = self.tokens([instruction])
+        tokens = F.pad(tokens, (0, MAX_WORDS - tokens.shape[1]), value=PAD)  # all of one length
+        text = self.policy.read(tokens)
+        return Walk(text, State.start(text), Odometer())
+
+    @torch.inference_mode()
+    def act_all(
+        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Walk]
+    ) -> list[int]:
+        """The likeliest action of each of up to ``together`` episodes. Raises what
+        ``agents/observation.py`` refuses."""
+        count = len(memories)
+        spare = self.together - count  # filled up: sums then round alike for any number of episodes
+        observations = [*observations, *[observations[-1]] * spare]
+        return self._answers(observations, [*memories, *[memories[-1]] * spare], count)
+
+    def _answers(
+        self, observations: Sequence[Mapping[str, np.ndarray]], walks: Sequence[Walk], count: int
+    ) -> list[int]:
+        """Actions of the first ``count``, whose memories change."""
+        frames = {
+            name: np.stack([checked.frame(seen, name, 1) for seen in observations])
+            for name in self.sensors
+        }
+        columns = self.policy.look(learning.encode(self, frames))
+        moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in walks]))
+        text = Text(*map(torch.cat, zip(*(walk.text for walk in walks), strict=True)))
+        state = State.join([walk.state for walk in walks])
+        state = self.policy.step(text, columns, moves.to(self.device), state)
+        actions = self.policy.answer(state.hidden).argmax(-1).tolist()[:count]
+        for row, (walk, action) in enumerate(zip(walks, actions, strict=False)):
+            walk.state = state.rows(torch.tensor([row], device=self.device))
+            walk.odometer.add(action)
+        return actions
+
+    def reset(self, instruction: str) -> None:
+        """Start an episode; see :meth:`begin`."""
+        self._walk = self.begin(instruction)
 
     @torch.inference_mode()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """The likeliest action. Raises RuntimeError before the first ``reset``, and what
         ``agents/observation.py`` refuses."""
-        if not hasattr(self, "_odometer"):
+        if not hasattr(self, "_walk"):
             raise RuntimeError("Start the episode first: agent.reset(instruction).")
-        frames = {name: checked.frame(observation, name, 1)[None] for name in self.sensors}
-        columns = self.policy.look(learning.encode(self, frames))
-        moves = torch.from_numpy(self._odometer.moves())[None].to(self.device)
-        self._state = self.policy.step(self._text, columns, moves, self._state)
-        action = int(self.policy.answer(self._state.hidden)[0].argmax())
-        self._odometer.add(action)
-        return action
+        return self._answers([observation], [self._walk], 1)[0]
 
     def taken(self, action: int, metres: float, radians: float) -> None:
         """Somebody else drives: count what was done in place of the last answer."""
-        self._odometer.correct(action, metres, radians)
+        self._walk.odometer.correct(action, metres, radians)

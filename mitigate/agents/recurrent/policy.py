@@ -8,6 +8,7 @@ they speak of, a second cell keeps both. The attention over words also knows whe
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -52,6 +53,11 @@ class State:
     def start(cls, text: Text) -> State:
         empty = torch.zeros_like(text.mask, dtype=text.values.dtype)
         return cls(text.values.new_zeros(len(text.values), text.values.shape[-1]), empty, empty)
+
+    @classmethod
+    def join(cls, states: Sequence[State]) -> State:
+        """All rows of ``states``, of texts of one length."""
+        return cls(*(torch.cat([vars(s)[name] for s in states]) for name in vars(states[0])))
 
     def rows(self, index: Tensor) -> State:
         return State(self.hidden[index], self.last[index], self.sum[index])

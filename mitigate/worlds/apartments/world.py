@@ -92,6 +92,12 @@ class ApartmentsWorld:
         finally:
             self._memory = before
 
+    def beside(self) -> ApartmentsWorld:
+        """Another one, for an episode at the same time; both keep what the other rendered."""
+        other = ApartmentsWorld(**self.__getstate__())
+        other._memory = self._memory
+        return other
+
     # episodes ---------------------------------------------------------------------------------
 
     @property

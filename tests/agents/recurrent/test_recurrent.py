@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,8 +13,9 @@ from mitigate.agents.agent import Seeing, Trainable
 from mitigate.agents.recurrent import RecurrentAgent, learning
 from mitigate.core.observation import DEPTH, FORWARD, RGB, STOP
 from mitigate.core.seeding import generator, seed_everything
-from mitigate.corruptions import Corruption
+from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.evaluator import evaluate
 from mitigate.worlds.apartments.tasks import DrawnEpisodes, load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from mitigate.worlds.world import Corrupted
@@ -59,7 +61,7 @@ def test_a_batch_answers_as_the_agent_does_step_by_step():
     made.reset(episode.instruction.text)
     for state in batch:
         assert made.act(seen) == FORWARD
-        assert torch.allclose(made._state.hidden[0], state, atol=1e-4)
+        assert torch.allclose(made._walk.state.hidden[0], state, atol=1e-4)
         seen = world.step(FORWARD)
 
 
@@ -128,12 +130,40 @@ def test_what_it_is_blind_to_changes_nothing(sense):
     world = World()
     seen = dict(world.reset(load_episodes("val_seen")[0]))
     made.act(seen)
-    first = made._state.hidden
+    first = made._walk.state.hidden
     made.reset("go to the bed")
     if sense != "instruction":
         seen[sense] = (seen[sense] * 0.5).astype(seen[sense].dtype)
     made.act(seen)
-    assert torch.equal(first, made._state.hidden)
+    assert torch.equal(first, made._walk.state.hidden)
+
+
+def test_side_by_side_no_answer_depends_on_the_others():
+    made, episodes = agent(), load_episodes("val_seen")[:3]
+    seen = [World().reset(episode) for episode in episodes]
+    memories = [made.begin(episode.instruction.text) for episode in episodes]
+    actions = made.act_all(seen, memories)
+    for number in (2, 0):  # alone, in another place of the batch
+        alone = made.begin(episodes[number].instruction.text)
+        assert made.act_all([seen[number]], [alone]) == [actions[number]]
+        assert torch.equal(alone.state.hidden, memories[number].state.hidden)
+        made.reset(episodes[number].instruction.text)
+        assert made.act(seen[number]) == actions[number]
+        assert torch.allclose(made._walk.state.hidden, alone.state.hidden, atol=1e-5)
+
+
+def test_side_by_side_in_an_evaluation_every_episode_has_the_row_that_it_has_alone(tmp_path):
+    made, episodes = agent(), load_episodes("val_seen")[:4]
+    with torch.no_grad():
+        made.policy.act[-1].bias[STOP] = 0.1  # it goes some steps
+    met = [CLEAN, Corruption("low_light", 0.8), Corruption("black_box", 1.0)]
+    how = {"name": "test", "split": "val_seen"}
+    found = evaluate(made, World, episodes, met, out=tmp_path / "all.jsonl", **how)
+    assert (
+        evaluate(made, World, episodes, met[1:2], out=tmp_path / "one.jsonl", **how) == found[1::3]
+    )
+    for row, (episode, corruption) in zip(found, product(episodes, met), strict=True):
+        assert run_episode(made, World(), episode, corruption, 0).items() <= row.items()
 
 
 def test_mistakes_say_what_is_wrong():
