@@ -158,7 +158,7 @@ class Cell:
         if told.lost and told.connected < 1:
             return (
                 f"a process of the command ended in the middle of episode {told.lost[0]}, and "
-                f"nothing was heard of any other for {silent:.0f} s; the command was stopped. "
+                f"nothing was heard of any other for {silent:.0f} s; the command was stopped.\n"
                 f"The end of its output:\n{self.tail()}"
             )
         return None
@@ -168,12 +168,12 @@ class Cell:
         if told.refused:
             return told.refused[0]
         if status:
-            return f"the command ended with status {status}. The end of {self.log}:\n{self.tail()}"
+            return f"the command ended with status {status}.\nThe end of {self.log}:\n{self.tail()}"
         if not told.hellos:
             return (
                 "the command ended, but no Python process of it loaded the hook. Does a script "
                 "replace PYTHONPATH (let it append), does it run python with -E, -I or -S, or in a "
-                f"container (docs/bridge.md)? The end of {self.log}:\n{self.tail()}"
+                f"container (docs/bridge.md)?\nThe end of {self.log}:\n{self.tail()}"
             )
         if mitigate_hook.ADAPTERS in self.environment and not told.adapted:
             return (
@@ -184,13 +184,13 @@ class Cell:
             return (
                 "the command ended without an episode. Did it find results of an earlier run? Let "
                 "it write to a folder of each condition: {out} or {condition} in the command "
-                f"stands for one. The end of {self.log}:\n{self.tail()}"
+                f"stands for one.\nThe end of {self.log}:\n{self.tail()}"
             )
         if told.lost:
             return (
                 f"the command ended, but {len(told.lost)} episodes were left in the middle, such "
                 f"as {told.lost[0]}: a process of it died, or its loop gave up. Run again; the "
-                f"condition is measured anew. The end of {self.log}:\n{self.tail()}"
+                f"condition is measured anew.\nThe end of {self.log}:\n{self.tail()}"
             )
         return ""
 

@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -91,7 +92,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     )
     problems = _run_all(cfg, command, out, name, [clean])
     if problems:
-        raise ValueError(" ".join(problems))
+        raise ValueError("\n".join(problems))
     fitting: list[Cell] = []
     for cell in others:
         reason = applicable(cell.corruption, clean.told())
@@ -102,7 +103,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     problems = _run_all(cfg, command, out, name, fitting)
     write_report([clean, *fitting], out)
     if problems:
-        raise ValueError("Some conditions failed; run again to go on. " + " ".join(problems))
+        raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
     return out
 
 
@@ -129,9 +130,10 @@ def _check(cfg: DictConfig, command: Sequence[str]) -> None:
 
 
 def name_of(command: Sequence[str]) -> str:
-    """Return a name for a command: of its first script, or of the program."""
-    scripts = [Path(word) for word in command if word.endswith((".py", ".sh", ".bash"))]
-    return scripts[0].stem if scripts else Path(command[0]).stem
+    """Return a name for a command: of its first script or module (``-m``), or of the program."""
+    scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
+    modules = [name for word, name in pairwise(command) if word == "-m"]
+    return [*scripts, *modules, Path(command[0]).stem][0]
 
 
 def _run_all(
@@ -165,7 +167,7 @@ def _run_here(waiting: Sequence[Any], jobs: int) -> list[str]:
                 if problem is None:
                     continue
                 running.remove(cell)
-                print(f"{cell.name}: {problem or cell.summary()}", flush=True)
+                print(f"{cell.name}: {(problem or cell.summary()).splitlines()[0]}", flush=True)
                 problems += [f"{cell.name}: {problem}"] if problem else []
             if running and time.monotonic() - spoke > EVERY:
                 spoke = time.monotonic()

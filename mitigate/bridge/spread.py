@@ -95,7 +95,7 @@ def run_there(
             if found is None:
                 continue
             cell, problem = left[found[0]], str(found[1])
-            progress.say(f"{cell.name}: {problem or cell.summary()}")
+            progress.say(f"{cell.name}: {(problem or cell.summary()).splitlines()[0]}")
             problems += [f"{cell.name}: {problem}"] if problem else []
             progress.advance()
     return problems

@@ -261,7 +261,9 @@ def test_options_and_command_are_told_apart():
     ("command", "name"),
     [
         ("conda run -n etpnav bash run_r2r/main.bash eval 2333", "main"),
-        ("python -m vlfm.run", "python"),
+        ("python -m vlfm.run", "vlfm.run"),
+        ("python -m torch.distributed.launch train.py", "train"),
+        ("./agent 7", "agent"),
         ("python main_llm_vis.py --split val", "main_llm_vis"),
     ],
 )

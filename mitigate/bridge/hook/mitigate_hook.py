@@ -102,7 +102,11 @@ class Channel:
             self.socket.settimeout(self.patience)
             self.socket.connect(os.environ[ADDRESS])
         except (OSError, KeyError) as error:
-            stop(f"the server of `mitigate run` cannot be reached ({error}).")
+            stop(
+                f"the server of `mitigate run` cannot be reached at "
+                f"{os.environ.get(ADDRESS)} ({error}); a container needs the host's temporary "
+                "folder (docker: -v /tmp:/tmp)."
+            )
         self.ask("hello", protocol=PROTOCOL, token=os.environ.get(TOKEN, ""), **_versions())
 
     def ask(self, kind, **fields):
