@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from pathlib import Path
 from typing import Any
 
@@ -297,6 +298,8 @@ class NavmeshExpert:
 
 
 def _habitat_sim() -> Any:
+    for variable in ("HABITAT_SIM_LOG", "MAGNUM_LOG"):  # it warns of every scene's missing labels
+        os.environ.setdefault(variable, "quiet")
     try:
         import habitat_sim
     except ImportError as error:
