@@ -163,7 +163,7 @@ def evaluate(
     if todo:
         task, title = EpisodeTask(agent, world, repaired, restorer), f"{name}, {split}"
         at_once = _together(agent, made)
-        groups = _groups(todo, 2 * at_once if at_once > 1 else 1)
+        groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
         _run(task, groups, len(jobs), out, workers, launcher, title)
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
 
