@@ -2,14 +2,14 @@
 
 It stands where VLFM, L3MVN and WMNav do: nothing of it is learned but what recognises objects, its
 RGB encoder. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level
-action.
+action. ``begin`` and ``act_all`` do the same for several episodes side by side.
 """
 
 from __future__ import annotations
 
 import copy
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
@@ -69,6 +69,7 @@ class FrontierAgent(nn.Module):
     """
 
     views = 1
+    together = 8  # episodes side by side (ours): encoding one frame alone takes twice as long
     encoders: ClassVar = {RGB: camera.ENCODERS[RGB]}
     labels: ClassVar = {RGB: camera.LABELS[RGB]}
 
@@ -123,13 +124,35 @@ class FrontierAgent(nn.Module):
         self.actions = self._planned = self._bumps = 0
         self._before: np.ndarray | None = None  # where the last step forward began
 
+    def begin(self, instruction: str) -> FrontierAgent:
+        """An episode of its own: a copy that shares the weights. As :meth:`reset`."""
+        walker = copy.copy(self)
+        walker.reset(instruction)
+        return walker
+
+    def act_all(
+        self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[FrontierAgent]
+    ) -> list[int]:
+        """One low-level action of each of up to ``together`` episodes; frames are encoded at once.
+        Raises what ``agents/observation.py`` refuses."""
+        frames = [checked.frame(seen, RGB, 1) for seen in observations]
+        filled = [*frames, *[frames[-1]] * (self.together - len(frames))]  # one size: equal sums
+        known = self._recognise(np.stack(filled))[: len(frames)]
+        walking = zip(memories, observations, known, strict=True)
+        return [walker._act(seen, concepts) for walker, seen, concepts in walking]
+
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """One low-level action. Raises RuntimeError before the first ``reset``, and what
         ``agents/observation.py`` refuses."""
         if not hasattr(self, "controller"):
             raise RuntimeError("Start the episode first: agent.reset(instruction).")
+        frame = checked.frame(observation, RGB, 1)
+        return self._act(observation, self._recognise(frame[None])[0])
+
+    def _act(self, observation: Mapping[str, np.ndarray], concepts: np.ndarray) -> int:
+        """``concepts`` [4, C]: probabilities of what the columns of the frame show."""
         pose = checked.pose(observation).astype(np.float64)
-        self._look(observation, pose)
+        self._look(observation, pose, concepts)
         self.actions += 1
         action = LEFT if self.actions <= TURNS else self._walk(pose)
         self._before = pose[:2] if action == FORWARD else None
@@ -146,13 +169,14 @@ class FrontierAgent(nn.Module):
         """Where the leg that it walks ends, plan metres [2], or None."""
         return self.controller.route[-1] if self.controller.route else None
 
-    def _look(self, observation: Mapping[str, np.ndarray], pose: np.ndarray) -> None:
+    def _look(
+        self, observation: Mapping[str, np.ndarray], pose: np.ndarray, concepts: np.ndarray
+    ) -> None:
         """Lay what is seen over the map."""
         if self.grid is None:
             self.grid = Grid(pose, self.eye)
         if self._before is not None:
             self._bump(pose, float(np.hypot(*(pose[:2] - self._before))))
-        concepts = self._recognise(checked.frame(observation, RGB, 1))
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
         if self.thing is not None:
@@ -171,11 +195,11 @@ class FrontierAgent(nn.Module):
 
     @torch.inference_mode()
     def _recognise(self, rgb: np.ndarray) -> np.ndarray:
-        """Probabilities [4, C] of what the columns of a frame show."""
+        """Probabilities [n, 4, C] of what the columns of frames [n, H, W, 3] show."""
         rgb = np.zeros_like(rgb) if RGB in self.blind else rgb
         device = self.rgb_encoder.embed.weight.device
-        _, logits = self.rgb_encoder(torch.from_numpy(rgb)[None].to(device))
-        return logits[0].float().sigmoid().cpu().numpy()
+        _, logits = self.rgb_encoder(torch.from_numpy(rgb).to(device))
+        return logits.float().sigmoid().cpu().numpy()
 
     def _walk(self, pose: np.ndarray) -> int:
         """The next action towards where it is worth going."""

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 import pytest
 
-from mitigate.agents.agent import Seeing, Trainable
+from mitigate.agents.agent import Seeing, SideBySide, Trainable
 from mitigate.agents.concepts import CONCEPTS, THING_NAMES
 from mitigate.agents.frontier import FrontierAgent, planning, search
 from mitigate.agents.frontier.grid import CELL, Grid
@@ -91,7 +91,7 @@ def test_every_likely_thing_and_room_is_known():
 
 def test_it_finds_what_it_recognises():
     world, agent, won = ApartmentsWorld(views=1), FrontierAgent().eval(), 0
-    agent._recognise = lambda rgb: 0.01 + 0.98 * world.truth()["concepts"]
+    agent._recognise = lambda rgb: 0.01 + 0.98 * world.truth()["concepts"][None]
     for episode in load_episodes("val_seen", "ogn")[:4]:
         seen = world.reset(episode)
         agent.reset(episode.instruction.text)
@@ -139,3 +139,21 @@ def test_the_map_is_as_large_as_the_agent_can_walk():
     assert np.allclose(
         grid.place(np.array([grid.cell(np.array([1.0, -2.0]))])), [[1, -2]], atol=CELL
     )
+
+
+def test_side_by_side_every_episode_goes_as_it_does_alone():
+    made, episodes = FrontierAgent(size=16).eval(), load_episodes("val_seen", "ogn")[:3]
+    assert isinstance(made, SideBySide)
+    worlds = [ApartmentsWorld(16, 2, 1) for _ in episodes]
+    seen = [world.reset(episode) for world, episode in zip(worlds, episodes, strict=True)]
+    memories = [made.begin(episode.instruction.text) for episode in episodes]
+    alone, world = made.begin(episodes[1].instruction.text), ApartmentsWorld(16, 2, 1)
+    view, gone = world.reset(episodes[1]), []
+    for _ in range(25):
+        actions = made.act_all(seen, memories)
+        seen = [world.step(action) for world, action in zip(worlds, actions, strict=True)]
+        gone.append(actions[1])
+        assert made.act_all([view], [alone]) == [actions[1]]
+        view = world.step(actions[1])
+    assert np.array_equal(alone.grid.evidence, memories[1].grid.evidence)
+    assert set(gone) > {LEFT}  # it has turned around, and left
