@@ -28,6 +28,7 @@ from mitigate.core import checkpoint, conf, precision, seeding
 from mitigate.core.build import OWN_CONFIG_ONLY, begun_from, build_agent, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.locks import FolderLock
+from mitigate.core.observation import VIEWS
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
 from mitigate.corruptions import Corruption
@@ -40,7 +41,8 @@ from mitigate.training.ranks import Ranks
 from mitigate.training.stages import nothing_to_do, plain, train_stage, trainer_settings
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
-EPISODE_COST = 0.12  # seconds of one core for an episode, on the machine of precision.REFERENCE
+# seconds of one core for an episode, by the agent's views: with one it decides at every step
+EPISODE_COST = {VIEWS: 0.12, 1: 0.35}  # on the machine of precision.REFERENCE
 MOST_ROLLOUTS, MOST_WORKERS = 100_000, 256  # (ours)
 EPISODES = 300  # of a list, where the estimate need not open it
 
@@ -164,7 +166,8 @@ def plan(cfg: DictConfig, folder: Path) -> str:
     parts = [f"{name} {count} steps" for name, count in steps.items()]
     if quick.enabled and cfg.report == TrainConfig.report:
         walked = agents * len(cfg.suite.conditions) * (quick.episodes or EPISODES)
-        seconds.append(walked * EPISODE_COST / (quick.workers or cores()))
+        cost = EPISODE_COST[1 if cfg.env.get("views") == 1 else VIEWS]
+        seconds.append(walked * cost / (quick.workers or cores()))
         parts.append(f"{agents} x {listed} episodes x {len(cfg.suite.conditions)} conditions")
     total = sum(seconds) * precision.probe().fp32 / precision.REFERENCE
     about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
