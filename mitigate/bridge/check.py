@@ -16,7 +16,7 @@ import numpy as np
 from omegaconf import DictConfig
 
 from mitigate.bridge.cameras import Group, Rig, corrupted
-from mitigate.bridge.conditions import applicable, cells
+from mitigate.bridge.conditions import applicable, cells, untold
 from mitigate.bridge.results import Told
 from mitigate.core.files import write_atomically
 from mitigate.core.observation import DEPTH, RGB
@@ -88,7 +88,9 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     fitting = []
     for other in made[1:]:
         reason = applicable(other.corruption, told)
-        print(f"  {other.name}: {f'not applicable, {reason}' if reason else 'applies'}")
+        lacks = untold(other.corruption, told, other.condition.words)
+        applies = "needs tokenizer=, the agent reads tokens" if lacks else "applies"
+        print(f"  {other.name}: {f'not applicable, {reason}' if reason else applies}")
         if not reason:
             fitting += [p for p in other.corruption.parts if p.modality in (RGB, DEPTH)]
     if not rig.groups:

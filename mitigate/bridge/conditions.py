@@ -17,7 +17,7 @@ from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.recording import Recorder
 from mitigate.bridge.results import Told
 from mitigate.bridge.subset import Subset
-from mitigate.bridge.words import Words
+from mitigate.bridge.words import Words, is_english
 from mitigate.corruptions import Corruption
 
 if TYPE_CHECKING:
@@ -156,3 +156,10 @@ def applicable(corruption: Corruption, clean: Told) -> str:
         if part.modality == "instruction" and not clean.first.get("text"):
             return "its goals are categories, not instructions"
     return ""
+
+
+def untold(corruption: Corruption, clean: Told, words: Words) -> bool:
+    """Whether the agent reads tokens, and no tokenizer was named to tell it corrupted words by."""
+    spoken = any(part.modality == "instruction" for part in corruption.parts)
+    reads = bool(clean.first.get("tokens")) and is_english(clean.first.get("language"))
+    return spoken and reads and words.tokenizer is None

@@ -198,6 +198,7 @@ class Connection:
             observer.episode(message)
         told = {n: message.get(n) for n in ("text", "category", "language")}
         told |= {"scene": self.scene, "heard": heard.get("text")}
+        told["tokens"] = message.get("tokens") is not None
         note(self.folder, event="episode", episode=self.episode, **told)
         return heard
 

@@ -78,7 +78,8 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     command failed.
     """
     from mitigate.bridge.cell import Cell
-    from mitigate.bridge.conditions import applicable, cells
+    from mitigate.bridge.conditions import applicable, cells, untold
+    from mitigate.bridge.words import NO_TOKENIZER
 
     _check(cfg, command)
     name = cfg.name or name_of(command)
@@ -94,13 +95,19 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     if problems:
         raise ValueError("\n".join(problems))
     fitting: list[Cell] = []
+    unheard: list[str] = []
     for cell in others:
         reason = applicable(cell.corruption, clean.told())
         if reason:
             print(f"{cell.name}: not applicable, {reason}", flush=True)
+        elif untold(cell.corruption, clean.told(), cell.condition.words):
+            unheard.append(cell.name)
         else:
             fitting.append(cell)
-    problems = _run_all(cfg, command, out, name, fitting)
+    if unheard:
+        problems = [f"{', '.join(unheard)}: {NO_TOKENIZER}"]
+        print(*problems, flush=True)  # before hours of the others
+    problems += _run_all(cfg, command, out, name, fitting)
     write_report([clean, *fitting], out)
     if problems:
         raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))

@@ -10,6 +10,12 @@ from mitigate.corruptions import Corruption, Key, corrupt_instruction
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
 from mitigate.worlds.episodes import read_extras
 
+NO_TOKENIZER = (
+    "the agent's episodes hold instruction tokens beside the text, and no tokenizer was named, so "
+    "that it would read the old words: tokenizer=bert_config/bert-base-uncased (a folder with the "
+    "tokenizer's files; ETPNav's repository has it), or tokenizer=EPISODES.json.gz for R2R-CE's "
+    "own vocabulary in that file."
+)
 ENGLISH = ("en", "en-us", "en-in")
 
 
@@ -48,7 +54,7 @@ class Words:
                 )
             return {}
         made = text
-        for part in spoken if _is_english(told.get("language")) else ():
+        for part in spoken if is_english(told.get("language")) else ():
             made = corrupt_instruction(made, part.name, part.severity, key, mask_token=self._mask())
         if self.repair is not None:
             made = self.repair(made)
@@ -63,12 +69,7 @@ class Words:
         if before is None:
             return None
         if self.tokenizer is None:
-            raise ValueError(
-                "the agent's episodes hold instruction tokens beside the text, and no tokenizer "
-                "was named, so that it would read the old words: tokenizer=bert_config/bert-base-"
-                "uncased (a folder with the tokenizer's files; ETPNav's repository has it), or "
-                "tokenizer=EPISODES.json.gz for R2R-CE's own vocabulary in that file."
-            )
+            raise ValueError(NO_TOKENIZER)
         return list(self.tokenizer.encode(text, self.length or fixed_length(before))[0])
 
 
@@ -87,5 +88,6 @@ def fixed_length(tokens: list[Any]) -> int | None:
     return len(tokens) if repeated else None
 
 
-def _is_english(language: str | None) -> bool:
+def is_english(language: str | None) -> bool:
+    """Whether words of that language are corrupted; None: not told, so they are."""
     return language is None or language.lower() in ENGLISH

@@ -196,10 +196,15 @@ def test_a_terminated_run_leaves_nothing_behind(tmp_path):
         os.kill(int(pid), 0)
 
 
-def test_a_refused_condition_says_why(run, tmp_path):
-    ran = run(tmp_path / "o", "corruption=capitalize", f"{AGENT} --tokens")
+def test_words_that_would_not_be_heard_are_refused_before_their_conditions_run(run, tmp_path):
+    ran = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
     assert ran.returncode == 1 and "no tokenizer was named" in ran.stderr
-    assert (tmp_path / "o" / "rows.jsonl").is_file()  # of clean
+    refused, begun = (
+        ran.stdout.index(text) for text in ("capitalize-s0.6, mask", "low_light-s0.6: s")
+    )
+    assert refused < begun and not (tmp_path / "o/conditions/mask-s0.6").exists()
+    measured = {row["corruption"] for row in rows.read(tmp_path / "o" / "rows.jsonl")}
+    assert measured == {"clean", "low_light"}
 
 
 def test_an_existing_sitecustomize_is_still_run(run, tmp_path):
