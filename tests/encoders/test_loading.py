@@ -5,9 +5,12 @@ from __future__ import annotations
 import pickle
 import sys
 import types
+from collections import defaultdict
+from dataclasses import make_dataclass
 
 import pytest
 import torch
+from omegaconf import OmegaConf
 from safetensors.torch import save_file
 
 from mitigate.encoders import loading
@@ -112,6 +115,21 @@ def test_a_config_beside_the_weights_is_left_out_and_runs_nothing(tmp_path, monk
     monkeypatch.delitem(sys.modules, "somebodys_config")
     load_weights(tiny(), str(tmp_path / "w.pth"))
     assert "somebodys_config" not in sys.modules
+
+
+def test_a_config_of_many_classes_as_habitat_baselines_pickles_it_is_left_out(tmp_path):
+    kinds = [make_dataclass(f"Kind{n}", [("value", int, n)]) for n in range(40)]
+    schema = {kind.__name__: OmegaConf.structured(kind) for kind in kinds}
+    for kind in kinds:
+        globals()[kind.__name__] = kind
+        kind.__module__ = __name__
+    held = {"state_dict": tiny().state_dict(), "config": OmegaConf.create(schema)}
+    held["extra_state"] = {"step": defaultdict(list, a=[1])}
+    torch.save(held, tmp_path / "w.pth")
+    load_weights(tiny(), str(tmp_path / "w.pth"))
+    torch.save(held, tmp_path / "old.pth", _use_new_zipfile_serialization=False)
+    with pytest.raises(ValueError, match=r"torch.save\(model.state_dict\(\), path\)"):
+        load_weights(tiny(), str(tmp_path / "old.pth"))
 
 
 class Runs:
