@@ -46,6 +46,12 @@ _REMOVED = tuple(
          r"(?:[- ]hand)?(?: one| side)?\b", " "),
         # a number taken back
         (rf"\b{_NUMBER},? (?:{_BACK},? )+(?={_NUMBER}\b)", ""),
+        # a stop in many words
+        (r"\b(?:come|comes|coming) to (?:(?:a|an|your|its|full|complete|gentle|final) )*"
+         r"(?:rest|halt|standstill|stop)\b", "stop"),
+        (r"\b(?:conclude|terminate|end|finish|complete|cease|discontinue)s? "
+         r"(?:(?:your|the|its|all|any|forward|further) )*(?:journey|transit|movement|motion|"
+         r"travels?|progress|progression|walk|walking|advance|route)\b", "stop"),
         # emphasis and agreement
         (r"\bright(?=[?])|(?:(?<=[.!?;] )|^)(?:all )?right[,.!:;]\s+(?!right|left)|, right(?=[,?])|"
          r"\b(?:all|that's|you're|be|it's all|quite) right(?=[.!?,])", " "),

@@ -18,6 +18,8 @@ from mitigate.safeguard.speech import meant
         ("Walk right up to the piano and stop.", "Walk up to the piano and stop."),
         ("My uncle has left his hat there. Turn right.", "Turn right."),
         ("Don't worry, just go past the sink.", "Go past the sink."),
+        ("Turn right and come to a full stop at the sink.", "Turn right and stop at the sink."),
+        ("Conclude your journey at the piano.", "Stop at the piano."),
         ("It's superb. Walk past the two beds, three, no, two.", "Walk past the two beds."),
     ],
 )
@@ -35,6 +37,7 @@ def test_what_is_said_and_not_meant_is_no_fact(heard, said):
         ("You turn right at the door, then left.", "Turn left."),
         ("Go past the second sink.", "Go past the sink."),
         ("Follow the banister.", "Go on."),
+        ("Come to rest at the sink.", "Go past the sink."),
     ],
 )
 def test_what_is_meant_may_not_change(heard, said):
