@@ -64,14 +64,16 @@ def run_side_by_side(
                 world, text = free.pop(), instruction(*job)
                 memory = agent.begin((repaired or {}).get(text, text))
                 under_way[begun] = _Walk(world, *job, restorer), world, memory
-            walks, _, memories = zip(*under_way.values(), strict=True)
-            actions = agent.act_all([walk.observation for walk in walks], memories)
-            for walk, action in zip(walks, actions, strict=True):
-                walk.step(action)
-            for ended in [key for key, (walk, _, _) in under_way.items() if walk.done]:
-                walk, world, _ = under_way.pop(ended)
-                measured[ended] = walk.measures()
+            ended = [key for key, (walk, _, _) in under_way.items() if walk.done]
+            for key in ended:
+                walk, world, _ = under_way.pop(key)
+                measured[key] = walk.measures()
                 free.append(world)
+            if not ended:
+                walks, _, memories = zip(*under_way.values(), strict=True)
+                actions = agent.act_all([walk.observation for walk in walks], memories)
+                for walk, action in zip(walks, actions, strict=True):
+                    walk.step(action)
         yield measured.pop(number)
 
 
