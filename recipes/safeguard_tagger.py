@@ -1,7 +1,7 @@
-"""Training of the safeguard's tagger: which words of speech a plain route keeps.
+"""Training of the safeguard's tagger or reader: which words of speech a plain route keeps.
 
-Loss = cross-entropy of the acts (keep, drop, plain form) + w x that of the phrases before them,
-both averaged over the words and marks of the step.
+Loss = cross-entropy of the acts (keep, drop, plain form) + w x that of the phrases before them
++ for a reader that of being part of an attack, all averaged over the words and marks of the step.
 """
 
 from __future__ import annotations
@@ -11,73 +11,91 @@ from typing import Any
 import numpy as np
 import torch
 from torch import Tensor
-from torch.nn.functional import cross_entropy
+from torch.nn.functional import binary_cross_entropy_with_logits, cross_entropy
 
+from mitigate.core.names import unknown
 from mitigate.core.seeding import generator
+from mitigate.safeguard import trials
+from mitigate.safeguard.attacked import draw_attacked
 from mitigate.safeguard.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
 from mitigate.safeguard.report import voices
-from mitigate.safeguard.tagger import Encoded, Tagger, collate, encode
+from mitigate.safeguard.reader import Reader
+from mitigate.safeguard.tagger import Encoded, Tagger
 from mitigate.training.recipe import Recipe
 
 IGNORED = -100
-Taught = tuple[int, Encoded, list[int], list[int]]  # a lesson: number, words, acts, phrases
+NAMES = ("acts", "before", "attack")  # what is taught of each word
+Taught = tuple[int, Encoded, tuple[list[int], ...]]  # a lesson: number, words, what is taught
 
 
 class SafeguardTagger(Recipe):
     """Args:
-    agent: the tagger, trained in place.
+    agent: the tagger or reader, trained in place.
     texts: a step. micro_batch: of them at once, of like length. phrases: weight of their loss.
-    forget: share of words whose vector, and of those whose spelling, is hidden.
+    forget: share of words that are hidden. attacked: share of lessons about attacks, with those of
+    the split ``banks`` ("all" or "tune").
     """
 
     here = True  # a lesson is quick
 
     def __init__(
         self,
-        agent: Tagger,
+        agent: Tagger | Reader,
         texts: int = 32,
         micro_batch: int = 16,
         phrases: float = 0.5,
         forget: float = 0.1,
+        attacked: float = 0.0,
+        banks: str = "all",
         seed: int = 0,
     ) -> None:
         super().__init__()
-        if not 1 <= micro_batch <= texts or not 0 <= forget < 1:
+        if not 1 <= micro_batch <= texts or not 0 <= forget < 1 or not 0 <= attacked <= 1:
             raise ValueError(
                 f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.texts ({texts}), "
-                f"recipe.forget ({forget}) from 0 to below 1."
+                f"recipe.forget ({forget}) from 0 to below 1, recipe.attacked ({attacked}) from 0 "
+                "to 1."
             )
+        if banks not in (*trials.SPLITS, trials.ALL):
+            raise ValueError(unknown("split of the banks", banks, (*trials.SPLITS, trials.ALL)))
         self.agent, self.texts, self.micro_batch, self.phrases = agent, texts, micro_batch, phrases
-        self.forget, self.seed = forget, seed
+        self.forget, self.attacked, self.banks, self.seed = forget, attacked, banks, seed
 
     def start(self) -> None:
-        self.agent.learn_words()
+        if isinstance(self.agent, Tagger):
+            self.agent.learn_words()
 
     def jobs(self, step: int) -> list[int]:
         return list(range(step * self.texts, (step + 1) * self.texts))
 
     def work(self, job: int) -> Taught:
-        found, edits = draw_lesson(self.seed, job)
-        return job, encode(found), [e.act for e in edits], [e.before for e in edits]
+        about = generator(self.seed, "about", job).random() < self.attacked
+        lesson = (
+            draw_attacked(self.seed, job, self.banks) if about else draw_lesson(self.seed, job)
+        )
+        taught = (
+            [IGNORED if e is None else e.act for e in lesson.edits],
+            [IGNORED if e is None else e.before for e in lesson.edits],
+            [IGNORED if a is None else int(a) for a in lesson.attack],
+        )
+        return job, self.agent.encode(lesson.tokens), taught
 
     def collate(self, step: int, pieces: list[Taught]) -> dict[str, Any]:
         rng = generator(self.seed, "forget", step)
-        lessons = sorted(pieces, key=lambda piece: len(piece[2]))
+        lessons = sorted(pieces, key=lambda piece: len(piece[2][0]))
         starts = range(0, len(lessons), self.micro_batch)
         groups = [self._group(lessons[i : i + self.micro_batch], rng) for i in starts]
         return {"groups": groups, "episode_ids": [f"lesson {number}" for number, *_ in lessons]}
 
     def _group(self, lessons: list[Taught], rng: np.random.Generator) -> dict[str, Tensor]:
-        _, encoded, acts, before = zip(*lessons, strict=True)
-        group = collate(encoded)
-        size = group["words"].shape
-        for name, rows in (("acts", acts), ("before", before)):
-            group[name] = torch.full(size, IGNORED)
+        _, encoded, taught = zip(*lessons, strict=True)
+        group = self.agent.collate(encoded)
+        for name, rows in zip(NAMES, zip(*taught, strict=True), strict=True):
+            group[name] = torch.full(group["plain"].shape, IGNORED)
             for row, numbers in enumerate(rows):
                 group[name][row, : len(numbers)] = torch.tensor(numbers)
-        for name in ("words", "pieces"):
-            group[name][torch.from_numpy(rng.random(tuple(size)) < self.forget)] = 0
+        self.agent.hide(group, self.forget, rng)
         return group
 
     def weight(self, batch: dict[str, Any]) -> float:
@@ -91,13 +109,20 @@ class SafeguardTagger(Recipe):
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         group, tokens = batch["group"], batch["tokens"]
-        acts, before = self.agent(group)
+        acts, before, *attack = self.agent(group)
         found = _summed(acts, group["acts"]) / tokens
         put = _summed(before, group["before"]) / tokens
         right = (acts.argmax(-1) == group["acts"]).sum() / tokens
-        return {
-            "loss": found + self.phrases * put, "acts": found, "phrases": put, "accuracy": right,
-        }  # fmt: skip
+        out = {"acts": found, "phrases": put, "accuracy": right, "loss": found + self.phrases * put}
+        if attack:
+            told = group["attack"] != IGNORED
+            known, wanted = attack[0][told], group["attack"][told].float()
+            out["attack"] = (
+                binary_cross_entropy_with_logits(known, wanted, reduction="sum") / tokens
+            )
+            out["attack_accuracy"] = ((known > 0) == (wanted > 0)).float().mean()
+            out["loss"] = out["loss"] + out["attack"]
+        return out
 
     def evaluate(self, step: int) -> dict[str, float]:
         """F1 of the words of the validation voices, by the tagger alone and before it, over 30

@@ -256,7 +256,7 @@ def _fill(module: nn.Module, found: dict[str, torch.Tensor], file: Path) -> None
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
     """The tensors that a state dict leaves out where they are public ones: ``public_tensors`` of
-    the modules in ``module`` that have such (``agents/topological/imagenet.py``)."""
+    the modules in ``module`` that have such (``core/public_weights.py``)."""
     return {
         f"{prefix}.{name}" if prefix else name: value
         for prefix, part in module.named_modules()

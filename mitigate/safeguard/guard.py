@@ -20,16 +20,17 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.safeguard import gate, masks, rules
 from mitigate.safeguard.addresses import check_choice
-from mitigate.safeguard.plainly_said import Tags, is_speech, plainly_said
+from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
 from mitigate.safeguard.refusals import refusal
 from mitigate.safeguard.text import MASK, passages, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
-CHOICES = ("none", "rules", "tagger", "prompted", "lora", "tagger+lora", "http://host/v1@model")
+CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
+    "http://host/v1@model")  # fmt: skip
 ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"
-TAGGER = "checkpoints/safeguard_tagger"
+TAGGERS = {"tagger": "checkpoints/safeguard_tagger", "reader": "checkpoints/safeguard_reader"}
 ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # for the language model, each instruction (ours)
 
@@ -123,30 +124,30 @@ class Safeguard:
 def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
     """Return the safeguard that ``choice`` names, None for "none".
 
-    "rules"; "tagger" (the rules, then ``checkpoints/safeguard_tagger``) or a tagger's folder;
-    "prompted" (the default language model as it comes); "lora" (``checkpoints/safeguard``) or an
-    adapter folder; ``http://host/v1@model`` for an OpenAI-compatible endpoint; "tagger+" before one
-    of the last three. Raises ValueError or FileNotFoundError.
+    "rules"; "tagger" and "reader" (the rules, then ``checkpoints/safeguard_tagger`` or, with the
+    package of MiniLM, ``checkpoints/safeguard_reader``) or a folder of one; "prompted" (the default
+    language model as it comes); "lora" (``checkpoints/safeguard``) or an adapter folder;
+    ``http://host/v1@model`` for an OpenAI-compatible endpoint; "tagger+" or "reader+" before one of
+    the last three. Raises ValueError or FileNotFoundError.
     """
     from mitigate.core.checkpoint import WEIGHTS
-    from mitigate.safeguard.tagger import open_tagger
+    from mitigate.safeguard.reader import open_tags
 
     first, plus, second = choice.partition("+")
-    if plus and first == "tagger":
+    if plus and first in TAGGERS:
         made = open_safeguard(second, log)
         if made is None or made.rewriter is None:
             raise ValueError(unknown("safeguard", choice, CHOICES))
-        made.tagger = open_tagger(find(TAGGER))
+        made.tagger = open_tags(find(TAGGERS[first]))
         return made
     if choice == "none":
         return None
     if choice == "rules":
         return Safeguard(log=log)
     check_choice(choice)  # before anything repeats it
-    if choice == "tagger" or (Path(choice) / WEIGHTS).is_file():
-        return Safeguard(
-            tagger=open_tagger(find(TAGGER) if choice == "tagger" else choice), log=log
-        )
+    if choice in TAGGERS or (Path(choice) / WEIGHTS).is_file():
+        folder = find(TAGGERS[choice]) if choice in TAGGERS else choice
+        return Safeguard(tagger=open_tags(folder), log=log)
     if choice.lower().startswith(("http://", "https://")):
         from mitigate.safeguard.endpoint import ChatEndpoint
 
@@ -171,7 +172,7 @@ def label(choice: str) -> str:
     from mitigate.safeguard.adapter_folder import ADAPTER as ADAPTER_FILE
 
     first, plus, second = choice.partition("+")
-    if plus and first == "tagger":
+    if plus and first in TAGGERS:
         return f"tagger+{label(second)}"
     files = [Path(choice) / name for name in (ADAPTER_FILE, WEIGHTS)]
     weights = next((file for file in files if file.is_file()), None)
@@ -191,8 +192,11 @@ class _Draft:
         self.tidied = tidy(original)
         self.reasons: list[str] = []
         self.asked = self.taken = 0
-        self.plain = not _readable(self.tidied) or (_untouched(original) and not self._spoken())
-        self.doubtful = [] if self.plain else rules.doubtful(rules.lower_capitals(self.original))
+        self.plain = not _readable(self.tidied) or (
+            _untouched(original, tagger) and not self._spoken()
+        )
+        heard = rules.lower_capitals(original)
+        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(tagger, heard))
         self.repair(set())
 
     def _spoken(self) -> bool:
@@ -206,7 +210,7 @@ class _Draft:
             self.same, self.tagged = True, False
             self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
             return
-        done = rules.repair(self.original, empty.__contains__)
+        done = rules.repair(self.original, empty.__contains__, self.tagger)
         self.same = done.text == self.original
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.tagged = self._say_plainly()
@@ -285,14 +289,14 @@ def _readable(text: str) -> bool:
     return bool(letters) and (latin > 0.5 * len(letters) or bool(gate.route_facts(text)))
 
 
-def _untouched(text: str) -> bool:
+def _untouched(text: str, tagger: Tags | None) -> bool:
     """Return whether ``text`` shows no mark of any corruption."""
     return (
         not MASK.search(text)
         and rules.lower_capitals(text) == text
         and rules.style_marks(text) < MARKS
-        and not rules.doubtful(text)
-        and rules.repair(text).text == text
+        and not rules.doubtful(text, judging(tagger, text))
+        and rules.repair(text, tags=tagger).text == text
     )
 
 

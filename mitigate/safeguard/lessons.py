@@ -6,6 +6,8 @@ templates (:mod:`data`) and plain routes, which are to be kept whole.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -16,12 +18,21 @@ from mitigate.safeguard.data import draw_pair
 from mitigate.safeguard.edits import KEEP, Edit, taught, tokens
 from mitigate.safeguard.spoken import Spoken, spoken
 
-Lesson = tuple[list[Token], list[Edit]]  # the tokens of a text, and an edit for each
 Parts = tuple[tuple[str, str], ...]
 SPOKEN, PLAIN = 0.65, 0.08  # shares of speech, and of the same routes in plain words (ours)
 WHOLE, SOME, MIXED = 0.5, 0.25, 0.25  # of speech: whole texts, parts in a row, parts of several
 OWN_VOICE = 0.7  # of mixed parts: how often all are of one voice
 KINDS = ("identity", "style", "black_box")  # of the pairs of templates
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """The tokens of a text; for each the ``edit`` that makes it plain, None where none is taught,
+    and whether it is part of an ``attack``, None where that is open."""
+
+    tokens: Sequence[Token]
+    edits: Sequence[Edit | None]
+    attack: Sequence[bool | None]
 
 
 def draw_lesson(seed: int, index: int) -> Lesson:
@@ -38,19 +49,24 @@ def draw_lesson(seed: int, index: int) -> Lesson:
         if pair.kind == "identity":
             return kept(pair.source)
         if pair.kind in KINDS:
-            return tokens(pair.source), taught(pair.source, pair.target)
+            found, attack = tokens(pair.source), None if pair.kind == "black_box" else False
+            edits = taught(pair.source, pair.target)
+            return Lesson(found, edits, [attack] * len(found))
 
 
 def kept(text: str) -> Lesson:
     """Return the lesson that ``text`` stays as it is."""
     found = tokens(text)
-    return found, [Edit(KEEP)] * len(found)
+    return Lesson(found, [Edit(KEEP)] * len(found), [False] * len(found))
 
 
 def of_parts(parts: Parts) -> Lesson:
     """Return the lesson of (said, plain) parts in a row."""
-    text = " ".join(said for said, _ in parts)
-    return tokens(text), [edit for said, plain in parts for edit in _taught(said, plain)]
+    edits = [(edit, bool(plain)) for said, plain in parts for edit in edits_of(said, plain)]
+    attack = [False if tells else None for _, tells in edits]  # what tells nothing may go
+    return Lesson(
+        tokens(" ".join(said for said, _ in parts)), [edit for edit, _ in edits], attack
+    )
 
 
 def _parts(rng: np.random.Generator) -> Parts:
@@ -77,5 +93,6 @@ def _of_voice(name: str) -> tuple[Spoken, ...]:
 
 
 @lru_cache(maxsize=8192)
-def _taught(said: str, plain: str) -> tuple[Edit, ...]:
+def edits_of(said: str, plain: str) -> tuple[Edit, ...]:
+    """Return the edits that bring what is said nearest to plain words."""
     return tuple(taught(said, plain))

@@ -27,17 +27,34 @@ SPEECH = 0.3  # mean probability of dropping a word from which a text counts as 
 @dataclass(frozen=True)
 class Tagged:
     """A text as a tagger sees it: its ``tokens``; for each the ``edit`` that is likeliest if it
-    is not dropped, and the probability ``drop`` that it is."""
+    is not dropped, and the probability ``drop`` that it is; ``attack``: that it is part of an
+    attack, empty where the tagger does not say."""
 
     tokens: tuple[Token, ...]
     edits: tuple[Edit, ...]
     drop: tuple[float, ...]
+    attack: tuple[float, ...] = ()
 
     def edit(self, place: int, least: float = TRIES[0][0], phrases: bool = True) -> Edit:
         """Return what becomes of a token that is dropped from the probability ``least`` on."""
         made = self.edits[place]
         act = DROP if self.drop[place] > least else made.act
         return Edit(act, made.before if phrases else 0)
+
+    def all_edits(self, text: str) -> str:
+        """Return ``text`` after all edits, without rules and gate."""
+        made = [self.edit(place) for place in range(len(self.tokens))]
+        return edited(text, made, self.tokens)
+
+    def attacked(self, start: int, end: int) -> float | None:
+        """Return how probably the words of ``text[start:end]`` are an attack, in the mean; None
+        where the tagger does not say, or there is no word."""
+        found = [
+            p
+            for token, p in zip(self.tokens, self.attack, strict=False)
+            if start <= token.start < end and token.is_word
+        ]
+        return sum(found) / len(found) if found else None
 
     @property
     def speech(self) -> float:
@@ -50,6 +67,11 @@ class Tags(Protocol):
     """What tags a text."""
 
     def tag(self, text: str) -> Tagged: ...
+
+
+def judging(tags: Tags | None, text: str) -> Tags | None:
+    """Return ``tags`` if it says what of ``text`` is an attack, None otherwise."""
+    return tags if tags is not None and tags.tag(text).attack else None
 
 
 def is_speech(tagged: Tagged) -> bool:

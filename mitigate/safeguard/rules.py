@@ -25,6 +25,7 @@ from mitigate.safeguard.evidence import (
 )
 from mitigate.safeguard.front import in_front
 from mitigate.safeguard.lexicon import known_words
+from mitigate.safeguard.plainly_said import Tagged, Tags, judging
 from mitigate.safeguard.pieces import Piece, parts, sentence_pieces, without
 from mitigate.safeguard.text import words
 from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
@@ -37,6 +38,8 @@ PLAIN = 0.06  # mean strangeness of such a rest
 SURE = 0.5
 AHEAD = 0.4  # strangeness of what goes in front of such a rest
 PART_SURE = 0.85  # of a part of a sentence
+READ = (0.0, 0.5, 0.5)  # bias and weights of the rules' and the network's log odds
+SPAN_SURE, SPAN_WORDS = 0.9, 3  # probability and words of a run inside a sentence that goes
 TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
@@ -83,8 +86,8 @@ def logit(p: float) -> float:
 
 
 @lru_cache(maxsize=512)
-def judged(text: str) -> tuple[Judged, ...]:
-    """Return the sentences of ``text``, judged."""
+def judged(text: str, tags: Tags | None = None) -> tuple[Judged, ...]:
+    """Return the sentences of ``text``, judged; ``tags``: a network that reads them as well."""
     found = sentence_pieces(text)
     said = [piece.of(text) for piece in found]
     wraps = wrapped(text, found)
@@ -97,7 +100,29 @@ def judged(text: str) -> tuple[Judged, ...]:
         p if piece.tag else probability(CONTEXT, {"own": logit(p), **context})
         for p, piece, context in zip(own, found, around, strict=True)
     ]
+    if tags is not None:
+        own, foreign = (_read_too(text, found, tags.tag(text), ps) for ps in (own, foreign))
     return tuple(Judged(*row) for row in zip(found, said, own, foreign, strict=True))
+
+
+def _read_too(
+    text: str, found: Sequence[Piece], tagged: Tagged, known: Sequence[float]
+) -> list[float]:
+    """Return probabilities that a piece is no part of the route, by what is ``known`` and by what
+    the network reads; what is no English it cannot read."""
+    both = []
+    for piece, p in zip(found, known, strict=True):
+        q = None if piece.tag or in_another_language(piece.of(text)) else tagged.attacked(
+            piece.start, piece.end
+        )  # fmt: skip
+        both.append(p if q is None else together(p, q))
+    return both
+
+
+def together(rules: float, read: float) -> float:
+    """Return the probability of which the log odds are the weighted sum of both."""
+    score = READ[0] + READ[1] * logit(rules) + READ[2] * logit(read)
+    return 1 / (1 + math.exp(-max(-30.0, min(30.0, score))))
 
 
 def wrapped(text: str, found: Sequence[Piece]) -> frozenset[int]:
@@ -126,10 +151,10 @@ def strangeness(sentence: str, markup: bool = False) -> float:
     return probability(OWN, features(sentence, markup))
 
 
-def doubtful(text: str) -> list[str]:
+def doubtful(text: str, tags: Tags | None = None) -> list[str]:
     """Return the sentences that a language model should judge: neither plain nor surely foreign,
     and beside a surely foreign one whatever is not."""
-    found = judged(text)
+    found = judged(text, tags)
     if len(found) < 2:
         return []
     least = 0.0 if any(j.foreign >= SURE for j in found) else ASK
@@ -140,16 +165,18 @@ def doubtful(text: str) -> list[str]:
     ]
 
 
-def injected(text: str, judge: Callable[[str], bool] | None = None) -> list[Judged]:
+def injected(
+    text: str, judge: Callable[[str], bool] | None = None, tags: Tags | None = None
+) -> list[Judged]:
     """Return the sentences of ``text`` that are no part of the route; never all of them.
 
     ``judge`` (a language model) decides on the ``doubtful`` ones.
     """
-    found = judged(text)
-    asked = set() if judge is None else set(doubtful(text))
+    found = judged(text, tags)
+    asked = set() if judge is None else set(doubtful(text, tags))
     rest = [one.own for one in found if one.foreign < SURE]
     least = PLAIN_LEAST if sum(rest) < PLAIN * len(rest) else LEAST
-    ahead = ahead_of_plain(text)
+    ahead = ahead_of_plain(text, tags)
     chosen = []
     for one in found:
         sure = one.foreign >= least[gate.weight(one.text)] or one.piece in ahead
@@ -159,10 +186,10 @@ def injected(text: str, judge: Callable[[str], bool] | None = None) -> list[Judg
 
 
 @lru_cache(maxsize=512)
-def ahead_of_plain(text: str) -> frozenset[Piece]:
+def ahead_of_plain(text: str, tags: Tags | None = None) -> frozenset[Piece]:
     """Return the sentences in front of what is surely a plain route that are no part of it
     (:mod:`front`), but for those that seem to be by what they say."""
-    found, front = judged(text), set(in_front(text))
+    found, front = judged(text, tags), set(in_front(text))
     rest = [one.own for one in found if one.text not in front]
     if not front or not rest or sum(rest) >= PLAIN * len(rest):
         return frozenset()
@@ -199,10 +226,13 @@ def lower_capitals(text: str) -> str:
     return _SHOUT.sub(quiet, text)
 
 
-def foreign_parts(text: str, one: Judged) -> list[Piece]:
-    """Return the parts inside a sentence that are no part of the route."""
-    found = []
+def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piece]:
+    """Return the parts inside a sentence that are no part of the route, in order."""
+    found = [] if tags is None else attacked_spans(one.piece, tags.tag(text))
+    read = {place for span in found for place in range(span.start, span.end)}
     for part in parts(text, one.piece):
+        if part.start in read:
+            continue
         said = part.of(text)
         title = said[:1] in "\"'“«" and len(words(said)) <= TITLE
         long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
@@ -210,18 +240,46 @@ def foreign_parts(text: str, one: Judged) -> list[Piece]:
             values = {"whole": logit(one.own), **features(said)}
             if in_another_language(said) or probability(PART, values) >= PART_SURE:
                 found.append(part)
-    return found
+    return sorted(found, key=lambda part: part.start)
 
 
-def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
-    """Return ``text`` with capitals lowered and what is foreign taken out."""
+def attacked_spans(piece: Piece, tagged: Tagged) -> list[Piece]:
+    """Return the runs of words inside a piece that are surely an attack by what the network reads;
+    none where that is all of its words."""
+    places = [i for i, t in enumerate(tagged.tokens) if piece.start <= t.start < piece.end]
+    if not tagged.attack:
+        return []
+    sure = [i for i in places if tagged.attack[i] >= SPAN_SURE]
+    runs: list[list[int]] = []
+    for i in sure:
+        if runs and i == runs[-1][-1] + 1:
+            runs[-1].append(i)
+        else:
+            runs.append([i])
+    told = [t for t in places if tagged.tokens[t].is_word]
+    spans = []
+    for run in runs:
+        held = sum(tagged.tokens[i].is_word for i in run)
+        if SPAN_WORDS <= held < len(told):
+            spans.append(
+                Piece(tagged.tokens[run[0]].start, tagged.tokens[run[-1]].end, piece.block)
+            )
+    return spans
+
+
+def repair(
+    text: str, judge: Callable[[str], bool] | None = None, tags: Tags | None = None
+) -> Repaired:
+    """Return ``text`` with capitals lowered and what is foreign taken out; ``judge``: a language
+    model that is asked about a sentence, ``tags``: a network that reads the text as well."""
+    tags = judging(tags, text)
     reasons: list[str] = []
     quiet = lower_capitals(text)
     if quiet != text:
         reasons.append("capitals lowered")
-    out, refused = _chosen(quiet, judge)
+    out, refused = _chosen(quiet, judge, tags)
     reasons += refused
-    out, undone = _allowed(quiet, out)
+    out, undone = _allowed(quiet, out, tags)
     reasons += undone
     removed = tuple(piece.of(quiet) for piece in out)
     if removed:
@@ -231,12 +289,14 @@ def repair(text: str, judge: Callable[[str], bool] | None = None) -> Repaired:
     return Repaired(left, removed, tuple(reasons), style_marks(left) + framed)
 
 
-def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece], list[str]]:
+def _chosen(
+    text: str, judge: Callable[[str], bool] | None, tags: Tags | None
+) -> tuple[list[Piece], list[str]]:
     """Return what should go and the gate lets go, and what it refused."""
     out: list[Piece] = []
     reasons = []
-    foreign = {one.piece for one in injected(text, judge)}
-    found = judged(text)
+    foreign = {one.piece for one in injected(text, judge, tags)}
+    found = judged(text, tags)
     wraps = wrapped(text, [one.piece for one in found])
     ends = {found[0].piece, found[-1].piece} if len(found) > 1 else set()
     for one in found:
@@ -244,7 +304,7 @@ def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece]
         if one.piece.tag or (block and block not in wraps):
             out.append(one.piece)
             continue
-        inside = foreign_parts(text, one)
+        inside = foreign_parts(text, one, tags)
         if inside and _route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
@@ -260,19 +320,19 @@ def _chosen(text: str, judge: Callable[[str], bool] | None) -> tuple[list[Piece]
 
 def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:
     """Return whether a sentence without these parts still tells the way, and begins with it."""
-    body = parts(text, one.piece)
-    kept = [part for part in body if part not in inside]
-    if not kept:
-        return False
-    begins = kept[0] == body[0] or kept[0].of(text)[:1].isupper() or inside[0] != body[0]
-    left = " ".join(part.of(text) for part in kept)
+    ends = [one.piece.start, *(part.end for part in inside)]
+    starts = [*(part.start for part in inside), one.piece.end]
+    left = " ".join(text[a:b].strip() for a, b in zip(ends, starts, strict=True)).strip(" ,;:-–—")
+    begins = inside[0].start > one.piece.start or left[:1].isupper() or len(inside) == 1
     return begins and bool(gate.route_facts(left)) and strangeness(left) < SURE
 
 
-def _allowed(text: str, out: list[Piece]) -> tuple[list[Piece], list[str]]:
+def _allowed(
+    text: str, out: list[Piece], tags: Tags | None
+) -> tuple[list[Piece], list[str]]:
     """Return what may go so that the rest passes the gate: what is least foreign stays first."""
     reasons = []
-    strange = {one.piece: one.foreign for one in judged(text)}
+    strange = {one.piece: one.foreign for one in judged(text, tags)}
     out = list(out)
     while out:
         problem = gate.result_refused(text, without(text, out))

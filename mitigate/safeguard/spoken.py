@@ -19,7 +19,7 @@ from mitigate.core.names import unknown
 
 FOLDER = Path(__file__).parent / "voices"
 VALIDATION = ("butler", "gps", "non_native")  # settings are chosen on these
-TEST = ("bureaucratic", "poetic", "storyteller", "tour_guide")  # and figures reported on these
+TEST = ("bureaucratic", "elaborate", "poetic", "storyteller", "tour_guide")  # and figures reported on these
 SPLITS = ("train", "validation", "test")
 LONGEST = 80  # words of a passage that is learned from (ours)
 

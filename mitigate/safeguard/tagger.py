@@ -15,6 +15,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import torch
 from torch import Tensor, nn
 
@@ -101,9 +102,7 @@ class Tagger(nn.Module):
         for block in self.blocks:
             seen = block(seen, mask)
         found = self.norm(seen)
-        acts = self.act(found)
-        plain = nn.functional.one_hot(torch.tensor(2), 3).bool() & ~batch["plain"][..., None]
-        return acts.masked_fill(plain, -30.0), self.before(found)
+        return only_with_plain_form(self.act(found), batch["plain"]), self.before(found)
 
     @torch.no_grad()
     def tag(self, text: str) -> Tagged:
@@ -113,20 +112,28 @@ class Tagger(nn.Module):
         if not found:
             return Tagged((), (), ())
         self.eval()
-        acts, before = (logits[0].softmax(-1) for logits in self(collate([encode(found)])))
-        phrase = before[:, 1:].argmax(-1) + 1
-        phrase[before[:, 0] >= NO_PHRASE] = 0
-        plain = acts[:, PLAIN] > acts[:, KEEP]
-        made = [
-            Edit(int(act), int(number)) for act, number in zip(plain * PLAIN, phrase, strict=True)
-        ]
-        return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()))
+        acts, before = (part[0] for part in self(self.collate([self.encode(found)])))
+        return tagged(found, acts, before)
+
+    def encode(self, found: Sequence[Token]) -> Encoded:
+        """Return what the network reads of the tokens of a text."""
+        pairs = [spelled(token.lower) for token in found]
+        words, pieces = zip(*pairs, strict=True)
+        return {"words": list(words), "pieces": list(pieces), **flags(found)}
+
+    def collate(self, rows: Sequence[Encoded]) -> dict[str, Tensor]:
+        """Return a batch of :meth:`encode`'s rows, padded at the end."""
+        return collate(rows)
+
+    def hide(self, batch: dict[str, Tensor], share: float, rng: np.random.Generator) -> None:
+        """Hide the vectors of a share of the words of a batch, and the letters of as many."""
+        for name in ("words", "pieces"):
+            chosen = rng.random(tuple(batch["plain"].shape)) < share
+            batch[name][torch.from_numpy(chosen)] = 0
 
     def alone(self, text: str) -> str:
         """Return ``text`` after all edits, without rules and gate."""
-        tagged = self.tag(text)
-        made = [tagged.edit(place) for place in range(len(tagged.tokens))]
-        return edits.edited(text, made, tagged.tokens)
+        return self.tag(text).all_edits(text)
 
 
 def open_tagger(folder: str | Path) -> Tagger:
@@ -134,6 +141,24 @@ def open_tagger(folder: str | Path) -> Tagger:
     tagger = Tagger()
     load_weights(tagger, folder)
     return tagger.eval()
+
+
+def only_with_plain_form(acts: Tensor, plain: Tensor) -> Tensor:
+    """Return logits of the acts [B, T, 3] that say a word plainly only if it has a plain form."""
+    barred = nn.functional.one_hot(torch.tensor(PLAIN), 3).bool() & ~plain[..., None]
+    return acts.masked_fill(barred, -30.0)
+
+
+def tagged(
+    found: tuple[Token, ...], acts: Tensor, before: Tensor, attack: Sequence[float] = ()
+) -> Tagged:
+    """Return the tags of a text's tokens by logits of the acts [T, 3] and the phrases [T, 1 + P]."""
+    acts, before = acts.softmax(-1), before.softmax(-1)
+    phrase = before[:, 1:].argmax(-1) + 1
+    phrase[before[:, 0] >= NO_PHRASE] = 0
+    plain = acts[:, PLAIN] > acts[:, KEEP]
+    made = [Edit(int(act), int(n)) for act, n in zip(plain * PLAIN, phrase, strict=True)]
+    return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()), tuple(attack))
 
 
 def _hash(text: str, size: int) -> int:
@@ -166,17 +191,15 @@ def _classes(word: str) -> tuple[float, ...]:
     )  # fmt: skip
 
 
-def encode(found: Sequence[Token]) -> Encoded:
-    """Return what the network reads of the tokens of a text."""
+def flags(found: Sequence[Token]) -> Encoded:
+    """Return what the word classes, the letters and the places of the tokens say of them
+    ("flags"), and whether each has a plain form ("plain")."""
     lower = [t.lower for t in found]
     last = {w: i for i, w in enumerate(lower)}
     first: dict[str, int] = {}
-    rows: Encoded = {"words": [], "pieces": [], "flags": [], "plain": []}
+    rows: Encoded = {"flags": [], "plain": []}
     for i, token in enumerate(found):
         seen = first.setdefault(token.lower, i)
-        word, pieces = spelled(token.lower)
-        rows["words"].append(word)
-        rows["pieces"].append(pieces)
         has = plain_form(token.lower) != token.lower or token.text in edits.ENDS | edits.PAUSES
         rows["plain"].append(has)
         content = token.is_word and token.lower not in FUNCTION
@@ -200,7 +223,7 @@ def encode(found: Sequence[Token]) -> Encoded:
 
 
 def collate(rows: Sequence[Encoded]) -> dict[str, Tensor]:
-    """Return a batch of :func:`encode`'s rows, padded at the end."""
+    """Return a batch of ``Tagger.encode``'s rows, padded at the end."""
     lengths = [len(row["words"]) for row in rows]
     width = max(lengths)
     longest = max(len(p) for row in rows for p in row["pieces"])

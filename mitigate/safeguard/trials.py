@@ -23,12 +23,19 @@ from mitigate.safeguard.text import sentences
 BANKS = Path(__file__).parents[2] / "tests" / "safeguard" / "banks"
 SPLITS = ("tune", "test")
 ALL = "all"
-HELD_OUT = frozenset({"diversion", "role", "other_script", "noise"})
+HELD_OUT = frozenset({
+    "diversion", "role", "other_script", "noise",
+    # by another author
+    "goal_hijack", "role_confusion", "irrelevant_chatter", "code_and_log_lines", "advertising",
+    "math_and_puzzles", "past_anecdotes", "mild_misleading_noise", "fake_transcript",
+    "hypothetical_fiction",
+})  # fmt: skip
 TEST_VOICES = ("bureaucratic", "tour_guide", "poetic", "second_thoughts", "llm_professional",
-    "butler")  # fmt: skip
+    "butler", "elaborate")  # fmt: skip
 TUNE_VOICES = ("chatty", "military", "child", "engineer", "llm_friendly", "llm_novice", "lists",
     "very_short", "asides", "commentator", "hesitant", "llm_formal", "passive", "text_message",
-    "very_long")  # fmt: skip
+    "very_long", "friendly", "novice", "professional", "formal", "casual", "back_references",
+    "restructured")  # fmt: skip
 PLACES = ("front", "second", "middle", "end")
 _BOUNDARY = re.compile(r"\s+(?=and\s)|(?<=,)\s+|\s+(?=(?:until|then|past|through|to|at|by)\s)")
 

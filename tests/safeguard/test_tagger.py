@@ -8,25 +8,25 @@ import torch
 from mitigate.core.files import find
 from mitigate.core.seeding import generator
 from mitigate.safeguard.edits import KEEP, Edit, tokens
-from mitigate.safeguard.guard import TAGGER, Safeguard, label, open_safeguard
+from mitigate.safeguard.guard import TAGGERS, Safeguard, label, open_safeguard
 from mitigate.safeguard.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
 from mitigate.safeguard.plainly_said import Tagged, is_speech, plainly_said
 from mitigate.safeguard.report import voices
 from mitigate.safeguard.routes import draw_route
-from mitigate.safeguard.tagger import Tagger, collate, encode, open_tagger
+from mitigate.safeguard.tagger import Tagger, open_tagger
 
 
 @pytest.fixture(scope="module")
 def shipped() -> Tagger:
-    return open_tagger(find(TAGGER))
+    return open_tagger(find(TAGGERS["tagger"]))
 
 
 @torch.no_grad()
 def test_what_a_text_gets_does_not_depend_on_what_stands_beside_it_in_a_batch(shipped):
     texts = ("Go left.", "Well, er, you go past the piano, if it is still there, and stop.")
-    rows = [encode(shipped.tag(text).tokens) for text in texts]
-    alone, together = shipped(collate(rows[:1])), shipped(collate(rows))
+    rows = [shipped.encode(shipped.tag(text).tokens) for text in texts]
+    alone, together = shipped(shipped.collate(rows[:1])), shipped(shipped.collate(rows))
     count = len(rows[0]["words"])
     for one, both in zip(alone, together, strict=True):
         assert torch.allclose(one[0], both[0, :count], atol=1e-5)
@@ -34,12 +34,13 @@ def test_what_a_text_gets_does_not_depend_on_what_stands_beside_it_in_a_batch(sh
 
 def test_lessons_are_the_same_again_and_have_an_edit_for_each_token():
     for index in range(40):
-        found, edits = draw_lesson(3, index)
-        assert len(found) == len(edits) and draw_lesson(3, index) == (found, edits)
+        lesson = draw_lesson(3, index)
+        assert len(lesson.tokens) == len(lesson.edits) == len(lesson.attack)
+        assert draw_lesson(3, index) == lesson
 
 
 def test_the_shipped_tagger_is_small_and_comes_nearer_to_what_voices_mean(shipped):
-    assert (find(TAGGER) / "model.safetensors").stat().st_size < 3_000_000
+    assert (find(TAGGERS["tagger"]) / "model.safetensors").stat().st_size < 3_000_000
     heard = voices("validation", 40)
     before = sum(token_f1(r.clean, r.heard) for r in heard)
     alone = sum(token_f1(r.clean, shipped.alone(r.heard)) for r in heard)

@@ -14,6 +14,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.concepts import CONCEPTS
 from mitigate.core.files import sha256
+from mitigate.core.public_weights import borrow
 
 SIZE = 128  # pixels of a view; the last map is then 4x4
 CHANNELS, GRID = 320, 4  # of that map
@@ -35,8 +36,6 @@ class ImageNetEncoder(nn.Module):
     Raises ValueError for a size that is no multiple of 32, ModuleNotFoundError without the package.
     """
 
-    public: Tensor
-
     def __init__(self, width: int = 128, size: int = SIZE) -> None:
         super().__init__()
         if size < 32 or size % 32:
@@ -45,17 +44,10 @@ class ImageNetEncoder(nn.Module):
         net, source = _pretrained()
         self.stem = nn.Sequential(net._conv_stem, net._bn0, net._swish)
         self.stages = nn.ModuleList(nn.Sequential(*net._blocks[a:b]) for a, b in STAGES)
-        self.public_tensors = {
-            name: value.clone()
-            for name, value in super().state_dict().items()
-            if name.startswith(BORROWED)
-        }
-        self.register_buffer("public", torch.tensor(list(bytes.fromhex(source)), dtype=torch.uint8))
+        borrow(self, BORROWED, source, "an EfficientNet-Lite0")
         self.gather = nn.Conv2d(CHANNELS, 2 * CHANNELS, GRID, groups=CHANNELS)
         self.embed = nn.Linear(2 * CHANNELS, width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
-        self.register_state_dict_post_hook(_leave_out)
-        self.register_load_state_dict_pre_hook(_fill_in)
 
     def train(self, mode: bool = True) -> ImageNetEncoder:
         """As ever, but the borrowed normalisations keep their statistics."""
@@ -80,29 +72,6 @@ class ImageNetEncoder(nn.Module):
         if x.shape[-2:] == (self.size, self.size):
             return x
         return F.interpolate(x, (self.size, self.size), mode="bilinear", antialias=True)
-
-
-def _leave_out(module: ImageNetEncoder, state: dict[str, Any], prefix: str, _: Any) -> None:
-    """State-dict hook: leave out the tensors that are the public ones, bit for bit."""
-    for name, value in module.public_tensors.items():
-        held = state.get(prefix + name)
-        if held is not None and torch.equal(held.cpu(), value):
-            del state[prefix + name]
-
-
-def _fill_in(module: ImageNetEncoder, state: dict[str, Any], prefix: str, *_: Any) -> None:
-    """Before a state dict is loaded: what it leaves out is the public tensor. Raises ValueError if
-    it was made with other public weights."""
-    made_with = state.get(f"{prefix}public")
-    if made_with is not None and not torch.equal(made_with.cpu(), module.public.cpu()):
-        raise ValueError(
-            "These weights belong to an EfficientNet-Lite0 with sha256 "
-            f"{bytes(made_with.tolist()).hex()[:12]}, but the installed one has "
-            f"{bytes(module.public.tolist()).hex()[:12]}: install the version that they were made "
-            "with."
-        )
-    for name, value in module.public_tensors.items():
-        state.setdefault(prefix + name, value)
 
 
 def _pretrained() -> tuple[Any, str]:
