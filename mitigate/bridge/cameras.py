@@ -23,6 +23,7 @@ if TYPE_CHECKING:  # it needs torch, which a run without one does not wait for
 
 LARGEST = 1 << 30  # bytes of all frames of a call (ours): 24 cameras of 1080 x 1920 have 5e8
 MOST = 256  # cameras of a call (ours)
+FARTHEST = 100.0  # metres: a median depth beyond it is not metres, unless the range says so (ours)
 CHANNELS = {RGB: (3,), DEPTH: (1,)}
 _TURNED = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")  # name of a camera that says its yaw
 _LEVEL = 1e-3  # radians: a pitch or roll below it is none
@@ -60,6 +61,21 @@ class Camera:
     def metres(self, depth: np.ndarray) -> np.ndarray:
         """Its depth in metres."""
         return self.sensor.to_metres(depth) if self.normalised else depth
+
+    def check_depth(self, middle: float) -> None:
+        """Raise ValueError if depth of this median cannot be what the camera is said to give."""
+        at = f"{middle:.4g} (the median of its first frame)"
+        if self.normalised and middle > 1.01:
+            raise ValueError(
+                f"The camera {self.name!r} reads {at}, but it is said to be normalised, 0 to 1: "
+                "leave normalize_depth out where it gives metres."
+            )
+        if not self.normalised and middle > max(FARTHEST, self.sensor.z_max):
+            raise ValueError(
+                f"The camera {self.name!r} reads {at}, which are no metres of a range up to "
+                f"{self.sensor.z_max:g}. Divide millimetres by 1000, or describe the range: "
+                f"cameras={{{self.name!r}: {{'type': 'depth', 'min_depth': 0, 'max_depth': 500}}}}."
+            )
 
     def alike(self) -> tuple:
         """What cameras of one panorama have in common."""

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TextIO
 
-from mitigate.bridge import results
+from mitigate.bridge import results, verdict
 from mitigate.bridge.connection import EVENTS, Condition
-from mitigate.bridge.hook import mitigate_hook
+from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import Told, without_path
 from mitigate.bridge.server import Listener
+from mitigate.bridge.verdict import episodes, lacking
 from mitigate.core.files import atomic_text
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
@@ -29,9 +30,14 @@ TAIL = 12  # lines of the command's output that an error repeats
 
 @dataclass
 class Cell:
-    """The command under one condition. ``name`` is the condition's; settings: what its result
-    depends on, by which a finished one is known again; tied: whether the command ends when this
-    process is killed."""
+    """The command under one condition. ``name`` is the condition's.
+
+    settings: what its result depends on, by which a finished one is known again. files: of the
+    command, as they are now (``identity.py``). clean: the folder of the clean condition, whose
+    episodes it is to have; None for that itself. recording: the folder that is asked for. tied:
+    whether the command ends when this process is killed. loaded: whether a Python process of it
+    loaded the hook.
+    """
 
     name: str
     corruption: Corruption
@@ -44,7 +50,11 @@ class Cell:
     settings: dict[str, Any]
     patience: float = 25.0
     environment: dict[str, str] = field(default_factory=dict)
+    files: dict[str, Any] = field(default_factory=dict)
+    clean: Path | None = None
+    recording: Path | None = None
     tied: bool = False
+    loaded: bool = False
     listener: Listener | None = None
     lock: TextIO | None = None
     process: subprocess.Popen | None = None
@@ -53,19 +63,49 @@ class Cell:
     def log(self) -> Path:
         return self.folder / LOG
 
-    def is_done(self) -> bool:
-        """Whether it ran to its end before. Raises ValueError if it did with other settings."""
+    def held(self) -> dict[str, Any] | None:
+        """What was noted as it ended, None if it has not."""
         file = self.folder / DONE
-        if not file.is_file():
-            return False
-        held = json.loads(file.read_text("utf-8"))
-        other = [n for n, value in self.settings.items() if held.get(n) != value]
-        if other:
+        return json.loads(file.read_text("utf-8")) if file.is_file() else None
+
+    def others(self) -> list[str]:
+        """The settings with another value than it was finished with."""
+        held = self.held() or self.settings
+        return [name for name, value in self.settings.items() if held.get(name) != value]
+
+    def is_done(self) -> bool:
+        """Whether it is finished and whole. Raises ValueError if it is with other settings."""
+        held, other = self.held(), self.others()
+        if held is not None and other:
             raise ValueError(
                 f"{self.folder} was run with another {', '.join(other)} ({held.get(other[0])!r}, "
                 f"now {self.settings[other[0]]!r}). Name another folder (out=...), or delete it."
             )
-        return True
+        return held is not None and not self.why_anew()
+
+    def why_anew(self) -> str:
+        """Why it is measured anew, though it was finished; empty if it need not be."""
+        if self.held() is None:
+            return ""
+        missing = self.missing()
+        if missing:
+            return lacking(self, missing)
+        if self.recording is not None and not is_whole(self.recording, self.told().ends.values()):
+            return f"it was not recorded in {self.recording}, or not all of it"
+        return ""
+
+    def changed(self) -> list[str]:
+        """The files of the command that are others now than when it was finished."""
+        before = (self.held() or {}).get("files", {})
+        return [name for name, told in before.items() if self.files.get(name) != told]
+
+    def missing(self) -> list[str]:
+        """Episodes of the clean condition that did not end under this one."""
+        return sorted(self.of_clean() - self.told().ends.keys())
+
+    def of_clean(self) -> set[str]:
+        """The episodes that ended under the clean condition; empty for itself."""
+        return set() if self.clean is None else set(results.read(self.clean).ends)
 
     def start(self) -> None:
         """Start the server and the command; what an earlier, unfinished run told is put aside."""
@@ -79,6 +119,7 @@ class Cell:
                 f"Another run is at work in {self.folder}: wait for it, or name another folder "
                 "(out=...)."
             ) from error
+        (self.folder / DONE).unlink(missing_ok=True)
         if (self.folder / EVENTS).is_file():
             os.replace(self.folder / EVENTS, self.folder / f"{EVENTS}.unfinished")
         self.listener = Listener(self.condition, self.folder, self.patience).__enter__()
@@ -113,12 +154,15 @@ class Cell:
                 return None
             self.kill()
             return problem
+        self.loaded = self.listener.was_loaded()
         self.kill()
-        problem = self._problem(status)
-        if not problem:
+        found = verdict.problem(self, status)
+        if not found:
+            said = {"condition": self.corruption.name, "severity": self.corruption.severity}
+            said |= {"repeat": self.repeat, "files": self.files}
             with atomic_text(self.folder / DONE) as file:
-                json.dump({**self.settings, "episodes_told": len(self.told().ends)}, file)
-        return problem
+                json.dump({**self.settings, **said, "episodes_told": len(self.told().ends)}, file)
+        return found
 
     def kill(self) -> None:
         """End the command with all of its processes, and the server."""
@@ -158,41 +202,15 @@ class Cell:
         if told.lost and told.connected < 1:
             return (
                 f"a process of the command ended in the middle of episode {told.lost[0]}, and "
-                f"nothing was heard of any other for {silent:.0f} s; the command was stopped.\n"
-                f"The end of its output:\n{self.tail()}"
+                f"nothing was heard of any other for {silent:.0f} s; the command was stopped. "
+                f"{verdict.CRASH}{self.said()}"
             )
         return None
 
-    def _problem(self, status: int) -> str:
-        told = self.told()
-        if told.refused:
-            return told.refused[0]
-        if status:
-            return f"the command ended with status {status}.\nThe end of {self.log}:\n{self.tail()}"
-        if not told.hellos:
-            return (
-                "the command ended, but no Python process of it loaded the hook. Does a script "
-                "replace PYTHONPATH (let it append), does it run python with -E, -I or -S, or in a "
-                f"container (docs/bridge.md)?\nThe end of {self.log}:\n{self.tail()}"
-            )
-        if mitigate_hook.ADAPTERS in self.environment and not told.adapted:
-            return (
-                "the adapters were never put in: no instance of the class that adapters= names was "
-                "called. Which class holds the encoder?"
-            )
-        if not told.ends:
-            return (
-                "the command ended without an episode. Did it find results of an earlier run? Let "
-                "it write to a folder of each condition: {out} or {condition} in the command "
-                f"stands for one.\nThe end of {self.log}:\n{self.tail()}"
-            )
-        if told.lost:
-            return (
-                f"the command ended, but {len(told.lost)} episodes were left in the middle, such "
-                f"as {told.lost[0]}: a process of it died, or its loop gave up. Run again; the "
-                f"condition is measured anew.\nThe end of {self.log}:\n{self.tail()}"
-            )
-        return ""
+    def said(self) -> str:
+        """What an error repeats of the command's output."""
+        tail = self.tail()
+        return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
 
     def tail(self) -> str:
         """The last lines of the command's output."""
@@ -215,7 +233,9 @@ class Cell:
         left = f", {len(told.lost)} left in the middle" if told.lost else ""
         left += f", {n} without a path: SPL is success" if (n := without_path(told)) else ""
         twice = f", {told.again} ended twice (the first counts)" if told.again else ""
-        return f"{len(told.ends)} episodes{rate}{left}{twice}"
+        silent = len(told.ends) - len({row["episode_id"] for row in found})
+        left += f", {silent} without a result" if silent and found else ""
+        return f"{episodes(len(told.ends))}{rate}{left}{twice}"
 
 
 def _filled(word: str, values: dict[str, str]) -> str:

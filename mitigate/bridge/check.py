@@ -15,17 +15,14 @@ import cv2
 import numpy as np
 from omegaconf import DictConfig
 
-from mitigate.bridge.cameras import Group, Rig, corrupted
+from mitigate.bridge.cameras import Group, Rig
 from mitigate.bridge.conditions import applicable, cells, untold
 from mitigate.bridge.results import Told
+from mitigate.bridge.sheet import HEADING, of, sheet
 from mitigate.core.files import write_atomically
 from mitigate.core.observation import DEPTH, RGB
-from mitigate.corruptions import Corruption, Key
-from mitigate.corruptions.gallery import depth_picture
 
-SHOWN = 4  # cameras of a panorama in a row of the sheet
-SIDE, TITLE, LABEL = 160, 24, 170  # pixels: height of a picture, of a title, width of the names
-HEADING = "heading"  # beside the cameras in the file of the first frames
+NEAR = 1.01  # metres: depth that reads no more may be normalised (ours)
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
 
 
@@ -53,11 +50,6 @@ class FirstLook:
         """Nothing: one look is enough."""
 
 
-def of(camera: str) -> str:
-    """Return the name of a camera's frame in the file: none that `numpy.savez` takes itself."""
-    return f"camera {camera}"
-
-
 def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
     with open(path, "wb") as file:
         np.savez(file, **frames)  # type: ignore[arg-type]
@@ -66,10 +58,12 @@ def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
 def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     """Run ``command`` up to its first frames; return the path of the sheet, None without cameras.
 
-    Raises ValueError if it ends before, or shows nothing within ``LATE`` seconds.
+    Raises ValueError as a run does for its options, and if the command ends before, or shows
+    nothing within ``LATE`` seconds.
     """
-    from mitigate.bridge.run import name_of
+    from mitigate.bridge.run import check_options, name_of
 
+    check_options(cfg, command)
     out = Path(cfg.out or f"{cfg.runs}/run/{cfg.name or name_of(command)}-check")
     made = cells(cfg, command, out, "check")
     cell, file = made[0], out / "first.npz"
@@ -84,7 +78,9 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
         cell.kill()
     told = cell.told()
     rig = Rig(told.cameras, cfg.missing, cfg.turn)
-    print("\n".join(described(told, rig)))
+    with np.load(file, allow_pickle=False) as held:
+        frames = dict(held)
+    print("\n".join(described(told, rig, frames)))
     fitting = []
     for other in made[1:]:
         reason = applicable(other.corruption, told)
@@ -96,8 +92,7 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     if not rig.groups:
         print("no frame was named as rgb or depth: there is nothing to draw", flush=True)
         return None
-    with np.load(file, allow_pickle=False) as frames:
-        picture = sheet(rig, dict(frames), list(dict.fromkeys(fitting)), told.first, cfg.seed)
+    picture = sheet(rig, frames, list(dict.fromkeys(fitting)), told.first, cfg.seed)
     path = out / "sheet.png"
     png = cv2.imencode(".png", picture[..., ::-1])[1].tobytes()
     write_atomically(path, lambda p: p.write_bytes(png))
@@ -119,7 +114,7 @@ def _wait(cell: Any, file: Path) -> None:
             print(f"check: no frame after {spoke - began:.0f} s", flush=True)
 
 
-def described(told: Told, rig: Rig) -> list[str]:
+def described(told: Told, rig: Rig, frames: Mapping[str, np.ndarray]) -> list[str]:
     """Return lines that say what the program is, sees and hears."""
     hello = told.hellos[0] if told.hellos else {}
     versions = {"Python": hello.get("python"), "numpy": hello.get("numpy")}
@@ -131,7 +126,7 @@ def described(told: Told, rig: Rig) -> list[str]:
         what = f"  {first.kind}: " + ", ".join(camera.name for camera in group.cameras)
         many = f", {len(group.cameras)} as one panorama" if len(group.cameras) > 1 else ""
         hfov = "" if first.hfov is None else f", hfov {first.hfov:g}"
-        lines.append(f"{what}; {size} {first.dtype}{hfov}{many}{_range(group)}")
+        lines.append(f"{what}; {size} {first.dtype}{hfov}{many}{_range(group, frames)}")
     episode, said = told.first, []
     if episode:
         said.append(f"episode {episode['episode']} of {episode['scene']}")
@@ -141,57 +136,19 @@ def described(told: Told, rig: Rig) -> list[str]:
     return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(said), "conditions:"]
 
 
-def _range(group: Group) -> str:
+def _range(group: Group, frames: Mapping[str, np.ndarray]) -> str:
+    """What depth is said to be, what of it was seen, and whether that is strange."""
     first = group.cameras[0]
     if first.kind != DEPTH:
         return ""
     unit = "0 to 1 for" if first.normalised else "metres,"
-    return f", {unit} {first.sensor.z_min:g} to {first.sensor.z_max:g} m"
-
-
-def sheet(
-    rig: Rig,
-    frames: Mapping[str, np.ndarray],
-    corruptions: Sequence[Corruption],
-    first: Mapping[str, Any],
-    seed: int,
-) -> np.ndarray:
-    """Return uint8 RGB: a row for clean and each corruption, with the cameras of its modality."""
-    scene = str(first.get("scene", "")).rpartition("/")[2]
-    key = Key(seed, f"{scene}/{first.get('episode', '')}", 0)
-    heading = frames[HEADING]
-    by_kind = {group.cameras[0].kind: group for group in reversed(rig.groups)}
-    rows: list[tuple[str, str, Corruption | None]] = [("clean", kind, None) for kind in by_kind]
-    rows += [(c.name, c.modality, c) for c in corruptions]
-    drawn = []
-    for name, kind, corruption in rows:
-        group = by_kind[kind]
-        views = np.zeros(group.shape, group.cameras[0].dtype)
-        for camera, view in zip(group.cameras, group.views, strict=True):
-            views[view] = frames[of(camera.name)]
-        if corruption is not None:
-            at = float(heading[0]) if heading.size else None
-            views = corrupted(group, views, corruption, key, at)
-        drawn.append(_row(name, group, views))
-    wide = max(row.shape[1] for row in drawn)
-    return np.vstack(
-        [
-            np.pad(row, ((0, 4), (0, wide - row.shape[1]), (0, 0)), constant_values=255)
-            for row in drawn
-        ]
-    )
-
-
-def _row(name: str, group: Group, views: np.ndarray) -> np.ndarray:
-    cells = [np.full((SIDE, LABEL, 3), 255, np.uint8)]
-    place = (6, SIDE // 2)
-    cv2.putText(cells[0], name, place, cv2.FONT_HERSHEY_SIMPLEX, 0.5, (0, 0, 0), 1, cv2.LINE_AA)
-    for camera, view in list(zip(group.cameras, group.views, strict=True))[:SHOWN]:
-        frame = views[view]
-        if camera.kind == DEPTH:
-            metres = camera.metres(frame.reshape(frame.shape[:2]).astype(np.float32))
-            frame = depth_picture(metres, camera.sensor.z_max)
-        scale = SIDE / frame.shape[0]
-        size = (round(frame.shape[1] * scale), SIDE)
-        cells.append(cv2.resize(frame, size, interpolation=cv2.INTER_AREA))
-    return np.hstack(cells)
+    said = f", {unit} {first.sensor.z_min:g} to {first.sensor.z_max:g} m"
+    seen = np.concatenate([c.metres(frames[of(c.name)]).ravel() for c in group.cameras])
+    seen = seen[np.isfinite(seen) & (seen > 0)]
+    if not seen.size:
+        return f"{said}; nothing but holes was seen"
+    low, middle, high = (f"{x:.2f}" for x in (seen.min(), np.median(seen), seen.max()))
+    strange = ""
+    if not first.normalised and seen.max() < NEAR:
+        strange = " - is it normalised? Say so: normalize_depth, min_depth, max_depth"
+    return f"{said}; seen {low} to {high} (median {middle}) m{strange}"

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from omegaconf import DictConfig
 
 from mitigate.bridge.cell import Cell
 from mitigate.bridge.connection import Condition
 from mitigate.bridge.hook import mitigate_hook
+from mitigate.bridge.identity import adapters_of, files_of, label_of, settings_of
 from mitigate.bridge.recording import Recorder
 from mitigate.bridge.results import Told
 from mitigate.bridge.subset import Subset
@@ -22,18 +22,6 @@ from mitigate.corruptions import Corruption
 
 if TYPE_CHECKING:
     from mitigate.restoration.restorer import Restorer
-
-SETTINGS = (  # options that a condition's result depends on
-    "seed",
-    "episodes",
-    "turn",
-    "safeguard",
-    "tokenizer",
-    "missing",
-    "adapters",
-    "token_length",
-    "record",
-)
 
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
@@ -51,33 +39,33 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     words, environment, restorer = _words(cfg, out), _environment(cfg), _restorer(cfg)
     keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
-    text = shlex.join(command)
-    sha = hashlib.sha256(text.encode()).hexdigest()[:12]
-    made = []
+    text, files, adapters = shlex.join(command), files_of(command), adapters_of(cfg)
+    made: list[Cell] = []
     for corruption, repeat in wanted:
         own = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
         own += f"-again{repeat}" if repeat else ""
-        settings = _settings(cfg, text, restorer)
         condition = Condition(
             corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep, restorer=restorer
         )
-        if cfg.record is not None:
-            condition.observers.append(Recorder(Path(cfg.record) / own))
-        label = _label(cfg, sha, name, restorer)
-        folder = out / "conditions" / own
+        recording = None if cfg.record is None else Path(cfg.record) / own
+        if recording is not None:
+            condition.observers.append(Recorder(recording))
         made.append(
             Cell(
                 own,
                 corruption,
                 repeat,
                 tuple(command),
-                folder,
+                out / "conditions" / own,
                 condition,
-                label,
+                label_of(cfg, text, name, restorer, adapters),
                 cfg.rule,
-                settings,
+                settings_of(cfg, text, restorer, adapters),
                 cfg.patience,
                 environment,
+                files,
+                clean=made[0].folder if made else None,
+                recording=recording,
             )
         )
     return made
@@ -89,28 +77,6 @@ def _restorer(cfg: DictConfig) -> Restorer | None:
     from mitigate.restoration.restorer import load_restorer
 
     return load_restorer(cfg.restore)
-
-
-def _settings(cfg: DictConfig, command: str, restorer: Restorer | None) -> dict[str, Any]:
-    """What a condition's result depends on, by which a finished one is known again."""
-    told = {name: cfg[name] for name in SETTINGS}
-    return {"command": command, **told, "restore": None if restorer is None else restorer.hash}
-
-
-def _label(cfg: DictConfig, sha: str, name: str, restorer: Restorer | None) -> dict[str, Any]:
-    """What the rows say of the agent: with a restorer in front of it, it is another one."""
-    from mitigate.evaluation.columns import name_of
-
-    if cfg.safeguard != "none":
-        from mitigate.safeguard.guard import label as front
-
-        name += f"+{front(cfg.safeguard)}"
-    if restorer is not None:
-        name += f"+{name_of(cfg.restore)}"
-        sha = hashlib.sha256(f"{sha} {restorer.hash}".encode()).hexdigest()[:12]
-    if cfg.adapters is not None:
-        name += "+adapters"
-    return {"agent": sha, "name": name, "split": cfg.split, "seed": cfg.seed}
 
 
 def _words(cfg: DictConfig, out: Path) -> Words:
@@ -154,7 +120,9 @@ def applicable(corruption: Corruption, clean: Told) -> str:
         if part.name == "white_box":
             return "an agent's system prompt does not pass the bridge"
         if part.modality == "instruction" and not clean.first.get("text"):
-            return "its goals are categories, not instructions"
+            if clean.first.get("category"):
+                return "its goals are categories, not instructions"
+            return "no instruction was told: connect(..., instruction=...)"
     return ""
 
 

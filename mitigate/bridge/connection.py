@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.bridge.cameras import Rig
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.hook.mitigate_hook import receive, send
+from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
 from mitigate.bridge.words import Words
 from mitigate.core.names import short, unknown
 from mitigate.corruptions import Corruption, Key
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from mitigate.restoration.restorer import Restorer
 
 EVENTS = "events.jsonl"
-KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted")  # of messages, after "hello"
+# of messages, behind "hello"
+KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted", "stopped")
 
 
 @dataclass
@@ -98,7 +99,7 @@ class Connection:
         self.file: Path | None = None
         self.offsets: dict[str, int] = {}
         self.scene = self.episode = ""
-        self.open = False
+        self.open = self.loop = self.chosen = False
         self.calls = 0  # of this episode
         self.worked = 0.0  # seconds in corruptions, of this episode
 
@@ -135,8 +136,9 @@ class Connection:
             return None
 
     def _leave(self) -> None:
-        """Note an episode that was left in the middle; after one call it was only reset."""
-        if self.open and self.calls > 1:
+        """Note an episode that was left in the middle: Habitat's was only reset after one call,
+        and of a loop each call is a step."""
+        if self.open and self.calls > (0 if self.loop else 1):
             note(self.folder, event="dropped", scene=self.scene, episode=self.episode)
         self.open = False
 
@@ -190,8 +192,9 @@ class Connection:
     def on_episode(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """An episode begins: answer with its words as the agent is to hear them."""
         self._leave()
+        self._check_chosen()
         self.scene, self.episode, self.open = str(message["scene"]), str(message["id"]), True
-        self.worked, self.calls = 0.0, 0
+        self.worked, self.calls, self.loop = 0.0, 0, message.get("loop") is True
         key = self.condition.key(self.scene, self.episode, 0)
         heard = self.condition.words.heard(message, self.condition.corruption, key)
         for observer in self.condition.observers:
@@ -202,11 +205,28 @@ class Connection:
         note(self.folder, event="episode", episode=self.episode, **told)
         return heard
 
+    def _check_chosen(self) -> None:
+        """Raise ValueError if some episodes were asked for and the program let none be chosen."""
+        if self.condition.keep is None or self.chosen:
+            return
+        self.chosen = '"event": "dataset"' in (self.folder / EVENTS).read_text("utf-8")
+        if not self.chosen:
+            raise ValueError(
+                "episodes= asks for some of the program's episodes, but it would walk all: only a "
+                "data set of habitat-lab is chosen from by itself. A loop of your own walks those "
+                "that mitigate_hook.wanted([(scene, id), ...]) returns; WMNav has its own -ne. Or "
+                "leave episodes= out."
+            )
+
     def on_frame(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """The frames of a call lie in memory: corrupt them there, answer which were."""
         self._drop_memory()
         if self.rig is None:
             raise ValueError("a frame came before its cameras were described.")
+        for camera in self.rig.cameras:
+            middle = message.get("depth", {}).get(camera.name)
+            if middle is not None:
+                camera.check_depth(float(middle))
         began = time.perf_counter()
         for observer in self.condition.observers:
             observer.frame(message, self.rig, self.memory, self.offsets)
@@ -230,7 +250,8 @@ class Connection:
         said = {name: message[name] for name in told if message.get(name) is not None}
         if not isinstance(said.get("metrics", {}), dict):
             raise ValueError("the metrics of an episode are no names and numbers.")
-        if self.calls == 0:
+        failed = self.loop and not said.get("metrics", {}).get("success")  # before its first look
+        if self.calls == 0 and not failed:
             raise ValueError(
                 f"episode {self.episode} ended, and none of its frames came by: its program has "
                 "frames that the bridge does not see."
@@ -250,10 +271,17 @@ class Connection:
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """The episodes of an environment: answer which it is to keep, all if None."""
-        keep = self.condition.keep
-        return {"keep": None if keep is None else keep([str(k) for k in message["keys"]])}
+        keep, names = self.condition.keep, [str(key) for key in message["keys"]]
+        note(self.folder, event="dataset", episodes=len(names))
+        return {"keep": None if keep is None else keep(names)}
 
     def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Adapters were put into an encoder."""
         note(self.folder, event="adapted", module=str(message["module"]))
+        return {}
+
+    def on_stopped(self, message: Mapping[str, Any]) -> dict[str, Any]:
+        """A process of the command ended itself, for this reason."""
+        problem = "".join(c if c.isprintable() else " " for c in str(message["problem"]))
+        note(self.folder, event="stopped", problem=" ".join(problem.split())[:LONGEST])
         return {}

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import re
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -80,6 +80,12 @@ class Recorder:
             with atomic_text(self.here / "end.json") as file:
                 json.dump(said, file)
         self.here = None
+
+
+def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:
+    """Whether ``folder`` is a recording that holds all episodes that ended as ``ends`` tell."""
+    places = [folder / plain(stem_of(e["scene"])) / plain(e["episode"]) for e in ends]
+    return all((place / "end.json").is_file() for place in places)
 
 
 def png(camera: Camera, frame: np.ndarray) -> bytes:

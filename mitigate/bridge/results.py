@@ -28,8 +28,8 @@ class Told:
 
     ends: of each episode, by its name; again: episodes that ended once more, of which the first
     counts; dropped: left in the middle. cameras: as first described; first: what the first episode
-    says. refused: what the server could not do, in words. adapted: encoders that got adapters.
-    connected: environments that are there now.
+    says. refused: what the server could not do, and why processes stopped themselves, in words.
+    adapted: encoders that got adapters. connected: environments that are there now.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
@@ -74,7 +74,7 @@ def read(folder: Path) -> Told:
             told.dropped.append(name)
         elif kind == "adapted":
             told.adapted.append(event["module"])
-        elif kind == "refused":
+        elif kind in ("refused", "stopped"):
             told.refused.append(event["problem"])
     return told
 

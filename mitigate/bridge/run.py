@@ -15,16 +15,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING, DictConfig
 
+from mitigate.bridge import verdict
 from mitigate.core import conf
 from mitigate.core.names import unknown
+from mitigate.core.signals import raise_ended
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
+
+if TYPE_CHECKING:  # torch and the corruptions are slow to import
+    from mitigate.bridge.cell import Cell
 
 EVERY = 15.0  # seconds between two lines of progress (ours)
 
@@ -77,36 +82,36 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     Raises ValueError for options that make no sense and, behind all others, for conditions whose
     command failed.
     """
-    from mitigate.bridge.cell import Cell
-    from mitigate.bridge.conditions import applicable, cells, untold
+    from mitigate.bridge.conditions import cells
+    from mitigate.bridge.identity import default_folder
+    from mitigate.bridge.report import write_report
     from mitigate.bridge.words import NO_TOKENIZER
 
-    _check(cfg, command)
+    check_options(cfg, command)
     name = cfg.name or name_of(command)
-    out = Path(cfg.out or f"{cfg.runs}/run/{name}-s{cfg.severity:g}")
+    out = Path(cfg.out or default_folder(cfg, name))
     made = cells(cfg, command, out, name)
-    clean, others = made[0], made[1:]
+    clean = made[0]
+    many = "1 condition" if len(made) == 1 else f"{len(made)} conditions"
     print(
-        f"run: {shlex.join(command)}\n"
-        f"run: {len(made)} conditions at severity {cfg.severity:g}, rows in {out}",
+        f"run: {shlex.join(command)}\nrun: {many} at severity {cfg.severity:g}, rows in {out}",
         flush=True,
     )
+    _warn_of_changes(made, out)
+    before = clean.is_done()
     problems = _run_all(cfg, command, out, name, [clean])
     if problems:
         raise ValueError("\n".join(problems))
-    fitting: list[Cell] = []
-    unheard: list[str] = []
-    for cell in others:
-        reason = applicable(cell.corruption, clean.told())
-        if reason:
-            print(f"{cell.name}: not applicable, {reason}", flush=True)
-        elif untold(cell.corruption, clean.told(), cell.condition.words):
-            unheard.append(cell.name)
-        else:
-            fitting.append(cell)
+    fitting, unheard = _fitting(made)
     if unheard:
         problems = [f"{', '.join(unheard)}: {NO_TOKENIZER}"]
         print(*problems, flush=True)  # before hours of the others
+    if before and all(cell.is_done() for cell in fitting):
+        print(
+            f"run: nothing was left to run, all is in {out}; to measure anew, name another folder "
+            "(out=...), or remove this one.",
+            flush=True,
+        )
     problems += _run_all(cfg, command, out, name, fitting)
     write_report([clean, *fitting], out)
     if problems:
@@ -114,7 +119,41 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     return out
 
 
-def _check(cfg: DictConfig, command: Sequence[str]) -> None:
+def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
+    """The conditions beside clean that reach the agent, and the names of those whose words it would
+    not hear; say which do not."""
+    from mitigate.bridge.conditions import applicable, untold
+
+    fitting, unheard, told = [], [], made[0].told()
+    for cell in made[1:]:
+        reason = applicable(cell.corruption, told)
+        if reason:
+            print(f"{cell.name}: not applicable, {reason}", flush=True)
+        elif untold(cell.corruption, told, cell.condition.words):
+            unheard.append(cell.name)
+        else:
+            fitting.append(cell)
+    return fitting, unheard
+
+
+def _warn_of_changes(made: Sequence[Cell], out: Path) -> None:
+    """Say which files of the command changed since conditions were finished with them."""
+    changed: dict[str, list[str]] = {}
+    for cell in made:
+        for file in cell.changed():
+            changed.setdefault(file, []).append(cell.name)
+    for file, names in changed.items():
+        more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+        was = "was" if len(names) == 1 else "were"
+        print(
+            f"run: {file} changed since {', '.join(names[:3])}{more} {was} run, whose old results "
+            f"are kept: out=... measures the new one, or remove {out / 'conditions'}.",
+            flush=True,
+        )
+
+
+def check_options(cfg: DictConfig, command: Sequence[str]) -> None:
+    """Raise ValueError for options that make no sense, and without a command."""
     from mitigate.evaluation.metrics import RULES
 
     check_choice(cfg.safeguard)
@@ -125,6 +164,13 @@ def _check(cfg: DictConfig, command: Sequence[str]) -> None:
         )
     if cfg.rule is not None and cfg.rule not in RULES:
         raise ValueError(unknown("rule", cfg.rule, RULES))
+    if cfg.turn not in ("left", "right"):
+        raise ValueError(unknown("turn", cfg.turn, ("left", "right")))
+    if cfg.corruption is not None and cfg.conditions is not None:
+        raise ValueError(
+            f"corruption={cfg.corruption} and conditions=... both say what is measured: put it "
+            "into conditions=[...], or leave that out."
+        )
     for option in ("jobs", "repeats"):
         if cfg[option] < 1:
             raise ValueError(f"{option}={cfg[option]} is none: give 1 or more.")
@@ -144,7 +190,7 @@ def name_of(command: Sequence[str]) -> str:
 
 
 def _run_all(
-    cfg: DictConfig, command: Sequence[str], out: Path, name: str, waiting: Sequence[Any]
+    cfg: DictConfig, command: Sequence[str], out: Path, name: str, waiting: Sequence[Cell]
 ) -> list[str]:
     """Run cells, ``cfg.jobs`` at a time, where the launcher says; return what went wrong."""
     if cfg.launcher.name == "local":
@@ -154,9 +200,9 @@ def _run_all(
     return run_there(cfg, command, out, name, waiting)
 
 
-def _run_here(waiting: Sequence[Any], jobs: int) -> list[str]:
+def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
     left, problems = list(waiting), []
-    running: list[Any] = []
+    running: list[Cell] = []
     spoke = time.monotonic()
     try:
         while left or running:
@@ -165,16 +211,19 @@ def _run_here(waiting: Sequence[Any], jobs: int) -> list[str]:
                 if cell.is_done():
                     print(f"{cell.name}: done before, {cell.summary()}", flush=True)
                 else:
+                    again = f", measured anew: {why}" if (why := cell.why_anew()) else ""
                     cell.start()
                     running.append(cell)
-                    print(f"{cell.name}: started, its output is in {cell.log}", flush=True)
+                    print(f"{cell.name}: started{again}; its output is in {cell.log}", flush=True)
             time.sleep(0.2)
             for cell in list(running):
                 problem = cell.poll()
                 if problem is None:
                     continue
                 running.remove(cell)
-                print(f"{cell.name}: {(problem or cell.summary()).splitlines()[0]}", flush=True)
+                print(
+                    f"{cell.name}: {verdict.outcome(cell, problem, len(waiting) == 1)}", flush=True
+                )
                 problems += [f"{cell.name}: {problem}"] if problem else []
             if running and time.monotonic() - spoke > EVERY:
                 spoke = time.monotonic()
@@ -183,29 +232,6 @@ def _run_here(waiting: Sequence[Any], jobs: int) -> list[str]:
         for cell in running:
             cell.kill()
     return problems
-
-
-def _interrupt(*_: object) -> None:
-    raise KeyboardInterrupt
-
-
-def write_report(made: Sequence[Any], out: Path) -> None:
-    """Write ``rows.jsonl``, the table and its pictures, and print the table."""
-    from mitigate.bridge.randomness import randomness
-    from mitigate.evaluation import rows
-    from mitigate.evaluation.evaluate import ROWS, write_table
-
-    found = [row for cell in made if cell.repeat == 0 and cell.is_done() for row in cell.rows()]
-    if not found:
-        raise ValueError(
-            f"No episode told how it went, so there is no table. {out} holds what was seen."
-        )
-    rows.write(out / ROWS, found)
-    write_table([out / ROWS], out)
-    again = [cell.rows() for cell in made if cell.corruption.name == "clean" and cell.is_done()]
-    if len(again) > 1:
-        print(randomness(again), flush=True)
-        (out / "randomness.md").write_text(randomness(again), encoding="utf-8")
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")
@@ -226,8 +252,9 @@ def main() -> None:
     """Run from the command line."""
     options, command = split_command(sys.argv[1:])
     _command[:] = command
-    for ended in (signal.SIGTERM, signal.SIGHUP):  # of timeout, SLURM, a terminal: as Ctrl-C
-        signal.signal(ended, _interrupt)
+    signal.signal(signal.SIGHUP, raise_ended)  # of a terminal: as Ctrl-C; SIGTERM is conf's
     options = ["check=true" if option == "--check" else option for option in options]
     sys.argv[1:] = options
-    conf.main(hydra_main, "run", lambda: check_arguments(options))
+    conf.main(
+        hydra_main, "run", lambda: check_arguments(options), ["--", *command] if command else ()
+    )

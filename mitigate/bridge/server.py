@@ -86,6 +86,10 @@ class Listener:
             return os.waitpid(self.pid, os.WNOHANG) == (0, 0)
         return False
 
+    def was_loaded(self) -> bool:
+        """Whether a Python process of the command loaded the hook."""
+        return (self.place / mitigate_hook.LOADED).exists()
+
     def environment(self) -> dict[str, str]:
         """What the command's environment must hold."""
         path = os.environ.get("PYTHONPATH", "")

@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 
 from omegaconf import DictConfig, OmegaConf
 
+from mitigate.bridge import verdict
 from mitigate.bridge.cell import Cell
 from mitigate.bridge.conditions import cells
 from mitigate.core.progress import Progress
@@ -95,7 +96,7 @@ def run_there(
             if found is None:
                 continue
             cell, problem = left[found[0]], str(found[1])
-            progress.say(f"{cell.name}: {(problem or cell.summary()).splitlines()[0]}")
+            progress.say(f"{cell.name}: {verdict.outcome(cell, problem, len(waiting) == 1)}")
             problems += [f"{cell.name}: {problem}"] if problem else []
             progress.advance()
     return problems

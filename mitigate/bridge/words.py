@@ -45,12 +45,11 @@ class Words:
             )
         if not isinstance(text, str):
             if spoken:
-                what = (
-                    f"an object category ({told['category']})" if told.get("category") else "none"
-                )
+                category = told.get("category")
+                has = f"{category!r}, a category that agents read by number" if category else "none"
                 raise ValueError(
                     f"{corruption.name} corrupts the words of an instruction, but the episode has "
-                    f"{what}, which agents read by number. Leave it out: suite=full."
+                    f"{has}. Tell it, connect(..., instruction=...), or leave the corruption out."
                 )
             return {}
         made = text

@@ -12,7 +12,7 @@ import shlex
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr
 from importlib import import_module
 from pathlib import Path
@@ -49,10 +49,14 @@ KINDS = {
 
 
 def main(
-    program: Callable[[], None], primary: str, check: Callable[[], None] | None = None
+    program: Callable[[], None],
+    primary: str,
+    check: Callable[[], None] | None = None,
+    behind: Sequence[str] = (),
 ) -> None:
     """Call ``check`` and then ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``);
-    for ``--help`` print the first lines of its module and every option instead.
+    for ``--help`` print the first lines of its module and every option instead. behind: words of
+    the command line that are not Hydra's, to be said behind the options in how to go on.
 
     Exits with status 1 and one paragraph for ValueError, OSError, config errors and what asks for
     too much memory, with 130 for Ctrl-C and 143 for SIGTERM, saying how to go on.
@@ -82,8 +86,8 @@ def main(
             raise
         sys.exit(f"error: {told}")
     except KeyboardInterrupt as error:
-        again = shlex.join([*sys.argv[0].split(), *sys.argv[1:]])
-        print(f"\n{error or 'SIGINT'}: stopped. To go on: {again}", file=sys.stderr)
+        again = shlex.join([*sys.argv[0].split(), *sys.argv[1:], *behind])
+        print(f"\n{str(error) or 'SIGINT'}: stopped. To go on: {again}", file=sys.stderr)
         sys.exit(getattr(error, "status", 130))
     finally:
         del os.environ["HYDRA_FULL_ERROR"]
@@ -142,7 +146,7 @@ def explain(error: Exception, primary: str) -> str:
     text = f"{error}\n{error.__cause__ or ''}"
     if isinstance(error, MissingConfigException) and error.options is not None:
         group, _, name = (error.missing_cfg_file or "").rpartition("/")
-        return unknown(group, name, error.options)
+        return unknown(group, name, [o for o in error.options if not o.endswith("_schema")])
     if isinstance(error, OverrideParseException):
         return (
             f"Cannot read the option {error.override!r}: write key=value, like severity=0.6, and "

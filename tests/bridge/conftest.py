@@ -2,25 +2,45 @@
 
 import json
 import os
+import shlex
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
 from mitigate.bridge.connection import Condition
 from mitigate.bridge.results import read
+from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
 from mitigate.bridge.words import Words
+from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption
 
 LAB = Path(__file__).parent / "lab"
+AGENT = f"{sys.executable} {LAB / 'agent.py'} {{out}}/seen"
 
 
 def condition(name="clean", severity=0.6, **more):
     """A condition by name; clean has severity 0."""
     corruption = Corruption(name, 0.0 if name == "clean" else severity)
     return Condition(corruption, seed=0, words=more.pop("words", Words()), **more)
+
+
+def python(listener, code, *arguments):
+    """Run code as a program of the user's."""
+    environment = {**os.environ, **listener.environment()}
+    environment["PYTHONPATH"] += os.pathsep + str(LAB)
+    return subprocess.run(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=30,
+        check=False,
+    )
 
 
 class Ran:
@@ -62,3 +82,33 @@ def command(tmp_path):
         return Ran(process, folder, folder / "seen")
 
     return run
+
+
+@dataclass
+class Ended:
+    """What a run printed, and the error that it ended with, if it did."""
+
+    stdout: str
+    stderr: str = ""
+
+    @property
+    def returncode(self):
+        return int(bool(self.stderr))
+
+
+@pytest.fixture
+def run(capsys, monkeypatch):
+    """Run a command as the command line does, in this process."""
+
+    def call(out, options, command=AGENT, **environment):
+        path = os.pathsep.join([str(LAB), environment.pop("PYTHONPATH", "")])
+        monkeypatch.setenv("PYTHONPATH", path)
+        cfg = load_config("run", [f"out={out}", *options.split()])
+        problem = ""
+        try:
+            run_command(cfg, shlex.split(command))
+        except ValueError as error:
+            problem = str(error)
+        return Ended(capsys.readouterr().out, problem)
+
+    return call

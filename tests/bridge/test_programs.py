@@ -2,8 +2,6 @@
 
 import hashlib
 import json
-import os
-import subprocess
 import sys
 
 import numpy as np
@@ -19,23 +17,7 @@ from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption, Key, corrupt
 from tests.encoders.test_token_adapters import shaken
 
-from .conftest import LAB, condition
-
-
-def python(listener, code, *arguments):
-    """Run code as a program of the user's."""
-    environment = {**os.environ, **listener.environment()}
-    environment["PYTHONPATH"] += os.pathsep + str(LAB)
-    return subprocess.run(
-        [sys.executable, "-c", code, *map(str, arguments)],
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        timeout=30,
-        check=False,
-    )
-
+from .conftest import condition, python
 
 WMNAV = "import sys, WMNav_env; WMNav_env.WMNavEnv().run_experiment(sys.argv[1])"
 

@@ -4,53 +4,18 @@ import fcntl
 import json
 import os
 import shlex
+import signal
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
 
-import cv2
 import pytest
 
-from mitigate.bridge.check import check
 from mitigate.bridge.run import name_of, split_command
-from mitigate.bridge.run import run as run_command
-from mitigate.core.conf import load_config, options_text
+from mitigate.core.conf import options_text
 from mitigate.evaluation import rows
 
-from .conftest import LAB
-
-AGENT = f"{sys.executable} {LAB / 'agent.py'} {{out}}/seen"
-
-
-@dataclass
-class Ended:
-    """What a run printed, and the error that it ended with, if it did."""
-
-    stdout: str
-    stderr: str = ""
-
-    @property
-    def returncode(self):
-        return int(bool(self.stderr))
-
-
-@pytest.fixture
-def run(capsys, monkeypatch):
-    """Run a command as the command line does, in this process."""
-
-    def call(out, options, command=AGENT, **environment):
-        path = os.pathsep.join([str(LAB), environment.pop("PYTHONPATH", "")])
-        monkeypatch.setenv("PYTHONPATH", path)
-        cfg = load_config("run", [f"out={out}", *options.split()])
-        problem = ""
-        try:
-            run_command(cfg, shlex.split(command))
-        except ValueError as error:
-            problem = str(error)
-        return Ended(capsys.readouterr().out, problem)
-
-    return call
+from .conftest import AGENT, LAB
 
 
 def test_it_is_a_command(tmp_path):
@@ -116,7 +81,7 @@ def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr
     assert "multipath-s0.6: not applicable, the agent has no depth camera" in ran.stdout
-    assert "mask-s0.6: not applicable, its goals are categories" in ran.stdout
+    assert "mask-s0.6: not applicable, no instruction was told" in ran.stdout
     assert "white_box-s0.6: not applicable" in ran.stdout
     found = rows.read(tmp_path / "o" / "rows.jsonl")
     assert {row["corruption"] for row in found} == {"clean", "spatter"} and len(found) == 4
@@ -126,7 +91,8 @@ def test_conditions_that_cannot_reach_the_agent_are_not_run(run, tmp_path):
     ("command", "words"),
     [
         (f"{sys.executable} -c 'import sys; sys.exit(3)'", "ended with status 3"),
-        (f"{sys.executable} -c 'print(5)'", "no Python process of it loaded the hook"),
+        (f"{sys.executable} -I -c 'print(5)'", "no Python process of it loaded the hook"),
+        (f"{sys.executable} -c 'print(5)'", "imported neither habitat-lab nor habitat-sim"),
         (f"{sys.executable} -I {LAB / 'agent.py'} x", "status 1"),
         ("no-such-program", "cannot be started: No such file"),
         ("", "No command is given"),
@@ -152,7 +118,7 @@ def test_a_condition_that_lost_an_episode_is_not_done(run, tmp_path):
     """The command ends well, but one of its workers was killed."""
     out = tmp_path / "o"
     ran = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
-    assert ran.returncode == 1 and "1 episodes were left in the middle, such as s0/2" in ran.stderr
+    assert ran.returncode == 1 and "1 episode was left in the middle, such as s0/2" in ran.stderr
     assert not (out / "conditions" / "clean" / "done.json").exists()
 
 
@@ -220,40 +186,6 @@ def test_help_says_what_every_option_means():
     assert shown.count("\n") > 20 and "tokenizer: null  # for agents" in shown
 
 
-def test_a_check_says_what_the_program_sees_and_draws_it(tmp_path, monkeypatch, capsys):
-    monkeypatch.setenv("PYTHONPATH", str(LAB))
-    cfg = load_config("run", [f"out={tmp_path}", "conditions=[spatter,multipath,white_box]"])
-    sheet = check(cfg, shlex.split(f"{AGENT} --cameras 2"))
-    said = capsys.readouterr().out
-    assert "rgb: rgb, rgb_30; 32 x 32 x 3 uint8, hfov 90, 2 as one panorama" in said
-    assert "depth: depth, depth_30" in said and "0 to 1 for 0 to 10 m" in said
-    assert "instruction 'Walk to the door 0.'" in said
-    assert "white_box-s0.6: not applicable" in said and "spatter-s0.6: applies" in said
-    assert cv2.imread(str(sheet)).shape[0] == 4 * 164  # clean of each kind, and two corruptions
-
-
-@pytest.mark.parametrize("name", ["file", "allow_pickle", "heading", "a/b", "é"])
-def test_a_check_draws_cameras_of_any_name(name, tmp_path):
-    cameras, program = {name: {"type": "rgb"}}, tmp_path / "agent.py"
-    program.write_text(
-        "import mitigate_hook, numpy\n"
-        f"frames = {{{name!r}: numpy.full((8, 8, 3), 90, 'uint8')}}\n"
-        f"mitigate_hook.connect('a').corrupt(frames, cameras={cameras})\n"
-    )
-    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
-    assert cv2.imread(str(check(cfg, [sys.executable, str(program)]))) is not None
-
-
-def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
-    program = tmp_path / "agent.py"
-    program.write_text(
-        "import mitigate_hook\nmitigate_hook.connect('a').corrupt({'pose': [0, 0]})\n"
-    )
-    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
-    assert check(cfg, [sys.executable, str(program)]) is None
-    assert "nothing to draw" in capsys.readouterr().out
-
-
 def test_options_and_command_are_told_apart():
     assert split_command(["suite=full", "--", "bash", "run.sh", "--", "x"]) == (
         ["suite=full"],
@@ -274,3 +206,41 @@ def test_options_and_command_are_told_apart():
 )
 def test_a_command_has_a_name(command, name):
     assert name_of(command.split()) == name
+
+
+def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
+    agent = [sys.executable, str(LAB / "agent.py"), str(tmp_path / "seen"), "--pause", "5"]
+    process = subprocess.Popen(
+        [
+            sys.executable,
+            "-m",
+            "mitigate.run",
+            f"out={tmp_path / 'o'}",
+            "suite=clean",
+            "--",
+            *agent,
+        ],
+        env={**os.environ, "PYTHONPATH": str(LAB)},
+        stderr=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        text=True,
+    )
+    events = tmp_path / "o" / "conditions" / "clean" / "events.jsonl"
+    for _ in range(400):
+        if events.is_file():
+            break
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    said = process.communicate(timeout=20)[1]
+    assert process.returncode == 130 and "SIGINT: stopped. To go on: " in said
+    assert f"suite=clean -- {shlex.join(agent)}" in said
+
+
+def test_a_launcher_that_is_none_is_told_the_three_there_are():
+    ran = subprocess.run(
+        [sys.executable, "-m", "mitigate.run", "launcher=foo", "--", "true"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "Choose one of: local, ray, slurm." in ran.stderr

@@ -16,6 +16,7 @@ One file for Python 3.6 to 3.13 that needs the standard library and numpy only. 
 refuses, dies or is late, the process ends with one paragraph: no agent walks on with clean frames.
 """
 
+import contextlib
 import functools
 import importlib.machinery
 import importlib.util
@@ -35,6 +36,8 @@ ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, modul
 HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
 MAGIC = b"mtg1"
 LARGEST = 1 << 24  # bytes of a message: an episode with all view points of its goals has 1e6
+LOADED = "loaded"  # a file beside the socket, once a process has loaded this file
+LONGEST = 4000  # characters of why a process was stopped
 STATUS = 97  # what a process that was stopped exits with
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
 _thread = threading.local()  # .clean: calls whose frames are not the agent's; .walk: of connect
@@ -79,8 +82,11 @@ def _read(channel, size):
     return b"".join(parts)
 
 
-def stop(problem):
-    """End this process at once, with one paragraph: an exception might be caught."""
+def stop(problem, told=False):
+    """End this process at once, with one paragraph: an exception might be caught. The server is
+    told why, if it does not know, so that the condition does not count as done."""
+    if not told:
+        _tell(str(problem)[:LONGEST])
     sys.stderr.write(
         f"\nmitigate: {problem} This process ({os.getpid()}) ends here, as it would go on with "
         "frames that are not corrupted. What was measured so far is kept; see `mitigate run`'s own "
@@ -88,6 +94,20 @@ def stop(problem):
     )
     sys.stderr.flush()
     os._exit(STATUS)
+
+
+def _tell(problem):
+    """Tell the server why this process ends, by a connection of its own, if it can be reached."""
+    hello = {"kind": "hello", "protocol": PROTOCOL, "token": os.environ.get(TOKEN, "")}
+    hello.update(pid=os.getpid(), python=sys.version.split()[0])
+    channel = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    with contextlib.suppress(Exception):  # whatever it is, this process ends
+        channel.settimeout(float(os.environ.get(PATIENCE, "25")))
+        channel.connect(os.environ[ADDRESS])
+        send(channel, hello)
+        if receive(channel) == {}:
+            send(channel, {"kind": "stopped", "problem": problem})
+            receive(channel)
 
 
 class Channel:
@@ -122,7 +142,7 @@ class Channel:
         if answer is None:
             stop("the server of `mitigate run` is gone.")
         if "error" in answer:
-            stop(answer["error"])
+            stop(answer["error"], told=True)
         return answer
 
     def agree(self, cameras):
@@ -172,6 +192,7 @@ class Walk:
         self.cameras = None  # what the server was told of them
         self.sim = self.task = self.episode = None
         self.begun = False
+        self.pid = os.getpid()  # where the episode that is on was begun
         self.current = None  # of connect: the episode that is on
         self.put_back = None  # sets the words of the last episode as they were
         self.clear()
@@ -190,6 +211,7 @@ class Walk:
     def begin(self, scene, name, **said):
         """Begin an episode; the answer holds its words as the agent is to hear them."""
         self.clear()
+        self.pid = os.getpid()
         answer = self.connected().ask("episode", scene=str(scene), id=str(name), **said)
         self.begun = True
         return answer
@@ -216,7 +238,12 @@ class Walk:
             if camera["name"] in channel.layout:
                 frame = observations[camera["name"]]
                 channel.place(camera)[...] = frame[..., :3] if camera["alpha"] else frame
-        answer = channel.ask("frame", call=self.calls, heading=heading, position=self.position())
+        seen = {}
+        if self.calls == 0:  # whether depth is what it is said to be
+            depth = [camera["name"] for camera in told if camera["type"] == DEPTH]
+            seen = {name: _middle(observations[name]) for name in depth}
+        where = {"heading": heading, "position": self.position()}
+        answer = channel.ask("frame", call=self.calls, depth=seen, **where)
         self.calls += 1
         for camera in told:
             if camera["name"] in answer["changed"]:
@@ -247,7 +274,7 @@ class Walk:
         if not self.begun:
             return
         self.begun = False
-        if self.steps or (self.sim is None and self.calls):
+        if self.steps or self.sim is None:
             said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
             said.update(path=self.path, actions=self.actions, **self._distances())
             self.channel.ask("end", **said)
@@ -278,11 +305,19 @@ def _array(frame, name):
     if not isinstance(frame, np.ndarray):
         stop(
             f"the camera {name} gives a {type(frame).__name__}, and only numpy arrays can be "
-            "corrupted: set Habitat's GPU_GPU (gpu_gpu) to False."
+            "corrupted: set Habitat's GPU_GPU (gpu_gpu) to False, or pass numpy arrays (of a "
+            "tensor: .cpu().numpy()). An entry that is no frame: cameras={name: {'type': 'other'}}."
         )
     alpha = frame.dtype == np.uint8 and frame.ndim == 3 and frame.shape[-1] == 4
     shape = [*frame.shape[:-1], 3] if alpha else list(frame.shape)
     return {"shape": shape, "dtype": frame.dtype.name, "alpha": alpha}
+
+
+def _middle(depth):
+    """Return the median of what a depth frame reads, holes left out; None if all are."""
+    some = np.asarray(depth[::4, ::4], np.float64)
+    some = some[np.isfinite(some) & (some > 0)]
+    return float(np.median(some)) if some.size else None
 
 
 def _numbers(metrics, prefix=""):
@@ -293,6 +328,9 @@ def _numbers(metrics, prefix=""):
             found.update(_numbers(value, f"{prefix}{name}."))
             continue
         known = isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
+        if getattr(value, "shape", None) == () and hasattr(value, "item"):  # an array, a tensor
+            value = value.item()
+            known = isinstance(value, (bool, int, float))
         if known and math.isfinite(float(value)):
             found[prefix + str(name)] = float(value)
     return found
@@ -445,8 +483,7 @@ def _make_dataset(original, *args, **kwargs):
 def _some(dataset):
     """Leave out episodes that the server does not ask for."""
     if dataset is not None and len(dataset.episodes):
-        scenes = [str(e.scene_id).rpartition("/")[2] for e in dataset.episodes]
-        keys = [f"{s}/{e.episode_id}" for s, e in zip(scenes, dataset.episodes)]
+        keys = [_key(e.scene_id, e.episode_id) for e in dataset.episodes]
         keep = Channel().ask("dataset", keys=keys)["keep"]
         if keep is not None:
             dataset.episodes = [dataset.episodes[i] for i in keep]
@@ -502,10 +539,10 @@ def _sensor_observations(original, sim, *args, **kwargs):
 
 def _of_agent(sim, observations):
     walk = getattr(_thread, "walk", None)
-    if walk is None:
+    if walk is None or walk.pid != os.getpid():
         stop(
-            "habitat-sim is used here without habitat-lab, and nobody said which episode it is: "
-            "call mitigate_hook.connect(episode, scene=...) before its first frame."
+            "habitat-sim is used here without habitat-lab, and nobody said in this process which "
+            "episode it is: call mitigate_hook.connect(episode, scene=...) before its first frame."
         )
     cameras = [c for c in _of_specifications(sim) if c["name"] in observations]
     return walk.corrupt(observations, cameras, _heading(sim.get_agent(0).get_state()))
@@ -532,7 +569,8 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
     """``Env._run_episode`` of WMNav, which has no lab: its simulators last for an episode each."""
     _thread.walk = walk = getattr(_thread, "walk", None) or Walk()
     told = env.all_episodes[number]
-    answer = walk.begin(told["scene_id"], told["episode_id"], text=told["object_category"])
+    words = told["object_category"]
+    answer = walk.begin(told["scene_id"], told["episode_id"], text=words, loop=True)
     begin = env._initialize_episode
 
     def initialize(*numbers):
@@ -599,35 +637,45 @@ class Episode:
     def __init__(self, walk, name, scene, instruction):
         self._walk, self._name = walk, name
         walk.current = self
-        answer = walk.begin(scene, name, text=instruction)
+        answer = walk.begin(scene, name, text=instruction, loop=True)
         self.instruction = answer.get("text", instruction)
 
     def corrupt(self, observations, heading=None, cameras=None):
-        """Return a dict with the frames of ``rgb*`` (uint8) and ``depth*`` (float32 metres)
+        """Return a new dict with the frames of ``rgb*`` (uint8) and ``depth*`` (float32 metres)
         corrupted. cameras: {name: {"type": "depth", "min_depth": 0.5, "max_depth": 5.0,
         "normalize_depth": True, "hfov": 79, "orientation": [0, 0.5, 0]}} for other names and for
         depth that is not metres from 0 to 10; heading: radians, counter-clockwise."""
         self._check()
-        observations, cameras = dict(observations), dict(cameras or {})
-        for name, value in observations.items():
-            kind = next((k for k in (COLOR, DEPTH) if str(name).startswith(k)), None)
-            if kind and name not in cameras:
-                cameras[name] = {"type": kind}
-            if name not in cameras and _looks_like_a_frame(value):
-                stop(
-                    f"the entry {name} of an observation may be a frame {value.shape}, and nobody "
-                    "said what it is: pass cameras={name: {'type': 'rgb'}} (or 'depth'), or "
-                    "{'type': 'other'} to leave it as it is."
-                )
-        cameras = {n: c for n, c in cameras.items() if c.get("type") in (COLOR, DEPTH)}
-        listed = [dict(cameras[n], name=n) for n in observations if n in cameras]
+        if not self._walk.begun:
+            stop(f"episode {self._name} was finished: connect() begins the next one.")
+        try:
+            observations, listed = _described_frames(observations, cameras)
+        except Exception as error:  # the agent might catch it
+            stop(f"an observation could not be read ({type(error).__name__}: {error}).")
         self._walk.steps += 1
         return self._walk.corrupt(observations, listed, heading)
 
-    def finish(self, success, spl, **metrics):
-        """Tell how it went: ``success`` (0 or 1), ``spl`` (0 to 1), ``distance_to_goal`` ..."""
+    def finish(self, success, spl=None, **metrics):
+        """Tell how it went: ``success`` (0 or 1), ``spl`` (0 to 1; None: by ``path_length`` and
+        ``geodesic_distance``, or else as the success), ``distance_to_goal`` ... Raises ValueError
+        for what is none."""
         self._check()
-        self._walk.end(dict(metrics, success=success, spl=spl))
+        told = dict(metrics, success=_share(success, "success"))
+        if told["success"] not in (0.0, 1.0):
+            raise ValueError(
+                f"finish(success={success!r}): it must be 1 (or True) or 0 (or False)."
+            )
+        if spl is not None:
+            told["spl"] = _share(spl, "spl")
+            if told["spl"] and not told["success"]:
+                raise ValueError(
+                    f"finish(success={success!r}, spl={spl!r}): the SPL of an episode that failed "
+                    "is 0. Leave spl out, or correct the success."
+                )
+        for name in ("path_length", "geodesic_distance", "distance_to_goal"):
+            if metrics.get(name) is not None:
+                told[name] = _measure(metrics[name], name)
+        self._walk.end(told)
 
     def _check(self):
         if self._walk.current is not self:
@@ -635,17 +683,120 @@ class Episode:
                 f"episode {self._name} was left for another one: of one thread, an episode is over "
                 "when the next one begins. Walk side by side in threads or processes."
             )
+        if self._walk.pid != os.getpid():
+            stop(
+                f"episode {self._name} was begun in process {self._walk.pid}, and process "
+                f"{os.getpid()} goes on with it, whose frames would be of no episode: call "
+                "mitigate_hook.connect() in the process that walks."
+            )
 
 
-def _looks_like_a_frame(value):
-    shape = getattr(value, "shape", ())
-    return len(shape) in (2, 3) and min(shape[:2]) > 8 and shape[2:] in ((), (1,), (3,), (4,))
+def _share(value, name):
+    """Return a number from 0 to 1. Raises ValueError if it is none."""
+    found = _measure(value, name)
+    if not found <= 1:
+        raise ValueError(
+            f"finish({name}={value!r}): it must be a number from 0 to 1, not percent: 0.8."
+        )
+    return found
+
+
+def _measure(value, name):
+    """Return a number from 0, infinity too. Raises ValueError if it is none."""
+    try:
+        found = float(value)  # of an array or tensor with one item, too
+    except (TypeError, ValueError):
+        found = math.nan
+    if not found >= 0:
+        raise ValueError(f"finish({name}={value!r}): it must be a number that is not negative.")
+    return found
+
+
+def _described_frames(observations, cameras):
+    """Return a new dict of observations, and what the server must know of each camera in it; stop
+    at what may be a frame and was not described."""
+    observations, cameras, listed = dict(observations), dict(cameras or {}), []
+    for name, value in observations.items():
+        by_name = next((kind for kind in (COLOR, DEPTH) if str(name).startswith(kind)), None)
+        told = dict({"type": by_name}, **cameras.get(name, {}))
+        if told["type"] in (COLOR, DEPTH):
+            listed.append(dict(told, name=name))
+        elif name in cameras and told["type"] != "other":
+            stop(
+                f"the entry {name} of an observation is described as {told['type']!r}: its type "
+                "must be 'rgb', 'depth', or 'other' for what is to stay as it is."
+            )
+        elif name not in cameras:
+            found = _frame_in(value, str(name))
+            if found is not None:
+                stop(
+                    f"the entry {found[0]} of an observation may be a frame {found[1]}, and nobody "
+                    f"said what it is. Name it in cameras=, {{{str(name)!r}: {{'type': 'rgb'}}}} "
+                    "(or 'depth'; it must be an array [H, W, channels] and an entry of its own, "
+                    "not one in a dict or list), or {'type': 'other'} to leave it as it is."
+                )
+    return observations, listed
+
+
+def _frame_in(value, name):
+    """Return name and shape of the first array in an entry that may be a frame, however deep in
+    dicts and lists: more than 8 x 8 in two of its sides. None if there is none."""
+    if value is None or isinstance(value, (str, bytes, int, float)):
+        return None
+    shape = _shape(value)
+    if len(shape) > 1 and sorted(shape)[-2] > 8:
+        return name, shape
+    if callable(getattr(value, "items", None)):
+        parts = value.items()
+    elif str(getattr(value, "dtype", "")) == "object":
+        parts = enumerate(value.ravel().tolist())
+    else:
+        parts = enumerate(value) if isinstance(value, (list, tuple)) else ()
+    found = (_frame_in(part, f"{name}.{key}") for key, part in parts)
+    return next((one for one in found if one is not None), None)
+
+
+def _shape(value):
+    """Return the shape of an array, a tensor, a picture of PIL, or numbers in lists of lists."""
+    shape = []
+    while isinstance(value, (list, tuple)) and value:
+        shape.append(len(value))
+        value = value[0]
+    own = value.size if hasattr(value, "getbands") else getattr(value, "shape", None)
+    if own is None:
+        return tuple(shape) if isinstance(value, (int, float)) else ()
+    try:
+        return (*shape, *map(int, own))
+    except (TypeError, ValueError):  # a shape of another kind
+        return ()
+
+
+def wanted(episodes):
+    """Return those of a list of (scene, episode id) that this run asks for: all without
+    ``episodes=``, else about as many, chosen by a hash of their names. Raises RuntimeError outside
+    of ``mitigate run``."""
+    _check_run()
+    episodes = list(episodes)
+    if not episodes:
+        return []
+    keep = Channel().ask("dataset", keys=[_key(*episode) for episode in episodes])["keep"]
+    return episodes if keep is None else [episodes[i] for i in keep]
+
+
+def _key(scene, episode):
+    """The name of an episode: of its scene's file, and its id."""
+    return f"{str(scene).rpartition('/')[2]}/{episode}"
+
+
+def _check_run():
+    if ADDRESS not in os.environ:
+        raise RuntimeError("Start this program under `mitigate run -- python ...`.")
 
 
 def connect(episode, scene="", instruction=None):
-    """Begin an episode under ``mitigate run``. Raises RuntimeError outside of it."""
-    if ADDRESS not in os.environ:
-        raise RuntimeError("Start this program under `mitigate run -- python ...`.")
+    """Begin an episode under ``mitigate run``; no two have one scene and name. Raises RuntimeError
+    outside of it."""
+    _check_run()
     if getattr(_thread, "walk", None) is None:
         _thread.walk = Walk()
     return Episode(_thread.walk, str(episode), scene, instruction)
@@ -678,11 +829,24 @@ def patch(module):
     for owner, method, wrapper in PATCHES[module.__name__]:
         kind = getattr(module, owner, None) if owner else module
         if kind is None or not hasattr(kind, method):
-            stop(
-                f"{module.__name__} has no {owner} {method}: this version of it is not known to "
-                "the bridge (known: habitat-lab 0.1.5 to 0.3), or adapters= is wrong."
-            )
+            stop(_absent(module, owner, method))
         setattr(kind, method, _wrapped(getattr(kind, method), wrapper))
+
+
+def _absent(module, owner, method):
+    """Say why a method that is to be wrapped is not there."""
+    adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
+    if adapters.get("module") == module.__name__:
+        classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]
+        there = ", ".join(n for n in classes if hasattr(getattr(module, n), "forward")) or "none"
+        return (
+            f"adapters= names the class {owner} of {module.__name__}, but there is none with a "
+            f"forward method: those there are {there}. Write FOLDER:package.module:Class.attribute."
+        )
+    return (
+        f"{module.__name__} has no {owner} {method}: this version of it is not known to the bridge "
+        "(known: habitat-lab 0.1.5 to 0.3)."
+    )
 
 
 def _wrapped(original, wrapper):
@@ -715,6 +879,10 @@ def install():
     """Wrap what this process imports from now on, under ``mitigate run``; else do nothing."""
     if ADDRESS not in os.environ or any(isinstance(f, Finder) for f in sys.meta_path):
         return
+    if os.path.exists(os.environ[ADDRESS]):
+        with contextlib.suppress(OSError):  # of another user's: it says what is wrong later
+            folder = os.path.dirname(os.environ[ADDRESS])
+            open(os.path.join(folder, LOADED), "a").close()
     if os.environ.get(ADAPTERS):
         told = json.loads(os.environ[ADAPTERS])
         wrapper = _adapted(told["folder"], told["file"], told["path"])

@@ -1,0 +1,104 @@
+"""What a condition's result depends on: by it a finished one is known again, and rows are told
+apart."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from omegaconf import DictConfig
+
+from mitigate.bridge.recording import plain
+from mitigate.core.files import sha256
+
+if TYPE_CHECKING:
+    from mitigate.restoration.restorer import Restorer
+
+SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length")  # as they are
+LARGEST = 1 << 30  # bytes of a file of the command that is hashed; of a larger one its size counts
+
+
+def settings_of(
+    cfg: DictConfig, command: str, restorer: Restorer | None, adapters: str | None
+) -> dict[str, Any]:
+    """What a condition's result depends on, by which a finished one is known again."""
+    told = {name: cfg[name] for name in SETTINGS}
+    told |= {"restore": None if restorer is None else restorer.hash, "adapters": adapters}
+    return {"command": command, **told, "safeguard": _guard(cfg)}
+
+
+def label_of(
+    cfg: DictConfig, command: str, name: str, restorer: Restorer | None, adapters: str | None
+) -> dict[str, Any]:
+    """What the rows say of the agent: with a restorer, a safeguard or adapters it is another one,
+    by their hashes."""
+    sha = _digest(command)
+    guard = None if cfg.safeguard == "none" else _guard(cfg)
+    for part in (restorer and restorer.hash, guard, adapters):
+        sha = sha if part is None else _digest(f"{sha} {part}")
+    return {"agent": sha, "name": _column(cfg, name), "split": cfg.split, "seed": cfg.seed}
+
+
+def default_folder(cfg: DictConfig, name: str) -> Path:
+    """The folder of a run that names none: other for another agent, severity, episodes."""
+    adapters = adapters_of(cfg)
+    own = _column(cfg, name) + (f"-{_digest(adapters)[:6]}" if adapters else "")
+    own += f"-s{cfg.severity:g}" + (f"-e{cfg.episodes}" if cfg.episodes else "")
+    return Path(cfg.runs) / "run" / plain(own)
+
+
+def adapters_of(cfg: DictConfig) -> str | None:
+    """The hash of the adapters and where they go, None without; of ``adapters=FOLDER:place``."""
+    if cfg.adapters is None:
+        return None
+    from mitigate.encoders.plain_adapters import WEIGHTS
+
+    folder, _, place = str(cfg.adapters).partition(":")
+    file = Path(folder) / WEIGHTS
+    if not file.is_file():
+        raise FileNotFoundError(
+            f"adapters={cfg.adapters}: there is no {file}. Name the agent/ folder of a training: "
+            "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
+        )
+    return f"{sha256(file)[:12]}:{place}"
+
+
+def files_of(command: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Size and sha256 of the files that the words of a command name, alone or behind a ``=``."""
+    found = {}
+    for path in dict.fromkeys(_named(command)):
+        size = path.stat().st_size
+        found[str(path)] = {"size": size, "sha256": sha256(path) if size <= LARGEST else None}
+    return found
+
+
+def _named(command: Sequence[str]) -> Iterator[Path]:
+    for word in command:
+        for text in (word, word.partition("=")[2]):
+            if text and len(text) < 1024 and Path(text).is_file():
+                yield Path(text)
+
+
+def _column(cfg: DictConfig, name: str) -> str:
+    """The column of the table: the command's name, and what stands in front of the agent."""
+    from mitigate.evaluation.columns import name_of
+
+    parts = [name]
+    parts += [_guard(cfg)] if cfg.safeguard != "none" else []
+    parts += [name_of(cfg.restore)] if cfg.restore is not None else []
+    parts += ["adapters"] if cfg.adapters is not None else []
+    return "+".join(parts)
+
+
+def _guard(cfg: DictConfig) -> str:
+    if cfg.safeguard == "none":
+        return "none"  # without a wait for torch
+    from mitigate.safeguard.guard import label
+
+    return label(cfg.safeguard)
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:12]

@@ -1,0 +1,102 @@
+"""Rows, table and pictures of a run's folder: of all that is finished there, whatever suite or
+severity was asked for last."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from mitigate.bridge.cell import DONE, Cell
+from mitigate.bridge.randomness import randomness
+from mitigate.bridge.results import OWN
+from mitigate.core.files import atomic_text
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation import rows
+from mitigate.evaluation.metrics import RULES
+from mitigate.evaluation.rows import Row
+
+ROWS = "rows.jsonl"
+
+
+def write_report(made: Sequence[Cell], out: Path) -> None:
+    """Write ``rows.jsonl``, the table and its pictures, and print the table."""
+    done = [cell for cell in made if cell.is_done()]
+    others = earlier(made, out)
+    if others:
+        print(f"also in the table, measured before: {', '.join(c.name for c in others)}")
+    cells = [*done, *others]
+    found = [row for cell in cells if cell.repeat == 0 for row in cell.rows()]
+    if not found:
+        raise ValueError(
+            f"No episode told how it went, so there is no table. {out} holds what was seen."
+        )
+    rows.write(out / ROWS, found)
+    rule = made[0].rule
+    _write_table(found, out, OWN if rule is None else str(RULES[rule]))
+    again = [cell.rows() for cell in cells if cell.corruption.name == "clean"]
+    if len(again) > 1:
+        print(randomness(again), flush=True)
+        (out / "randomness.md").write_text(randomness(again), encoding="utf-8")
+
+
+def earlier(made: Sequence[Cell], out: Path) -> list[Cell]:
+    """Return the finished conditions in ``out`` that are none of ``made``, but of the same agent
+    and settings; say which of the others are left out, and why."""
+    known, found = {cell.name for cell in made}, []
+    for file in sorted((out / "conditions").glob(f"*/{DONE}")):
+        cell = None if file.parent.name in known else _cell(made[0], file)
+        if cell is None:
+            continue
+        reason = ", ".join(f"another {name}" for name in cell.others()) or cell.why_anew()
+        if reason:
+            print(f"{cell.name}: measured before, but not in the table: {reason}", flush=True)
+        else:
+            found.append(cell)
+    return found
+
+
+def _cell(clean: Cell, file: Path) -> Cell | None:
+    """The condition that a ``done.json`` tells of, like the ``clean`` one; None if it does not."""
+    try:
+        held = json.loads(file.read_text("utf-8"))
+        severity = float(held["severity"])
+        corruption = Corruption(str(held["condition"]), severity) if severity else CLEAN
+        repeat = int(held["repeat"])
+    except (ValueError, KeyError, TypeError):  # of an older version, or of a corruption now gone
+        return None
+    folder, own = file.parent, clean.folder
+    return replace(
+        clean, name=folder.name, corruption=corruption, repeat=repeat, folder=folder, clean=own
+    )
+
+
+def _write_table(found: Iterable[Row], out: Path, own: str) -> None:
+    """Write and print the tables, those by the agent's ``own`` rule first."""
+    from mitigate.evaluation import plots  # matplotlib is slow to import
+    from mitigate.evaluation.report import markdown
+    from mitigate.evaluation.sections import sections
+
+    parts = sorted(sections(found), key=lambda part: part.grid.rule != own)
+    pictures: list[list[str]] = [[] for _ in parts]
+    drawn = {"heatmap": 0, "severity": 0}
+    grids = []
+    for part, names in zip(parts, pictures, strict=True):
+        if part.blocks:
+            names.append(_numbered("heatmap", drawn))
+            plots.heatmap(part, out / names[-1])
+        if len(part.grid.severities) > 1 and part.grid not in grids:
+            names.append(_numbered("severity", drawn))
+            plots.severity_curves(part.grid, out / names[-1])
+            grids.append(part.grid)
+    text = markdown(parts, pictures)
+    with atomic_text(out / "table.md") as file:
+        file.write(text)
+    written = ["table.md", *(name for names in pictures for name in names)]
+    print(text, *(f"wrote {out / name}" for name in written), sep="\n", flush=True)
+
+
+def _numbered(stem: str, drawn: dict[str, int]) -> str:
+    drawn[stem] += 1
+    return f"{stem}.png" if drawn[stem] == 1 else f"{stem}-{drawn[stem]}.png"

@@ -1,0 +1,109 @@
+"""``mitigate run --check``: what a program sees and hears, said and drawn."""
+
+import shlex
+import sys
+
+import cv2
+import numpy as np
+import pytest
+
+from mitigate.bridge import sheet as drawing
+from mitigate.bridge.cameras import Rig
+from mitigate.bridge.check import check
+from mitigate.core.conf import load_config
+from mitigate.corruptions import Corruption
+
+from .conftest import AGENT, LAB
+
+
+def test_a_check_says_what_the_program_sees_and_draws_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("PYTHONPATH", str(LAB))
+    cfg = load_config("run", [f"out={tmp_path}", "conditions=[spatter,multipath,white_box]"])
+    sheet = check(cfg, shlex.split(f"{AGENT} --cameras 2"))
+    said = capsys.readouterr().out
+    assert "rgb: rgb, rgb_30; 32 x 32 x 3 uint8, hfov 90, 2 as one panorama" in said
+    assert "depth: depth, depth_30" in said and "0 to 1 for 0 to 10 m" in said
+    assert "instruction 'Walk to the door 0.'" in said
+    assert "white_box-s0.6: not applicable" in said and "spatter-s0.6: applies" in said
+    assert cv2.imread(str(sheet)).shape[0] == 4 * 164  # clean of each kind, and two corruptions
+
+
+@pytest.mark.parametrize("name", ["file", "allow_pickle", "heading", "a/b", "é"])
+def test_a_check_draws_cameras_of_any_name(name, tmp_path):
+    cameras, program = {name: {"type": "rgb"}}, tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook, numpy\n"
+        f"frames = {{{name!r}: numpy.full((8, 8, 3), 90, 'uint8')}}\n"
+        f"mitigate_hook.connect('a').corrupt(frames, cameras={cameras})\n"
+    )
+    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
+    assert cv2.imread(str(check(cfg, [sys.executable, str(program)]))) is not None
+
+
+def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
+    program = tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook\nmitigate_hook.connect('a').corrupt({'pose': [0, 0]})\n"
+    )
+    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
+    assert check(cfg, [sys.executable, str(program)]) is None
+    assert "nothing to draw" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "command", "words"),
+    [
+        ("conditions=[spatter]", "", "No command is given"),
+        ("severity=0", "nav", "severity=0 changes nothing"),
+        ("rule=nope", "nav", "There is no rule 'nope'"),
+        ("turn=up", "nav", "There is no turn 'up'"),
+        ("corruption=flare conditions=[spatter]", "nav", "both say what is measured"),
+    ],
+)
+def test_a_check_refuses_what_a_run_refuses(run, tmp_path, options, command, words):
+    cfg = load_config("run", [f"out={tmp_path}", *options.split()])
+    with pytest.raises(ValueError, match=words):
+        check(cfg, command.split())
+    assert words in run(tmp_path, options, command).stderr
+
+
+@pytest.mark.parametrize(
+    ("depth", "words"),
+    [
+        ("numpy.linspace(0.05, 0.35, 81)", "seen 0.05 to 0.35 (median 0.20) m - is it normalised"),
+        ("numpy.linspace(0.5, 4.5, 81)", "seen 0.50 to 4.50 (median 2.50) m\n"),
+        ("numpy.zeros(81)", "nothing but holes was seen"),
+    ],
+)
+def test_a_check_says_what_depth_was_seen(tmp_path, capsys, depth, words):
+    program = tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook, numpy\n"
+        f"depth = {depth}.reshape(9, 9, 1).astype('float32')\n"
+        "mitigate_hook.connect('a').corrupt({'depth': depth})\n"
+    )
+    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[clean]"])
+    check(cfg, [sys.executable, str(program)])
+    assert words in capsys.readouterr().out
+
+
+def test_a_sheet_names_its_entries_and_draws_a_call_in_which_a_corruption_acts(monkeypatch):
+    named = []
+    rig = Rig([{"name": "left", "type": "rgb", "shape": [8, 8, 3], "dtype": "uint8"}])
+
+    def late(group, views, corruption, key, heading):
+        return views + 1 if corruption.name == "spatter" and key.frame == 3 else views
+
+    def note(names, group, views):
+        named.append((*names, group.cameras[0].name))
+        return np.zeros((4, 4, 3), np.uint8)
+
+    monkeypatch.setattr(drawing, "corrupted", late)
+    monkeypatch.setattr(drawing, "_row", note)
+    frames = {"camera left": np.full((8, 8, 3), 90, np.uint8), "heading": np.array([])}
+    drawing.sheet(rig, frames, [Corruption("spatter", 0.6), Corruption("flare", 0.6)], {}, 0)
+    assert named == [
+        ("clean rgb", "left"),
+        ("spatter", "at call 3", "left"),
+        ("flare", "no change in 40 calls", "left"),
+    ]

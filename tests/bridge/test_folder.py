@@ -1,0 +1,158 @@
+"""What a run's folder holds: which conditions are whole, which are measured anew, and the table of
+all of them."""
+
+import json
+import re
+import sys
+
+import pytest
+
+from mitigate.bridge.conditions import cells
+from mitigate.bridge.identity import default_folder
+from mitigate.core.conf import load_config
+from mitigate.evaluation import rows
+from mitigate.evaluation.metrics import RULES
+
+PROGRAM = """
+import os, sys, numpy, mitigate_hook
+frame = numpy.full((8, 8, 3), 90, 'uint8')
+for name in 'abcd':
+    episode = mitigate_hook.connect(name, instruction='Go to the door.')
+    try:
+        seen = episode.corrupt({'rgb': frame})['rgb']
+        if name in sys.argv[2:] and (seen != frame).any():
+            raise RuntimeError('the agent is lost')
+        episode.corrupt({'rgb': frame})
+    except RuntimeError:
+        continue
+    episode.finish(success=name < 'c')
+"""
+
+
+@pytest.fixture
+def program(tmp_path):
+    """A loop that loses the episodes it is given where a frame is corrupted."""
+    file = tmp_path / "nav.py"
+    file.write_text(PROGRAM)
+    return f"{sys.executable} {file} x"
+
+
+def measured(out):
+    """The conditions of the rows: {(corruption, severity)}."""
+    return {(row["corruption"], row["severity"]) for row in rows.read(out / "rows.jsonl")}
+
+
+def test_episodes_that_clean_has_and_a_condition_lacks_are_missed(run, program, tmp_path):
+    out = tmp_path / "o"
+    ran = run(out, "conditions=[low_light]", f"{program} a c")
+    assert ran.returncode == 1 and "2 episodes were left in the middle, such as a" in ran.stderr
+    assert "episode.finish(success=False)" in ran.stderr
+    folder = out / "conditions" / "low_light-s0.6"
+    assert not (folder / "done.json").exists() and measured(out) == {("clean", 0.0)}
+
+
+def test_a_finished_condition_that_lacks_episodes_of_clean_is_measured_anew(run, program, tmp_path):
+    out = tmp_path / "o"
+    assert run(out, "conditions=[low_light]", program).returncode == 0
+    events = out / "conditions" / "low_light-s0.6" / "events.jsonl"
+    kept = [line for line in events.read_text().splitlines() if '"end"' not in line or "b" in line]
+    events.write_text("\n".join(line for line in kept if '"episode": "a"' not in line) + "\n")
+    again = run(out, "conditions=[low_light]", program)
+    assert again.returncode == 0 and "of clean's 4 episodes" in again.stdout
+    assert "clean: done before" in again.stdout and "low_light-s0.6: started" in again.stdout
+
+
+def test_an_episode_that_never_began_is_missed_too(run, program, tmp_path):
+    folder = tmp_path / "o" / "conditions"
+    assert run(tmp_path / "o", "conditions=[clean]", program).returncode == 0
+    with open(folder / "clean" / "events.jsonl", "a") as file:
+        file.write('{"event": "end", "scene": "", "episode": "z", "metrics": {"success": 1}}\n')
+    ran = run(tmp_path / "o", "conditions=[low_light]", program)
+    assert ran.returncode == 1 and "1 of clean's 5 episodes is missing, such as z" in ran.stderr
+
+
+def test_the_table_is_of_all_that_is_finished_in_the_folder(run, program, tmp_path):
+    out = tmp_path / "o"
+    run(out, "conditions=[low_light,spatter]", program)
+    ran = run(out, "conditions=[flare] severity=0.3", program)
+    assert ran.returncode == 0, ran.stderr
+    assert "measured before: low_light-s0.6, spatter-s0.6" in ran.stdout
+    wanted = {("clean", 0.0), ("low_light", 0.6), ("spatter", 0.6), ("flare", 0.3)}
+    assert measured(out) == wanted and (out / "severity.png").exists()
+
+
+def test_what_other_settings_measured_stays_out_of_the_table(run, program, tmp_path):
+    out = tmp_path / "o"
+    run(out, "conditions=[low_light]", program)
+    file = out / "conditions" / "low_light-s0.6" / "done.json"
+    file.write_text(json.dumps(json.loads(file.read_text()) | {"seed": 7}))
+    ran = run(out, "conditions=[flare]", program)
+    assert "low_light-s0.6: measured before, but not in the table: another seed" in ran.stdout
+    assert measured(out) == {("clean", 0.0), ("flare", 0.6)}
+
+
+def test_one_severity_needs_no_curve_and_the_agents_own_rule_comes_first(run, tmp_path):
+    out = tmp_path / "o"
+    ran = run(out, "conditions=[spatter] rule=objectnav")
+    assert ran.returncode == 0 and not list(out.glob("severity*.png"))
+    text = (out / "table.md").read_text()
+    first, second = re.findall("Success: (.+). Agents", text)
+    assert first == str(RULES["objectnav"]) > second and "![severity" not in text
+
+
+def test_a_changed_program_is_named_and_nothing_to_do_is_said(run, program, tmp_path):
+    out = tmp_path / "o"
+    first = run(out, "conditions=[spatter]", program)
+    assert "nothing was left" not in first.stdout
+    (tmp_path / "nav.py").write_text(PROGRAM + "# edited\n")
+    again = run(out, "conditions=[spatter]", program)
+    assert again.returncode == 0 and "nothing was left to run" in again.stdout
+    assert "nav.py changed since clean, spatter-s0.6 were run" in again.stdout
+
+
+def test_a_recording_that_is_asked_for_later_is_made(run, program, tmp_path):
+    out, record = tmp_path / "o", tmp_path / "recorded"
+    run(out, "conditions=[clean]", program)
+    ran = run(out, f"conditions=[clean] record={record}", program)
+    assert "clean: started, measured anew: it was not recorded in" in ran.stdout
+    assert (record / "clean" / "unnamed" / "d" / "end.json").exists()
+    for options in (f"conditions=[clean] record={record}", "conditions=[clean]"):
+        assert "clean: done before" in run(out, options, program).stdout
+
+
+def test_a_run_whose_episodes_say_nothing_ends_behind_clean(run, tmp_path, monkeypatch):
+    from mitigate.bridge import results
+
+    monkeypatch.setattr(results, "rows", lambda *_: [])
+    ran = run(tmp_path / "o", "conditions=[spatter]")
+    assert ran.returncode == 1 and "of 4 episodes that ended none said how it went" in ran.stderr
+    assert "spatter" not in ran.stdout and ran.stdout.count("none said") == 0
+
+
+def test_a_worker_that_stops_itself_fails_the_condition(run, tmp_path):
+    program = tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook, numpy, os\n"
+        "if os.fork() == 0:\n"
+        "    mitigate_hook.connect('w').corrupt({'image': numpy.zeros((9, 9, 3))})\n"
+        "os.wait()\n" + PROGRAM
+    )
+    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {program}")
+    assert ran.returncode == 1 and "the entry image of an observation may be a frame" in ran.stderr
+
+
+def made(options, folder):
+    """The first condition of a run with options."""
+    cfg = load_config("run", options)
+    return cells(cfg, ["nav"], folder, "nav")[0], default_folder(cfg, "nav")
+
+
+def test_a_safeguard_makes_another_agent_of_its_own_folder(tmp_path):
+    plain, folder = made(["conditions=[clean]"], tmp_path)
+    guarded, other = made(["conditions=[clean]", "safeguard=rules"], tmp_path)
+    assert plain.label["agent"] != guarded.label["agent"] and guarded.label["name"] == "nav+rules"
+    assert [name for name in plain.settings if plain.settings[name] != guarded.settings[name]] == [
+        "safeguard"
+    ]
+    assert folder.name == "nav-s0.6" and other.name == "nav-rules-s0.6"
+    assert made(["conditions=[clean]", "episodes=60"], tmp_path)[1].name == "nav-s0.6-e60"

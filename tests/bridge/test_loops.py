@@ -1,0 +1,210 @@
+"""Loops of one's own: nothing clean passes by, no episode is lost, no bad result is taken."""
+
+import sys
+
+import pytest
+
+from mitigate.bridge.results import read
+from mitigate.bridge.server import Listener
+from mitigate.bridge.subset import Subset
+
+from .conftest import condition, python
+
+BEGIN = """
+import os, sys, numpy, mitigate_hook
+rgb = numpy.full((16, 16, 3), 90, 'uint8')
+depth = numpy.full((16, 16, 1), 2.0, 'float32')
+"""
+
+
+def ran(tmp_path, code, met=None):
+    """What a program printed and what was told of it."""
+    with Listener(met or condition("spatter"), tmp_path / "told", patience=5.0) as listener:
+        ended = python(listener, BEGIN + code)
+    return ended, read(tmp_path / "told")
+
+
+@pytest.mark.parametrize(
+    ("entry", "name", "shape"),
+    [
+        ("'image': rgb.transpose(2, 0, 1)", "image", "(3, 16, 16)"),
+        ("'frames': numpy.stack([rgb] * 4)", "frames", "(4, 16, 16, 3)"),
+        ("'cam2': {'rgb': rgb}", "cam2.rgb", ""),
+        ("'left': [rgb, rgb]", "left", ""),
+        ("'left': ['a word', (0, rgb)]", "left.1.1", ""),
+        ("'left': rgb.tolist()", "left", "(16, 16, 3)"),
+        ("'left': numpy.array([None, rgb], object)", "left.1", ""),
+        ("'features': numpy.zeros((12, 768))", "features", ""),
+        ("'deep': {'a': [{'b': rgb[..., 0]}]}", "deep.a.0.b", "(16, 16)"),
+    ],
+)
+def test_what_may_be_a_frame_must_be_described(tmp_path, entry, name, shape):
+    code = f"mitigate_hook.connect('a').corrupt({{'rgb': rgb, {entry}}})\nprint('went on')"
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 97 and "went on" not in ended.stdout
+    words = f"the entry {name} of an observation may be a frame {shape}"
+    assert words in ended.stdout and words in told.refused[0]
+
+
+def test_poses_words_and_what_is_left_out_pass(tmp_path):
+    code = (
+        "seen = mitigate_hook.connect('a').corrupt({'rgb': rgb, 'pose': numpy.eye(4), 'word': 'x',"
+        "'path': numpy.zeros((50, 3)), 'state': numpy.zeros((1, 512)), 'all': [1, None, {}],"
+        "'map': {'rgb': rgb}}, cameras={'map': {'type': 'other'}})\n"
+        "print(sorted(seen), (seen['map']['rgb'] == rgb).all(), (seen['rgb'] != rgb).any())"
+    )
+    ended, _ = ran(tmp_path, code)
+    assert ended.stdout.strip().endswith("True True"), ended.stdout
+
+
+def test_a_camera_that_is_described_without_its_type_is_still_corrupted(tmp_path):
+    code = (
+        "met = mitigate_hook.connect('a')\n"
+        "seen = met.corrupt({'depth': depth}, cameras={'depth': {'hfov': 79}})\n"
+        "print((seen['depth'] != depth).any())\n"
+        "met.corrupt({'left': rgb}, cameras={'left': {'type': 'color'}})"
+    )
+    ended, told = ran(tmp_path, code, condition("missing_data"))
+    assert ended.stdout.startswith("True") and ended.returncode == 97
+    assert "described as 'color'" in told.refused[0]
+
+
+def test_an_episode_that_is_lost_at_its_first_frame_is_counted(tmp_path):
+    code = (
+        "for name in 'abc':\n    episode = mitigate_hook.connect(name)\n"
+        "    episode.corrupt({'rgb': rgb})\n"
+        "    if name != 'a': episode.finish(success=1)\n"
+    )
+    _, told = ran(tmp_path, code)
+    assert told.lost == ["a"] and sorted(told.ends) == ["b", "c"]
+
+
+def test_a_crash_before_the_first_frame_may_count_as_a_failure_but_not_as_a_success(tmp_path):
+    ended, told = ran(tmp_path, "mitigate_hook.connect('a').finish(success=False)")
+    assert ended.returncode == 0 and told.ends["a"]["metrics"]["success"] == 0
+    ended, told = ran(tmp_path, "mitigate_hook.connect('b').finish(success=True)")
+    assert ended.returncode == 97 and "none of its frames came by" in told.refused[0]
+
+
+def test_the_server_hears_why_a_worker_stopped_itself(tmp_path):
+    code = (
+        "if os.fork() == 0:\n"
+        "    mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb})\n"
+        "os.wait()\n"
+        "episode = mitigate_hook.connect('b')\nepisode.corrupt({'rgb': rgb})\n"
+        "episode.finish(success=True)"
+    )
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 0 and list(told.ends) == ["b"]
+    assert len(told.refused) == 1 and "the entry left of an observation" in told.refused[0]
+
+
+def test_an_episode_is_walked_by_the_process_that_began_it(tmp_path):
+    code = (
+        "episode = mitigate_hook.connect('a')\n"
+        "if os.fork() == 0:\n    episode.corrupt({'rgb': rgb})\n    os._exit(0)\n"
+        "sys.exit(os.wait()[1] >> 8)"
+    )
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 97 and "in the process that walks" in told.refused[0]
+
+
+def test_an_episode_that_is_finished_gets_no_further_frames(tmp_path):
+    code = (
+        "episode = mitigate_hook.connect('a')\nepisode.corrupt({'rgb': rgb})\n"
+        "episode.finish(success=True)\nepisode.corrupt({'rgb': rgb})"
+    )
+    ended, _ = ran(tmp_path, code)
+    assert ended.returncode == 97 and "episode a was finished" in ended.stdout
+
+
+RESULTS = BEGIN + (
+    "episode = mitigate_hook.connect('a')\nepisode.corrupt({'rgb': rgb})\n"
+    "try:\n    episode.finish(%s)\nexcept ValueError as error:\n    print('refused:', error)"
+)
+
+
+@pytest.mark.parametrize(
+    ("results", "words"),
+    [
+        ("success=1, spl=5", "spl=5): it must be a number from 0 to 1, not percent"),
+        ("success=80", "not percent"),
+        ("success=0.5", "it must be 1 (or True) or 0 (or False)"),
+        ("success=float('nan')", "must be a number"),
+        ("success='yes'", "must be a number"),
+        ("success=False, spl=0.7", "the SPL of an episode that failed is 0"),
+        ("success=True, path_length=-1", "must be a number that is not negative"),
+    ],
+)
+def test_a_result_that_is_none_is_refused_at_once(tmp_path, results, words):
+    with Listener(condition("spatter"), tmp_path) as listener:
+        ended = python(listener, RESULTS % results)
+    assert ended.stdout.startswith("refused:") and words in ended.stdout, ended.stdout
+    assert not read(tmp_path).ends
+
+
+@pytest.mark.parametrize(
+    ("results", "metrics"),
+    [
+        ("success=True", {"success": 1.0}),
+        ("success=numpy.array(1), spl=numpy.float32(0.5)", {"success": 1.0, "spl": 0.5}),
+        ("success='1', spl='0.5'", {"success": 1.0, "spl": 0.5}),
+        ("success=0, spl=None, mine=numpy.array(7)", {"success": 0.0, "mine": 7.0}),
+    ],
+)
+def test_results_are_taken_as_numbers(tmp_path, results, metrics):
+    with Listener(condition("spatter"), tmp_path) as listener:
+        assert python(listener, RESULTS % results).stdout == ""
+    assert read(tmp_path).ends["a"]["metrics"] == metrics
+
+
+WANTED = """
+pairs = [("a/x.glb", n) for n in range(12)]
+for scene, name in mitigate_hook.wanted(pairs):
+    print(name)
+    episode = mitigate_hook.connect(name, scene=scene)
+    episode.corrupt({"rgb": rgb})
+    episode.finish(success=True)
+"""
+
+
+def test_some_episodes_of_a_loop_are_chosen_as_those_of_habitats_are(tmp_path):
+    keep = Subset(4, tmp_path, settled=0.0).keep
+    ended, told = ran(tmp_path, WANTED, condition("spatter", keep=keep))
+    assert len(told.ends) == 4 and len(ended.stdout.split()) == 4
+    numbers = keep([f"x.glb/{n}" for n in range(12)])
+    assert sorted(told.ends) == sorted(f"x/{n}" for n in numbers)
+    assert len(ran(tmp_path / "all", WANTED)[1].ends) == 12
+
+
+def test_a_loop_that_lets_none_be_chosen_is_told_so_at_its_first_episode(tmp_path):
+    keep = Subset(2, tmp_path, settled=0.0).keep
+    ended, _ = ran(tmp_path, "mitigate_hook.connect('a')", condition(keep=keep))
+    assert ended.returncode == 97 and "mitigate_hook.wanted([(scene, id), ...])" in ended.stdout
+
+
+@pytest.mark.parametrize(
+    ("frame", "words"),
+    [
+        ("{'depth': depth * 1000}", "Divide millimetres by 1000"),
+        ("{'depth': depth}, cameras={'depth': {'normalize_depth': True}}", "to be normalised"),
+        ("{'depth': depth * 100}, cameras={'depth': {'min_depth': 0, 'max_depth': 400}}", ""),
+        ("{'depth': depth * 0}", ""),
+    ],
+)
+def test_depth_that_is_not_metres_is_refused_in_the_clean_run(tmp_path, frame, words):
+    ended, told = ran(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})", condition())
+    assert ended.returncode == (97 if words else 0), ended.stdout
+    assert words in "".join(told.refused)
+
+
+def test_an_encoder_class_that_is_not_there_is_named(tmp_path, monkeypatch):
+    (tmp_path / "their_encoder.py").write_text("class Encoder:\n    def forward(self): pass\n")
+    monkeypatch.setenv(
+        "MITIGATE_ADAPTERS",
+        '{"module": "their_encoder", "class": "Wrong", "folder": "", "file": "", "path": ""}',
+    )
+    code = f"sys.path.insert(0, {str(tmp_path)!r}); mitigate_hook.install(); import their_encoder"
+    ended, _ = ran(tmp_path, code)
+    assert "names the class Wrong of their_encoder" in ended.stdout
+    assert "those there are Encoder" in ended.stdout and sys.executable not in ended.stdout
