@@ -13,7 +13,7 @@ from omegaconf import DictConfig
 from mitigate.bridge.cell import Cell
 from mitigate.bridge.connection import Condition
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.identity import adapters_of, files_of, label_of, settings_of
+from mitigate.bridge.identity import adapters_of, files_of, label_of, place_of, settings_of
 from mitigate.bridge.recording import Recorder
 from mitigate.bridge.results import Told
 from mitigate.bridge.subset import Subset
@@ -97,14 +97,8 @@ def _environment(cfg: DictConfig) -> dict[str, str]:
         return {}
     from mitigate.encoders import plain_adapters
 
-    folder, module, place = (*str(cfg.adapters).rsplit(":", 2), "", "")[:3]
+    folder, module, place = place_of(cfg.adapters)
     kind, _, path = place.partition(".")
-    if not kind or not module:
-        raise ValueError(
-            f"adapters={cfg.adapters} must be FOLDER:package.module:Class.attribute, where the "
-            "attribute of the class's instances is the encoder that the adapters were trained for: "
-            "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
-        )
     plain_adapters.read(folder)
     told = {"folder": str(Path(folder).resolve()), "file": str(plain_adapters.__file__)}
     told |= {"module": module, "class": kind, "path": path}

@@ -50,19 +50,32 @@ def default_folder(cfg: DictConfig, name: str) -> Path:
 
 
 def adapters_of(cfg: DictConfig) -> str | None:
-    """The hash of the adapters and where they go, None without; of ``adapters=FOLDER:place``."""
+    """The hash of the adapters and where they go; None without."""
     if cfg.adapters is None:
         return None
     from mitigate.encoders.plain_adapters import WEIGHTS
 
-    folder, _, place = str(cfg.adapters).partition(":")
+    folder, module, place = place_of(cfg.adapters)
     file = Path(folder) / WEIGHTS
     if not file.is_file():
         raise FileNotFoundError(
-            f"adapters={cfg.adapters}: there is no {file}. Name the agent/ folder of a training: "
+            f"adapters={cfg.adapters}: there is no {file}. Name the agent/ folder of a training "
+            "by the recipe encoder."
+        )
+    return f"{sha256(file)[:12]}:{module}:{place}"
+
+
+def place_of(adapters: str) -> tuple[str, str, str]:
+    """Folder, module and place (Class.attribute) of ``adapters=``. Raises ValueError for what names
+    none."""
+    folder, module, place = (*str(adapters).rsplit(":", 2), "", "")[:3]
+    if not place.partition(".")[0] or not module:
+        raise ValueError(
+            f"adapters={adapters} must be FOLDER:package.module:Class.attribute, where the "
+            "attribute of the class's instances is the encoder that the adapters were trained for: "
             "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
         )
-    return f"{sha256(file)[:12]}:{place}"
+    return folder, module, place
 
 
 def files_of(command: Sequence[str]) -> dict[str, dict[str, Any]]:

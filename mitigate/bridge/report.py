@@ -46,12 +46,14 @@ def earlier(made: Sequence[Cell], out: Path) -> list[Cell]:
     and settings; say which of the others are left out, and why."""
     known, found = {cell.name for cell in made}, []
     for file in sorted((out / "conditions").glob(f"*/{DONE}")):
-        cell = None if file.parent.name in known else _cell(made[0], file)
-        if cell is None:
+        if file.parent.name in known:
             continue
-        reason = ", ".join(f"another {name}" for name in cell.others()) or cell.why_anew()
-        if reason:
-            print(f"{cell.name}: measured before, but not in the table: {reason}", flush=True)
+        cell, reason = _cell(made[0], file), "by an older version, or of a corruption that is gone"
+        if cell is not None:
+            reason = ", ".join(f"another {name}" for name in cell.others()) or cell.why_anew()
+        if cell is None or reason:
+            name = file.parent.name
+            print(f"{name}: measured before, but not in the table: {reason}", flush=True)
         else:
             found.append(cell)
     return found

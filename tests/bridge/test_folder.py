@@ -141,6 +141,14 @@ def test_a_worker_that_stops_itself_fails_the_condition(run, tmp_path):
     assert ran.returncode == 1 and "the entry image of an observation may be a frame" in ran.stderr
 
 
+def test_what_an_older_version_measured_is_said_to_be_left_out(run, program, tmp_path):
+    out = tmp_path / "o"
+    (out / "conditions" / "flare-s0.6").mkdir(parents=True)
+    (out / "conditions" / "flare-s0.6" / "done.json").write_text('{"seed": 0}')
+    ran = run(out, "conditions=[clean]", program)
+    assert "flare-s0.6: measured before, but not in the table: by an older version" in ran.stdout
+
+
 def made(options, folder):
     """The first condition of a run with options."""
     cfg = load_config("run", options)

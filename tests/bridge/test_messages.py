@@ -17,7 +17,16 @@ from hypothesis import strategies as st
 
 from mitigate.bridge.connection import EVENTS, Connection
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.hook.mitigate_hook import HEADER, LARGEST, MAGIC, PROTOCOL, receive, send
+from mitigate.bridge.hook.mitigate_hook import (
+    HEADER,
+    LARGEST,
+    LONGEST,
+    MAGIC,
+    PROTOCOL,
+    receive,
+    send,
+)
+from mitigate.bridge.results import read
 from mitigate.bridge.server import Listener
 
 from .conftest import condition
@@ -116,6 +125,7 @@ MESSAGES = {
     "a frame without cameras": {"kind": "frame", "call": 0},
     "an end without an episode": {"kind": "end"},
     "a data set of null": {"kind": "adapted"},
+    "a reason of nothing": {"kind": "stopped"},
 }
 
 
@@ -135,6 +145,8 @@ FRAMES = {
     "an endless number": {"kind": "frame", "call": 1e999},
     "a heading of text": {"kind": "frame", "call": 0, "heading": "north"},
     "metrics of a list": {"kind": "end", "metrics": [1]},
+    "depth of a list": {"kind": "frame", "call": 0, "depth": [1]},
+    "depth of text": {"kind": "frame", "call": 0, "depth": {"rgb": "far"}},
     "an end before a frame": {"kind": "end", "metrics": {"success": 1}},
 }
 
@@ -178,6 +190,13 @@ def test_who_does_not_speak_the_protocol_or_know_the_token_gets_no_answer(peer, 
     assert not (peer.folder / EVENTS).exists()
 
 
+def test_why_a_process_stopped_is_kept_short_and_on_one_line(peer):
+    assert peer.ask(HELLO) == {}
+    assert peer.ask({"kind": "stopped", "problem": "a\x1b[31m\nb" + "x" * 9000}) == {}
+    problem = read(peer.folder).refused[0]
+    assert problem.startswith("a [31m b") and len(problem) == LONGEST
+
+
 def test_another_version_is_told_so(peer):
     assert "another version" in peer.ask(HELLO | {"protocol": PROTOCOL + 1})["error"]
 
@@ -199,7 +218,9 @@ VALUES = st.recursive(
 )
 @given(
     st.sampled_from([SPEC, EPISODE, {"kind": "frame"}, {"kind": "end"}, {"kind": "dataset"}]),
-    st.sampled_from(["cameras", "scene", "id", "text", "tokens", "call", "metrics", "keys"]),
+    st.sampled_from(
+        ["cameras", "scene", "id", "text", "tokens", "call", "metrics", "keys", "depth", "loop"]
+    ),
     VALUES,
 )
 def test_any_value_in_any_place_is_answered_or_refused(tmp_path, message, key, value):
