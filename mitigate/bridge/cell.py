@@ -15,6 +15,7 @@ from typing import Any, TextIO
 
 from mitigate.bridge import results, verdict
 from mitigate.bridge.connection import EVENTS, Condition
+from mitigate.bridge.identity import files_of
 from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import Told, without_path
 from mitigate.bridge.server import Listener
@@ -33,8 +34,8 @@ class Cell:
     """The command under one condition. ``name`` is the condition's.
 
     settings: what its result depends on, by which a finished one is known again. files: of the
-    command, as they are now (``identity.py``). clean: the folder of the clean condition, whose
-    episodes it is to have; None for that itself. recording: the folder that is asked for. tied:
+    command, as it was started with (``identity.py``). clean: the folder of the clean condition,
+    whose episodes it is to have; None for that itself. recording: the folder that is asked for. tied:
     whether the command ends when this process is killed. loaded: whether a Python process of it
     loaded the hook.
     """
@@ -94,10 +95,10 @@ class Cell:
             return f"it was not recorded in {self.recording}, or not all of it"
         return ""
 
-    def changed(self) -> list[str]:
-        """The files of the command that are others now than when it was finished."""
+    def changed(self, files: dict[str, Any]) -> list[str]:
+        """The files of the command that are not as in ``files``, if it is finished."""
         before = (self.held() or {}).get("files", {})
-        return [name for name, told in before.items() if self.files.get(name) != told]
+        return [name for name, told in before.items() if files.get(name) != told]
 
     def missing(self) -> list[str]:
         """Episodes of the clean condition that did not end under this one."""
@@ -122,6 +123,7 @@ class Cell:
         (self.folder / DONE).unlink(missing_ok=True)
         if (self.folder / EVENTS).is_file():
             os.replace(self.folder / EVENTS, self.folder / f"{EVENTS}.unfinished")
+        self.files = files_of(self.command)
         self.listener = Listener(self.condition, self.folder, self.patience).__enter__()
         words = {
             "{condition}": self.name,

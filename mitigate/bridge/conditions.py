@@ -13,7 +13,7 @@ from omegaconf import DictConfig
 from mitigate.bridge.cell import Cell
 from mitigate.bridge.connection import Condition
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.identity import adapters_of, files_of, label_of, place_of, settings_of
+from mitigate.bridge.identity import adapters_of, label_of, place_of, settings_of
 from mitigate.bridge.recording import Recorder
 from mitigate.bridge.results import Told
 from mitigate.bridge.subset import Subset
@@ -39,7 +39,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     words, environment, restorer = _words(cfg, out), _environment(cfg), _restorer(cfg)
     keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
-    text, files, adapters = shlex.join(command), files_of(command), adapters_of(cfg)
+    text, adapters = shlex.join(command), adapters_of(cfg)
     made: list[Cell] = []
     for corruption, repeat in wanted:
         own = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
@@ -63,7 +63,6 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
                 settings_of(cfg, text, restorer, adapters),
                 cfg.patience,
                 environment,
-                files,
                 clean=made[0].folder if made else None,
                 recording=recording,
             )

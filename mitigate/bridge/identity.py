@@ -4,6 +4,7 @@ apart."""
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -90,7 +91,7 @@ def files_of(command: Sequence[str]) -> dict[str, dict[str, Any]]:
 def _named(command: Sequence[str]) -> Iterator[Path]:
     for word in command:
         for text in (word, word.partition("=")[2]):
-            if text and len(text) < 1024 and Path(text).is_file():
+            if os.path.isfile(text) and os.access(text, os.R_OK):  # of any text, code too
                 yield Path(text)
 
 

@@ -97,7 +97,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
         f"run: {shlex.join(command)}\nrun: {many} at severity {cfg.severity:g}, rows in {out}",
         flush=True,
     )
-    _warn_of_changes(made, out)
+    known = _warn_of_changes(made, out)
     before = clean.is_done()
     problems = _run_all(cfg, command, out, name, [clean])
     if problems:
@@ -113,6 +113,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
             flush=True,
         )
     problems += _run_all(cfg, command, out, name, fitting)
+    _warn_of_changes([clean, *fitting], out, known)
     write_report([clean, *fitting], out)
     if problems:
         raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
@@ -136,13 +137,19 @@ def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
     return fitting, unheard
 
 
-def _warn_of_changes(made: Sequence[Cell], out: Path) -> None:
-    """Say which files of the command changed since conditions were finished with them."""
+def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
+    """Say which files of the command, but those that are ``known``, are others than conditions were
+    finished with; return these."""
+    from mitigate.bridge.identity import files_of
+
     changed: dict[str, list[str]] = {}
+    now = files_of(made[0].command)
     for cell in made:
-        for file in cell.changed():
+        for file in cell.changed(now):
             changed.setdefault(file, []).append(cell.name)
     for file, names in changed.items():
+        if file in known:
+            continue
         more = f" and {len(names) - 3} more" if len(names) > 3 else ""
         was = "was" if len(names) == 1 else "were"
         print(
@@ -150,6 +157,7 @@ def _warn_of_changes(made: Sequence[Cell], out: Path) -> None:
             f"are kept: out=... measures the new one, or remove {out / 'conditions'}.",
             flush=True,
         )
+    return list(changed)
 
 
 def check_options(cfg: DictConfig, command: Sequence[str]) -> None:

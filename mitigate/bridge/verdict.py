@@ -32,8 +32,8 @@ def problem(cell: Cell, status: int) -> str:
     if told.refused:
         return told.refused[0]
     if status:
-        hint = f" {CRASH}" if told.lost else ""
-        return f"the command ended with status {status}.{hint}{cell.said()}"
+        hint = f"\n{CRASH}" if told.lost else ""
+        return f"the command ended with status {status}.{cell.said()}{hint}"
     return _unseen(cell, told) or _unfinished(cell, told)
 
 

@@ -8,8 +8,9 @@ import sys
 import pytest
 
 from mitigate.bridge.conditions import cells
-from mitigate.bridge.identity import default_folder
+from mitigate.bridge.identity import default_folder, files_of
 from mitigate.core.conf import load_config
+from mitigate.core.files import sha256
 from mitigate.evaluation import rows
 from mitigate.evaluation.metrics import RULES
 
@@ -108,6 +109,20 @@ def test_a_changed_program_is_named_and_nothing_to_do_is_said(run, program, tmp_
     again = run(out, "conditions=[spatter]", program)
     assert again.returncode == 0 and "nothing was left to run" in again.stdout
     assert "nav.py changed since clean, spatter-s0.6 were run" in again.stdout
+
+
+def test_a_program_that_changes_during_a_run_is_named_at_its_end(run, tmp_path):
+    file = tmp_path / "nav.py"
+    file.write_text(PROGRAM + "open(__file__, 'a').write('#')\n")
+    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file} x")
+    assert ran.returncode == 0 and "nav.py changed since clean was run" in ran.stdout
+
+
+def test_the_files_of_a_command_are_those_that_its_words_name(tmp_path):
+    file = tmp_path / "nav.py"
+    file.write_text("pass")
+    words = ["python", "-c", "print(5)" * 99, str(file), f"--config={file}", str(tmp_path), "\0"]
+    assert files_of(words) == {str(file): {"size": 4, "sha256": sha256(file)}}
 
 
 def test_a_recording_that_is_asked_for_later_is_made(run, program, tmp_path):

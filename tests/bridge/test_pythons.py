@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from mitigate.bridge.results import read
 from mitigate.bridge.server import Listener
 
 from .conftest import condition
@@ -47,6 +48,33 @@ def test_workers_see_what_ours_see(python, command):
         place: look["frames"]["rgb"] for place, look in ours.items()
     }
     assert len(ran.told.ends) == 4
+
+
+LOOP = """
+import numpy, mitigate_hook
+rgb = numpy.full((16, 16, 3), 90, "uint8")
+for scene, name in mitigate_hook.wanted([("x.glb", 1), ("x.glb", 2)]):
+    episode = mitigate_hook.connect(name, scene=scene, instruction="Go to the door.")
+    seen = episode.corrupt({"rgb": rgb, "depth": rgb[..., 0] / 90.0, "pose": numpy.eye(4)})
+    assert (seen["rgb"] != rgb).any()
+    episode.finish(success=numpy.array(1), spl=numpy.float32(0.5))
+mitigate_hook.connect("3").corrupt({"left": [rgb, {"rgb": rgb}]})
+"""
+
+
+def test_a_loop_of_ones_own_runs_and_says_why_it_stops(python, tmp_path):
+    with Listener(condition("low_light"), tmp_path) as listener:
+        ran = subprocess.run(
+            [python, "-c", LOOP],
+            env={**os.environ, **listener.environment()},
+            stderr=subprocess.PIPE,
+            text=True,
+            timeout=20,
+            check=False,
+        )
+    told = read(tmp_path)
+    assert ran.returncode == 97 and sorted(told.ends) == ["x/1", "x/2"], ran.stderr
+    assert "the entry left of an observation may be a frame" in told.refused[0]
 
 
 def test_a_python_without_numpy_is_left_alone(python, tmp_path):
