@@ -35,9 +35,9 @@ class Cell:
 
     settings: what its result depends on, by which a finished one is known again. files: of the
     command, as it was started with (``identity.py``). clean: the folder of the clean condition,
-    whose episodes it is to have; None for that itself. recording: the folder that is asked for. tied:
-    whether the command ends when this process is killed. loaded: whether a Python process of it
-    loaded the hook.
+    whose episodes it is to have; None for that itself. recording: the folder that is asked for.
+    tied: whether the command ends when this process is killed. loaded: whether a Python process of
+    it loaded the hook.
     """
 
     name: str
