@@ -19,8 +19,8 @@ from mitigate.safeguard import trials
 from mitigate.safeguard.attacked import draw_attacked
 from mitigate.safeguard.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
-from mitigate.safeguard.report import voices
 from mitigate.safeguard.reader import Reader
+from mitigate.safeguard.report import voices
 from mitigate.safeguard.tagger import Encoded, Tagger
 from mitigate.training.recipe import Recipe
 
@@ -59,6 +59,8 @@ class SafeguardTagger(Recipe):
             )
         if banks not in (*trials.SPLITS, trials.ALL):
             raise ValueError(unknown("split of the banks", banks, (*trials.SPLITS, trials.ALL)))
+        if isinstance(agent, Reader):
+            agent.freeze()
         self.agent, self.texts, self.micro_batch, self.phrases = agent, texts, micro_batch, phrases
         self.forget, self.attacked, self.banks, self.seed = forget, attacked, banks, seed
 
@@ -71,9 +73,7 @@ class SafeguardTagger(Recipe):
 
     def work(self, job: int) -> Taught:
         about = generator(self.seed, "about", job).random() < self.attacked
-        lesson = (
-            draw_attacked(self.seed, job, self.banks) if about else draw_lesson(self.seed, job)
-        )
+        lesson = draw_attacked(self.seed, job, self.banks) if about else draw_lesson(self.seed, job)
         taught = (
             [IGNORED if e is None else e.act for e in lesson.edits],
             [IGNORED if e is None else e.before for e in lesson.edits],
@@ -120,7 +120,7 @@ class SafeguardTagger(Recipe):
             out["attack"] = (
                 binary_cross_entropy_with_logits(known, wanted, reduction="sum") / tokens
             )
-            out["attack_accuracy"] = ((known > 0) == (wanted > 0)).float().mean()
+            out["attack_accuracy"] = ((known > 0) == (wanted > 0)).sum() / tokens
             out["loss"] = out["loss"] + out["attack"]
         return out
 

@@ -4,18 +4,16 @@ severity was asked for last."""
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from mitigate.bridge.cell import DONE, Cell
 from mitigate.bridge.randomness import randomness
 from mitigate.bridge.results import OWN
-from mitigate.core.files import atomic_text
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import rows
 from mitigate.evaluation.metrics import RULES
-from mitigate.evaluation.rows import Row
 
 ROWS = "rows.jsonl"
 
@@ -34,7 +32,10 @@ def write_report(made: Sequence[Cell], out: Path) -> None:
         )
     rows.write(out / ROWS, found)
     rule = made[0].rule
-    _write_table(found, out, OWN if rule is None else str(RULES[rule]))
+    from mitigate.evaluation import report  # matplotlib is slow to import
+
+    written = report.write(found, out, first=OWN if rule is None else str(RULES[rule]), least=2)
+    print((out / "table.md").read_text("utf-8"), *(f"wrote {w}" for w in written), sep="\n")
     again = [cell.rows() for cell in cells if cell.corruption.name == "clean"]
     if len(again) > 1:
         print(randomness(again), flush=True)
@@ -72,33 +73,3 @@ def _cell(clean: Cell, file: Path) -> Cell | None:
     return replace(
         clean, name=folder.name, corruption=corruption, repeat=repeat, folder=folder, clean=own
     )
-
-
-def _write_table(found: Iterable[Row], out: Path, own: str) -> None:
-    """Write and print the tables, those by the agent's ``own`` rule first."""
-    from mitigate.evaluation import plots  # matplotlib is slow to import
-    from mitigate.evaluation.report import markdown
-    from mitigate.evaluation.sections import sections
-
-    parts = sorted(sections(found), key=lambda part: part.grid.rule != own)
-    pictures: list[list[str]] = [[] for _ in parts]
-    drawn = {"heatmap": 0, "severity": 0}
-    grids = []
-    for part, names in zip(parts, pictures, strict=True):
-        if part.blocks:
-            names.append(_numbered("heatmap", drawn))
-            plots.heatmap(part, out / names[-1])
-        if len(part.grid.severities) > 1 and part.grid not in grids:
-            names.append(_numbered("severity", drawn))
-            plots.severity_curves(part.grid, out / names[-1])
-            grids.append(part.grid)
-    text = markdown(parts, pictures)
-    with atomic_text(out / "table.md") as file:
-        file.write(text)
-    written = ["table.md", *(name for names in pictures for name in names)]
-    print(text, *(f"wrote {out / name}" for name in written), sep="\n", flush=True)
-
-
-def _numbered(stem: str, drawn: dict[str, int]) -> str:
-    drawn[stem] += 1
-    return f"{stem}.png" if drawn[stem] == 1 else f"{stem}-{drawn[stem]}.png"

@@ -20,9 +20,7 @@ def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str)
     error. Loading a state dict that was made with others raises ValueError.
     """
     module.public_tensors = {  # type: ignore[assignment]
-        key: value.clone()
-        for key, value in module.state_dict().items()
-        if key.startswith(prefixes)
+        key: value.clone() for key, value in module.state_dict().items() if key.startswith(prefixes)
     }
     module.public_name = name  # type: ignore[assignment]
     module.register_buffer("public", torch.tensor(list(bytes.fromhex(source)), dtype=torch.uint8))

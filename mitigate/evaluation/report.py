@@ -28,16 +28,19 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
     return "\n\n".join(text.strip() for text in texts) + "\n"
 
 
-def write(rows: Iterable[Row], folder: Path | str) -> list[Path]:
+def write(
+    rows: Iterable[Row], folder: Path | str, first: str | None = None, least: int = 1
+) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
-    Further sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on.
+    Further sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. ``first``: the
+    rule of success whose sections come first; ``least``: severities of which a curve is drawn.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    parts = sections(rows)
+    parts = sorted(sections(rows), key=lambda part: part.grid.rule != first)
     pictures: list[list[str]] = [[] for _ in parts]
     heatmaps = 0
     grids: list[Grid] = []
@@ -47,7 +50,7 @@ def write(rows: Iterable[Row], folder: Path | str) -> list[Path]:
         names.append(_numbered("heatmap", heatmaps))
         plots.heatmap(section, folder / names[-1])
         heatmaps += 1
-        if section.grid not in grids:
+        if section.grid not in grids and len(section.grid.severities) >= least:
             names.append(_numbered("severity", len(grids)))
             plots.severity_curves(section.grid, folder / names[-1])
             grids.append(section.grid)

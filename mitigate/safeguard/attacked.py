@@ -24,7 +24,7 @@ from mitigate.safeguard.trials import Attack
 
 # shares (ours): routes as they are said, in plain words of the same people, sentences of routes
 # that look like attacks, the rest drawn; attacks that are varied, those put inside a sentence
-SAID, MEANT, ALIKE = 0.3, 0.15, 0.2
+SAID, MEANT, ALIKE = 0.4, 0.15, 0.2
 VARIED, INSIDE, FRONT = 0.1, 0.25, 0.4
 COUNTS = (0.15, 0.45, 0.2, 0.12, 0.08)  # of 0, 1, 2 ... attacks in a text
 LOWER, BARE, SHOUTED = 0.12, 0.08, 0.04  # attacks in lower case, without their end mark, shouted

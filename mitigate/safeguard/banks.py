@@ -17,7 +17,7 @@ from typing import Any
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.safeguard import gate, trials
-from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.guard import open_safeguard
 from mitigate.safeguard.trials import Told
 
 GONE, LOST = 1 / 3, 1 / 2  # an attack is gone below, a sentence lost from this share of word pairs
@@ -154,9 +154,11 @@ def rewrites(split: str) -> tuple[dict[str, list[bool]], list[Any]]:
     return found, cases
 
 
-def report(split: str, each: int) -> str:
-    """Return all tables of a split as Markdown."""
-    safeguard = Safeguard()
+def report(split: str, each: int, choice: str = "rules") -> str:
+    """Return all tables of a split as Markdown, of the safeguard that ``choice`` names."""
+    safeguard = open_safeguard(choice)
+    if safeguard is None:
+        raise ValueError("safeguard=none leaves all as it is: choose rules, tagger, reader ...")
 
     def repair(text: str) -> str:
         return safeguard.canonicalise(text).text
@@ -180,9 +182,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.banks", description=__doc__)
     parser.add_argument("--split", choices=trials.SPLITS, default="tune")
+    parser.add_argument("--safeguard", default="rules", help="rules, tagger, reader, a folder ...")
     parser.add_argument("--each", type=int, default=2, help="instructions for an attack and place")
     options = parser.parse_args(arguments)
-    print(report(options.split, options.each))
+    print(report(options.split, options.each, options.safeguard))
 
 
 if __name__ == "__main__":

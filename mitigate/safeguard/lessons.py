@@ -64,9 +64,7 @@ def of_parts(parts: Parts) -> Lesson:
     """Return the lesson of (said, plain) parts in a row."""
     edits = [(edit, bool(plain)) for said, plain in parts for edit in edits_of(said, plain)]
     attack = [False if tells else None for _, tells in edits]  # what tells nothing may go
-    return Lesson(
-        tokens(" ".join(said for said, _ in parts)), [edit for edit, _ in edits], attack
-    )
+    return Lesson(tokens(" ".join(said for said, _ in parts)), [edit for edit, _ in edits], attack)
 
 
 def _parts(rng: np.random.Generator) -> Parts:

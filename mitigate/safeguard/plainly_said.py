@@ -68,6 +68,8 @@ class Tags(Protocol):
 
     def tag(self, text: str) -> Tagged: ...
 
+    def __hash__(self) -> int: ...
+
 
 def judging(tags: Tags | None, text: str) -> Tags | None:
     """Return ``tags`` if it says what of ``text`` is an attack, None otherwise."""

@@ -79,6 +79,11 @@ class Reader(nn.Module):
         acts = only_with_plain_form(self.act(seen).float(), batch["plain"])
         return acts, self.before(seen).float(), self.attack(seen)[..., 0].float()
 
+    def freeze(self) -> None:
+        """Leave the public weights as they are in a training."""
+        for name, parameter in self.encoder.named_parameters():
+            parameter.requires_grad_("lora_" in name)
+
     @torch.no_grad()
     def tag(self, text: str) -> Tagged:
         """Return what becomes of each word of a text, and how probably it is part of an attack;

@@ -25,8 +25,8 @@ from mitigate.safeguard.evidence import (
 )
 from mitigate.safeguard.front import in_front
 from mitigate.safeguard.lexicon import known_words
-from mitigate.safeguard.plainly_said import Tagged, Tags, judging
 from mitigate.safeguard.pieces import Piece, parts, sentence_pieces, without
+from mitigate.safeguard.plainly_said import Tagged, Tags, judging
 from mitigate.safeguard.text import words
 from mitigate.safeguard.weights import CONTEXT, OWN, PART, STYLE
 
@@ -38,8 +38,12 @@ PLAIN = 0.06  # mean strangeness of such a rest
 SURE = 0.5
 AHEAD = 0.4  # strangeness of what goes in front of such a rest
 PART_SURE = 0.85  # of a part of a sentence
-READ = (0.0, 0.5, 0.5)  # bias and weights of the rules' and the network's log odds
-SPAN_SURE, SPAN_WORDS = 0.9, 3  # probability and words of a run inside a sentence that goes
+# of the log odds of a network that reads the text as well: weights of the rules' and of its own,
+# bias beside what is surely a plain route and elsewhere (chosen so that of plain routes at most one
+# sentence in a thousand goes)
+BOTH, BIAS_PLAIN, BIAS = (0.7, 1.0), 1.5, 0.5
+# a run of words inside a sentence that goes: probability, words, the same of the sentence's others
+SPAN_SURE, SPAN_WORDS, SPAN_REST = 0.85, 3, 0.15
 TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
@@ -101,27 +105,29 @@ def judged(text: str, tags: Tags | None = None) -> tuple[Judged, ...]:
         for p, piece, context in zip(own, found, around, strict=True)
     ]
     if tags is not None:
-        own, foreign = (_read_too(text, found, tags.tag(text), ps) for ps in (own, foreign))
+        read = [_attacked(piece, s, tags.tag(text)) for piece, s in zip(found, said, strict=True)]
+        surely = [together(p, q, BIAS) for p, q in zip(foreign, read, strict=True)]
+        rest = [together(p, q, BIAS)
+            for p, q, f in zip(own, read, surely, strict=True) if f < SURE]  # fmt: skip
+        bias = BIAS_PLAIN if sum(rest) < PLAIN * len(rest) else BIAS
+        own, foreign = (
+            [together(p, q, bias) for p, q in zip(ps, read, strict=True)] for ps in (own, foreign)
+        )
     return tuple(Judged(*row) for row in zip(found, said, own, foreign, strict=True))
 
 
-def _read_too(
-    text: str, found: Sequence[Piece], tagged: Tagged, known: Sequence[float]
-) -> list[float]:
-    """Return probabilities that a piece is no part of the route, by what is ``known`` and by what
-    the network reads; what is no English it cannot read."""
-    both = []
-    for piece, p in zip(found, known, strict=True):
-        q = None if piece.tag or in_another_language(piece.of(text)) else tagged.attacked(
-            piece.start, piece.end
-        )  # fmt: skip
-        both.append(p if q is None else together(p, q))
-    return both
+def _attacked(piece: Piece, said: str, tagged: Tagged) -> float | None:
+    """Return how probably a piece is an attack by what the network reads; None where it cannot."""
+    if piece.tag or in_another_language(said):
+        return None
+    return tagged.attacked(piece.start, piece.end)
 
 
-def together(rules: float, read: float) -> float:
+def together(rules: float, read: float | None, bias: float) -> float:
     """Return the probability of which the log odds are the weighted sum of both."""
-    score = READ[0] + READ[1] * logit(rules) + READ[2] * logit(read)
+    if read is None:
+        return rules
+    score = bias + BOTH[0] * logit(rules) + BOTH[1] * logit(read)
     return 1 / (1 + math.exp(-max(-30.0, min(30.0, score))))
 
 
@@ -244,27 +250,27 @@ def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piec
 
 
 def attacked_spans(piece: Piece, tagged: Tagged) -> list[Piece]:
-    """Return the runs of words inside a piece that are surely an attack by what the network reads;
-    none where that is all of its words."""
+    """Return the runs of words inside a piece that are surely an attack by what the network reads,
+    where the others surely are not."""
     places = [i for i, t in enumerate(tagged.tokens) if piece.start <= t.start < piece.end]
-    if not tagged.attack:
-        return []
-    sure = [i for i in places if tagged.attack[i] >= SPAN_SURE]
     runs: list[list[int]] = []
-    for i in sure:
+    for i in places if tagged.attack else ():
+        if tagged.attack[i] < SPAN_SURE:
+            continue
         if runs and i == runs[-1][-1] + 1:
             runs[-1].append(i)
         else:
             runs.append([i])
-    told = [t for t in places if tagged.tokens[t].is_word]
-    spans = []
-    for run in runs:
-        held = sum(tagged.tokens[i].is_word for i in run)
-        if SPAN_WORDS <= held < len(told):
-            spans.append(
-                Piece(tagged.tokens[run[0]].start, tagged.tokens[run[-1]].end, piece.block)
-            )
-    return spans
+    words_of = [[i for i in run if tagged.tokens[i].is_word] for run in (places, *runs)]
+    every, runs = words_of[0], [r for r, w in zip(runs, words_of[1:], strict=True)
+        if len(w) >= SPAN_WORDS]  # fmt: skip
+    gone = {i for run in runs for i in run}
+    rest = [tagged.attack[i] for i in every if i not in gone]
+    if not runs or not rest or sum(rest) > SPAN_REST * len(rest):
+        return []
+    return [
+        Piece(tagged.tokens[run[0]].start, tagged.tokens[run[-1]].end, piece.block) for run in runs
+    ]
 
 
 def repair(
@@ -327,9 +333,7 @@ def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:
     return begins and bool(gate.route_facts(left)) and strangeness(left) < SURE
 
 
-def _allowed(
-    text: str, out: list[Piece], tags: Tags | None
-) -> tuple[list[Piece], list[str]]:
+def _allowed(text: str, out: list[Piece], tags: Tags | None) -> tuple[list[Piece], list[str]]:
     """Return what may go so that the rest passes the gate: what is least foreign stays first."""
     reasons = []
     strange = {one.piece: one.foreign for one in judged(text, tags)}

@@ -19,7 +19,8 @@ from mitigate.core.names import unknown
 
 FOLDER = Path(__file__).parent / "voices"
 VALIDATION = ("butler", "gps", "non_native")  # settings are chosen on these
-TEST = ("bureaucratic", "elaborate", "poetic", "storyteller", "tour_guide")  # and figures reported on these
+# and figures reported on these
+TEST = ("bureaucratic", "elaborate", "poetic", "storyteller", "tour_guide")
 SPLITS = ("train", "validation", "test")
 LONGEST = 80  # words of a passage that is learned from (ours)
 

@@ -152,7 +152,7 @@ def only_with_plain_form(acts: Tensor, plain: Tensor) -> Tensor:
 def tagged(
     found: tuple[Token, ...], acts: Tensor, before: Tensor, attack: Sequence[float] = ()
 ) -> Tagged:
-    """Return the tags of a text's tokens by logits of the acts [T, 3] and the phrases [T, 1 + P]."""
+    """Return the tags of a text's tokens by logits of acts [T, 3] and phrases [T, 1 + P]."""
     acts, before = acts.softmax(-1), before.softmax(-1)
     phrase = before[:, 1:].argmax(-1) + 1
     phrase[before[:, 0] >= NO_PHRASE] = 0

@@ -1,4 +1,4 @@
-"""The reader: what it reads, what its weights hold, what it finds in front of, in and behind routes."""
+"""The reader: what it reads, what its weights hold, what it finds around and inside routes."""
 
 from __future__ import annotations
 
