@@ -207,20 +207,12 @@ class Rig:
         key: Key,
         heading: float | None,
     ) -> list[str]:
-        """Corrupt the frames in ``memory``, in place; return the names of the cameras concerned.
-
-        Raises ValueError if no camera is of a modality that it corrupts, and as ``corrupt`` does.
+        """Corrupt the frames in ``memory``, in place; return the names of the cameras concerned:
+        none if no camera is of a modality that it corrupts. Raises ValueError as ``corrupt`` does.
         """
         changed: dict[str, None] = {}
         for part in (part for part in corruption.parts if part.modality in CHANNELS):
-            groups = [g for g in self.groups if g.cameras[0].kind == part.modality]
-            if not groups:
-                raise ValueError(
-                    f"{part.name!r} corrupts {part.modality}, but the agent has no such "
-                    f"camera (it has {', '.join(c.name for c in self.cameras) or 'none'}). Leave "
-                    "it out: suite=rgb, or conditions=[clean,...]."
-                )
-            for group in groups:
+            for group in (g for g in self.groups if g.cameras[0].kind == part.modality):
                 views = _views(memory, offsets, group)
                 views[...] = corrupted(group, views, part, key, heading)
                 changed |= dict.fromkeys(camera.name for camera in group.cameras)
@@ -286,10 +278,11 @@ def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:
 
 
 def _groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
-    """The groups of a kind of camera, the one that sees most first."""
+    """The groups of a kind of camera, the one that sees most first, then by name: the order in
+    which cameras are told changes no draw."""
     rings: dict[tuple, dict[int, Camera]] = {}
     alone = []
-    for camera in (c for c in cameras if c.kind == kind):
+    for camera in sorted((c for c in cameras if c.kind == kind), key=lambda camera: camera.name):
         steps = camera.yaw / VIEW_STEP_DEGREES
         view = round(steps if turn == "right" else -steps) % VIEWS
         ring = rings.setdefault(camera.alike(), {})
@@ -299,7 +292,7 @@ def _groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
             alone.append(camera)
     found = [(tuple(ring.values()), tuple(ring)) for ring in rings.values() if ring]
     found += [((camera,), (0,)) for camera in alone]
-    found.sort(key=lambda group: -len(group[0]))
+    found.sort(key=lambda group: (-len(group[0]), group[0][0].name))
     return [
         Group(cameras, views, "" if number == 0 else cameras[0].name)
         for number, (cameras, views) in enumerate(found)

@@ -77,9 +77,10 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     finally:
         cell.kill()
     told = cell.told()
-    rig = Rig(told.cameras, cfg.missing, cfg.turn)
     with np.load(file, allow_pickle=False) as held:
         frames = dict(held)
+    seen = [camera for camera in told.cameras if of(camera["name"]) in frames]
+    rig = Rig(seen, cfg.missing, cfg.turn)
     print("\n".join(described(told, rig, frames)))
     fitting = []
     for other in made[1:]:

@@ -15,11 +15,12 @@ import socket
 import time
 import traceback
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mitigate.bridge.cameras import Rig
+from mitigate.bridge.cameras import CHANNELS, Rig
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
 from mitigate.bridge.words import Words
@@ -50,7 +51,7 @@ class Condition:
     repeat: int = 0
     missing: float = 0.0
     turn: str = "left"
-    keep: Callable[[list[str]], list[int]] | None = None
+    keep: Callable[[list[str], int], list[int]] | None = None
     restorer: Restorer | None = None
     observers: list[Any] = field(default_factory=list)
 
@@ -66,6 +67,12 @@ def note(folder: Path, **event: Any) -> None:
     with open(folder / EVENTS, "a", encoding="utf-8") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         file.write(line)
+
+
+def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
+    """An answer with the number of its message, by which it is known for it."""
+    number = message.get("number")
+    return {**answer, "number": number} if isinstance(number, int) else answer
 
 
 def _one_thread() -> None:
@@ -100,6 +107,8 @@ class Connection:
         self.offsets: dict[str, int] = {}
         self.scene = self.episode = ""
         self.open = self.loop = self.chosen = False
+        self.described: list[Any] = []  # cameras of the calls so far, as they were told
+        self.kinds: set[str] = set()  # of the cameras of this episode's calls
         self.calls = 0  # of this episode
         self.worked = 0.0  # seconds in corruptions, of this episode
 
@@ -111,23 +120,30 @@ class Connection:
         self.channel.settimeout(None)
         if self.condition.restorer is not None:
             _one_thread()
-        kinds = {kind: getattr(self, f"on_{kind}") for kind in KINDS}
-        while (message := self._next()) is not None:
-            kind = str(message.get("kind"))
-            try:
-                if kind not in KINDS:
-                    raise ValueError(unknown("kind of message", kind[:40], KINDS))
-                answer = kinds[kind](message)
-                os.utime(self.folder / EVENTS)  # a sign of life
-            except Exception as error:  # whatever it is, the agent must be told
-                problem = str(error) if type(error) is ValueError else _unfit(kind, error)
-                note(self.folder, event="refused", problem=problem, trace=traceback.format_exc())
-                answer = {"error": problem}
-            send(self.channel, answer)
-            if "error" in answer:
-                return
-        self._leave()
-        note(self.folder, event="bye")
+        try:
+            while (message := self._next()) is not None:
+                answer = self._answer(message)
+                send(self.channel, numbered(message, answer))
+                if "error" in answer:
+                    return
+        except OSError:  # it died while this computed
+            pass
+        finally:
+            self._leave()
+            note(self.folder, event="bye")
+
+    def _answer(self, message: Mapping[str, Any]) -> dict[str, Any]:
+        kind = str(message.get("kind"))
+        try:
+            if kind not in KINDS:
+                raise ValueError(unknown("kind of message", kind[:40], KINDS))
+            answer = getattr(self, f"on_{kind}")(message)
+            os.utime(self.folder / EVENTS)  # a sign of life
+        except Exception as error:  # whatever it is, the agent must be told
+            problem = str(error) if type(error) is ValueError else _unfit(kind, error)
+            note(self.folder, event="refused", problem=problem, trace=traceback.format_exc())
+            answer = {"error": problem}
+        return answer
 
     def _next(self) -> dict[str, Any] | None:
         try:
@@ -150,9 +166,11 @@ class Connection:
         if hello.get("protocol") != mitigate_hook.PROTOCOL:
             send(self.channel, {"error": "the hook is of another version than the server."})
             return False
-        said = {k: str(v)[:80] for k, v in hello.items() if k not in ("token", "kind", "pid")}
+        left_out = ("token", "kind", "pid", "number")
+        said = {k: str(v)[:80] for k, v in hello.items() if k not in left_out}
         note(self.folder, event="hello", agent_pid=hello.get("pid"), **said)
-        send(self.channel, {})
+        with suppress(OSError):  # who is gone already says no more
+            send(self.channel, numbered(hello, {}))
         return True
 
     def on_spec(self, message: Mapping[str, Any]) -> dict[str, Any]:
@@ -166,7 +184,9 @@ class Connection:
             *(k for o in condition.observers for k in o.kinds),
         )
         self.offsets, size = self.rig.lay_out(wanted)
-        note(self.folder, event="spec", cameras=message["cameras"])
+        if message["cameras"] not in self.described:  # kinds in calls of their own take turns
+            self.described.append(message["cameras"])
+            note(self.folder, event="spec", cameras=message["cameras"])
         if not size:
             return {"offsets": {}}
         self.file = self.shared / secrets.token_hex(8)
@@ -195,6 +215,7 @@ class Connection:
         self._check_chosen()
         self.scene, self.episode, self.open = str(message["scene"]), str(message["id"]), True
         self.worked, self.calls, self.loop = 0.0, 0, message.get("loop") is True
+        self.kinds = set()
         key = self.condition.key(self.scene, self.episode, 0)
         heard = self.condition.words.heard(message, self.condition.corruption, key)
         for observer in self.condition.observers:
@@ -227,6 +248,7 @@ class Connection:
             middle = message.get("depth", {}).get(camera.name)
             if middle is not None:
                 camera.check_depth(float(middle))
+        self.kinds |= {camera.kind for camera in self.rig.cameras}
         began = time.perf_counter()
         for observer in self.condition.observers:
             observer.frame(message, self.rig, self.memory, self.offsets)
@@ -256,6 +278,8 @@ class Connection:
                 f"episode {self.episode} ended, and none of its frames came by: its program has "
                 "frames that the bridge does not see."
             )
+        if self.calls and not failed:
+            self._check_kinds()
         for observer in self.condition.observers:
             observer.end(message)
         note(
@@ -269,11 +293,24 @@ class Connection:
         self.open = False
         return {}
 
+    def _check_kinds(self) -> None:
+        """Raise ValueError if no call of the episode had a camera of a kind that is corrupted."""
+        for part in self.condition.corruption.parts:
+            if part.modality in CHANNELS and part.modality not in self.kinds:
+                raise ValueError(
+                    f"{part.name!r} corrupts {part.modality}, but no call of episode "
+                    f"{self.episode} had such a camera (it has "
+                    f"{', '.join(sorted(self.kinds)) or 'none'}). Leave it out: suite=rgb, or "
+                    "conditions=[clean,...]."
+                )
+
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """The episodes of an environment: answer which it is to keep, all if None."""
+        """The episodes of an environment: answer which it is to keep, all if None; ``least`` so
+        many (Habitat refuses none)."""
         keep, names = self.condition.keep, [str(key) for key in message["keys"]]
+        least = 0 if message.get("least") == 0 else 1
         note(self.folder, event="dataset", episodes=len(names))
-        return {"keep": None if keep is None else keep(names)}
+        return {"keep": None if keep is None else keep(names, least)}
 
     def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Adapters were put into an encoder."""

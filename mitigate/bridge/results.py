@@ -27,9 +27,9 @@ class Told:
     """What was told under one condition, so far.
 
     ends: of each episode, by its name; again: episodes that ended once more, of which the first
-    counts; dropped: left in the middle. cameras: as first described; first: what the first episode
-    says. refused: what the server could not do, and why processes stopped themselves, in words.
-    adapted: encoders that got adapters. connected: environments that are there now.
+    counts; dropped: left in the middle. cameras: of all calls, as first described; first: what the
+    first episode says. refused: what the server could not do, and why processes stopped themselves,
+    in words. adapted: encoders that got adapters. connected: environments that are there now.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
@@ -59,7 +59,8 @@ def read(folder: Path) -> Told:
         elif kind == "bye":
             told.connected -= 1
         elif kind == "spec":
-            told.cameras = told.cameras or event["cameras"]
+            known = {camera.get("name") for camera in told.cameras}
+            told.cameras += [c for c in event["cameras"] if c.get("name") not in known]
         elif kind == "episode":
             told.first = told.first or event
         elif kind == "end":

@@ -33,14 +33,20 @@ class Subset:
     folder: Path
     settled: float = SETTLED
 
-    def keep(self, names: list[str]) -> list[int]:
-        """Return the numbers of ``names`` to keep: one at least, as Habitat refuses none."""
+    def keep(self, names: list[str], least: int = 1) -> list[int]:
+        """Return the numbers of ``names`` to keep: ``least`` (0 or 1) of them, as Habitat refuses
+        none."""
         bound = self._bound()
         if bound is None:
             bound = self._agree(names)
         places = [place(name) for name in names]
         kept = [i for i, at in enumerate(places) if at <= bound]
-        return kept or [places.index(min(places))]
+        return kept if kept or not least else [places.index(min(places))]
+
+    def forget(self) -> None:
+        """Forget which episodes were chosen."""
+        for name in ("episodes.json", "episodes.txt"):
+            (self.folder / name).unlink(missing_ok=True)
 
     def _bound(self) -> float | None:
         file = self.folder / "episodes.json"

@@ -122,14 +122,6 @@ def test_an_env_that_never_ends_is_read_at_its_next_reset(command):
     assert end["stopped"] is False
 
 
-def test_cameras_of_a_modality_that_is_not_there_are_named(command):
-    from mitigate.bridge.cameras import Rig
-
-    rig = Rig([{"name": "rgb", "type": "rgb", "shape": [4, 4, 3], "dtype": "uint8"}])
-    with pytest.raises(ValueError, match="no such camera.*it has rgb"):
-        rig.corrupt(bytearray(64), {}, Corruption("multipath", 0.5), Key(0, "a"), None)
-
-
 def test_alike_cameras_are_a_panorama_and_others_stand_alone():
     from mitigate.bridge.cameras import Rig
 

@@ -136,7 +136,8 @@ def test_a_message_that_is_none_is_refused_by_name(peer, message):
     assert said and "\n" not in said and len(said) < 1500
     peer.close()
     events = [json.loads(line) for line in (peer.folder / EVENTS).read_text().splitlines()]
-    assert events[-1]["event"] == "refused" and events[-1]["problem"] == said
+    assert [event["event"] for event in events[-2:]] == ["refused", "bye"]
+    assert events[-2]["problem"] == said
 
 
 FRAMES = {

@@ -28,9 +28,10 @@ import socket
 import struct
 import sys
 import threading
+import weakref
 
 np = None  # numpy, once it is needed: every Python process loads this file, and some have none
-PROTOCOL = 1
+PROTOCOL = 2
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
 ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, module, class, path
 HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
@@ -39,8 +40,11 @@ LARGEST = 1 << 24  # bytes of a message: an episode with all view points of its 
 LOADED = "loaded"  # a file beside the socket, once a process has loaded this file
 LONGEST = 4000  # characters of why a process was stopped
 STATUS = 97  # what a process that was stopped exits with
+FAREWELL = 3.0  # seconds at most in which a process that stops tells the server why (ours)
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
-_thread = threading.local()  # .clean: calls whose frames are not the agent's; .walk: of connect
+_thread = threading.local()  # .walk: of connect
+# by id, corrupted frames that the program still holds
+_given: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
 
 
 # messages ---------------------------------------------------------------------------------------
@@ -84,25 +88,31 @@ def _read(channel, size):
 
 def stop(problem, told=False):
     """End this process at once, with one paragraph: an exception might be caught. The server is
-    told why, if it does not know, so that the condition does not count as done."""
-    if not told:
-        _tell(str(problem)[:LONGEST])
-    sys.stderr.write(
-        f"\nmitigate: {problem} This process ({os.getpid()}) ends here, as it would go on with "
-        "frames that are not corrupted. What was measured so far is kept; see `mitigate run`'s own "
-        "output.\n"
-    )
-    sys.stderr.flush()
-    os._exit(STATUS)
+    told why, if it does not know, so that the condition does not count as done. Nothing that goes
+    wrong here, nor an interrupt, lets the process go on."""
+    try:
+        try:
+            if not told:
+                _tell(str(problem)[:LONGEST])
+        finally:
+            text = (
+                f"\nmitigate: {problem} This process ({os.getpid()}) ends here, as it would go on "
+                "with frames that are not corrupted. What was measured so far is kept; see "
+                "`mitigate run`'s own output.\n"
+            )
+            if sys.__stderr__ is not None:  # without one, 2 may be any file; sys.stderr may be none
+                os.write(2, text.encode("utf-8", "replace"))
+    finally:
+        os._exit(STATUS)
 
 
 def _tell(problem):
     """Tell the server why this process ends, by a connection of its own, if it can be reached."""
-    hello = {"kind": "hello", "protocol": PROTOCOL, "token": os.environ.get(TOKEN, "")}
-    hello.update(pid=os.getpid(), python=sys.version.split()[0])
-    channel = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-    with contextlib.suppress(Exception):  # whatever it is, this process ends
-        channel.settimeout(float(os.environ.get(PATIENCE, "25")))
+    with contextlib.suppress(BaseException):  # whatever it is, this process ends
+        hello = {"kind": "hello", "protocol": PROTOCOL, "token": os.environ.get(TOKEN, "")}
+        hello.update(pid=os.getpid(), python=sys.version.split()[0])
+        channel = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        channel.settimeout(min(FAREWELL, float(os.environ.get(PATIENCE, "25"))))
         channel.connect(os.environ[ADDRESS])
         send(channel, hello)
         if receive(channel) == {}:
@@ -116,33 +126,39 @@ class Channel:
     def __init__(self):
         _load_numpy()
         self.pid, self.memory, self.layout = os.getpid(), None, {}
+        self.number = 0  # of the last message: its answer repeats it
         self.patience = float(os.environ.get(PATIENCE, "25"))
         try:
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             self.socket.settimeout(self.patience)
             self.socket.connect(os.environ[ADDRESS])
-        except (OSError, KeyError) as error:
+        except BaseException as error:  # an interrupt, too: the agent might catch it
             stop(
                 f"the server of `mitigate run` cannot be reached at "
-                f"{os.environ.get(ADDRESS)} ({error}); a container needs the host's temporary "
-                "folder (docker: -v /tmp:/tmp)."
+                f"{os.environ.get(ADDRESS)} ({_named(error)}); a container needs the host's "
+                "temporary folder (docker: -v /tmp:/tmp)."
             )
         self.ask("hello", protocol=PROTOCOL, token=os.environ.get(TOKEN, ""), **_versions())
 
     def ask(self, kind, **fields):
-        """Send a message and return the answer."""
-        fields["kind"] = kind
+        """Send a message and return the answer. One that was interrupted is the last: its answer
+        would be taken for that of the next."""
+        self.number += 1
+        number = self.number
+        fields.update(kind=kind, number=number)
         try:
             send(self.socket, fields)
             answer = receive(self.socket)
         except socket.timeout:  # no TimeoutError before Python 3.10
             stop(f"the server did not answer within {self.patience:g} s.")
-        except Exception as error:  # whatever it is, the agent might catch it
-            stop(f"the connection to the server broke ({type(error).__name__}: {error}).")
+        except BaseException as error:  # whatever it is, the agent might catch it
+            stop(f"the connection to the server broke ({_named(error)}).")
         if answer is None:
             stop("the server of `mitigate run` is gone.")
         if "error" in answer:
             stop(answer["error"], told=True)
+        if answer.pop("number", None) != number:
+            stop("the answer of the server is that to another message.")
         return answer
 
     def agree(self, cameras):
@@ -158,16 +174,21 @@ class Channel:
                 self.memory = mmap.mmap(descriptor, int(answer["size"]))
             finally:
                 os.close(descriptor)
-        except (OSError, ValueError) as error:
+        except BaseException as error:
             stop(
-                f"the memory for frames, {answer['file']}, cannot be mapped ({error}); a container "
-                "needs the host's /dev/shm (docker: --ipc=host -v /dev/shm:/dev/shm)."
+                f"the memory for frames, {answer['file']}, cannot be mapped ({_named(error)}); a "
+                "container needs the host's /dev/shm (docker: --ipc=host -v /dev/shm:/dev/shm)."
             )
 
     def place(self, camera):
         """Return the array in the mapped memory where the frame of a camera lies."""
         count, at = int(np.prod(camera["shape"])), self.layout[camera["name"]]
         return np.frombuffer(self.memory, camera["dtype"], count, at).reshape(camera["shape"])
+
+
+def _named(error):
+    """Return an exception with its kind."""
+    return f"{type(error).__name__}: {error}"
 
 
 def _load_numpy():
@@ -184,6 +205,31 @@ def _versions():
 # one environment --------------------------------------------------------------------------------
 
 
+def _whole(what):
+    """Wrap a method of ``Walk``: one thread at a time is in it, and whatever breaks it off, an
+    interrupt too, ends the process, as the agent might catch it and act on what it was given.
+    ``what``: did not take place then."""
+
+    def wrap(method):
+        @functools.wraps(method)
+        def whole(walk, *args, **kwargs):
+            walk.at_home()
+            with walk.lock:
+                if walk.busy:
+                    stop(f"{what}: it was begun within another call of the same environment.")
+                try:
+                    walk.busy = True
+                    result = method(walk, *args, **kwargs)
+                    walk.busy = False
+                    return result
+                except BaseException as error:
+                    stop(f"{what} ({_named(error)}).")
+
+        return whole
+
+    return wrap
+
+
 class Walk:
     """One environment: its connection, the episode that is on and how it goes."""
 
@@ -191,8 +237,10 @@ class Walk:
         self.channel = None
         self.cameras = None  # what the server was told of them
         self.sim = self.task = self.episode = None
-        self.begun = False
-        self.pid = os.getpid()  # where the episode that is on was begun
+        self.begun = self.busy = False
+        self.simulated = False  # whether frames of habitat-sim alone came in this episode
+        self.pid = None  # of the process in which the episode that is on was begun
+        self.home, self.lock = os.getpid(), threading.RLock()
         self.current = None  # of connect: the episode that is on
         self.put_back = None  # sets the words of the last episode as they were
         self.clear()
@@ -202,32 +250,54 @@ class Walk:
         self.calls = self.steps = 0
         self.path, self.actions, self.start = [], [], None
 
+    def at_home(self):
+        """In a forked process, take a lock of its own: a thread that is not here may hold it."""
+        if self.home != os.getpid():
+            self.home, self.lock, self.busy = os.getpid(), threading.RLock(), False
+
+    def leave(self):
+        """Close the connection; frames that come all the same open another one."""
+        self.at_home()
+        with self.lock:
+            if self.channel is not None:
+                self.channel.socket.close()
+            self.channel = self.cameras = self.sim = self.task = self.episode = None
+
     def connected(self):
         """Return the channel; a forked process opens one of its own."""
         if self.channel is None or self.channel.pid != os.getpid():
             self.channel, self.cameras = Channel(), None
         return self.channel
 
+    @_whole("an episode could not be begun")
     def begin(self, scene, name, **said):
         """Begin an episode; the answer holds its words as the agent is to hear them."""
         self.clear()
-        self.pid = os.getpid()
+        self.pid, self.simulated = os.getpid(), False
         answer = self.connected().ask("episode", scene=str(scene), id=str(name), **said)
         self.begun = True
         return answer
 
+    @_whole("a frame could not be corrupted")
     def corrupt(self, observations, cameras, heading=None):
         """Replace the frames of ``cameras`` in a dict of observations, in its order.
 
         ``cameras``: dicts with name, type ("rgb" or "depth") and what else the server is to know
         of them (``_of_config``).
         """
-        try:
-            return self._corrupt(observations, cameras, heading)
-        except Exception as error:  # the agent might catch it, and act on what it gave
-            stop(f"a frame could not be corrupted ({type(error).__name__}: {error}).")
-
-    def _corrupt(self, observations, cameras, heading):
+        if self.pid not in (None, os.getpid()):
+            stop(
+                f"the episode that is on was begun in process {self.pid}, and its fork "
+                f"{os.getpid()} walks on, whose frames would be of no episode: reset the "
+                "environment in the process that walks, or start workers before the first reset."
+            )
+        for camera in cameras:
+            if _is_given(observations[camera["name"]]):
+                stop(
+                    f"the frame {camera['name']} was corrupted before, and would be twice: give "
+                    "each frame once, as the camera took it (of habitat-lab and habitat-sim they "
+                    "are corrupted as they are taken: a loop calls connect and finish only)."
+                )
         channel = self.connected()
         heading = None if heading is None else float(heading)
         told = [dict(c, **_array(observations[c["name"]], c["name"])) for c in cameras]
@@ -253,7 +323,7 @@ class Walk:
                     frame[..., 3], frame[..., :3] = before[..., 3], channel.place(camera)
                 else:
                     frame[...] = channel.place(camera)
-                observations[camera["name"]] = frame
+                observations[camera["name"]] = _given[id(frame)] = frame
         return observations
 
     def position(self):
@@ -269,9 +339,11 @@ class Walk:
         if here is not None and (not self.path or here != self.path[-1]):
             self.path.append(here)
 
+    @_whole("how an episode went could not be told")
     def end(self, metrics):
-        """Tell how the episode went, once; one without a step did not take place."""
-        if not self.begun:
+        """Tell how the episode went, once; one without a step did not take place, and a forked
+        process does not end that of its parent."""
+        if not self.begun or self.pid != os.getpid():
             return
         self.begun = False
         if self.steps or self.sim is None:
@@ -289,6 +361,13 @@ class Walk:
             "distance": _distance(self.sim, self.path[-1] if self.path else None, self.episode),
             "stopped": None if stopped is None else bool(stopped),
         }
+
+
+def _is_given(frame):
+    """Whether an array is, or is a part of, a corrupted one that the program was given."""
+    while isinstance(getattr(frame, "base", None), np.ndarray):
+        frame = frame.base
+    return _given.get(id(frame)) is frame
 
 
 def _action(action):
@@ -321,7 +400,8 @@ def _middle(depth):
 
 
 def _numbers(metrics, prefix=""):
-    """Return the finite numbers of nested dicts, by dotted name."""
+    """Return the finite numbers of nested dicts, by dotted name; the distance to a goal out of
+    reach, a failure by every rule, is infinite."""
     found = {}
     for name, value in dict(metrics or {}).items():
         if isinstance(value, dict):
@@ -331,7 +411,8 @@ def _numbers(metrics, prefix=""):
         if getattr(value, "shape", None) == () and hasattr(value, "item"):  # an array, a tensor
             value = value.item()
             known = isinstance(value, (bool, int, float))
-        if known and math.isfinite(float(value)):
+        far = prefix + str(name) == "distance_to_goal" and known and float(value) == math.inf
+        if far or (known and math.isfinite(float(value))):
             found[prefix + str(name)] = float(value)
     return found
 
@@ -384,34 +465,34 @@ _walks = {}  # id of a simulator's sensor suite, or of a simulator: (it, its wal
 
 def _walk_of(owner):
     """Return the walk of a sensor suite or simulator."""
-    if id(owner) not in _walks:
-        _walks[id(owner)] = (owner, Walk())  # keeps it, so that no other gets its id
+    if id(owner) not in _walks:  # keeps it, so that no other gets its id
+        _walks.setdefault(id(owner), (owner, Walk()))  # threads get one
     return _walks[id(owner)][1]
 
 
-class clean:
-    """Frames taken inside are not what the agent acts on: goal pictures, videos."""
-
-    def __enter__(self):
-        _thread.clean = getattr(_thread, "clean", 0) + 1
-
-    def __exit__(self, *_):
-        _thread.clean -= 1
+def _unseen(original, *args, **kwargs):
+    """Call what takes frames that are not what the agent acts on: goal pictures, videos."""
+    return original(*args, **kwargs)
 
 
-def _is_clean():
-    return getattr(_thread, "clean", 0) > 0
+def _is_unseen():
+    """Whether this thread is within ``_unseen``: by its frames, which no interrupt leaves behind as
+    it might a flag."""
+    frame = sys._getframe(1)
+    while frame is not None and frame.f_code is not _unseen.__code__:
+        frame = frame.f_back
+    return frame is not None
 
 
 def _get_observations(original, suite, *args, **kwargs):
-    """``SensorSuite.get_observations``: of the simulator (frames alone given) or of the task."""
-    if kwargs:
-        with clean():  # a task's sensor may render its goal picture
-            return original(suite, *args, **kwargs)
+    """``SensorSuite.get_observations``: of the simulator, or of the task (episode and task given,
+    as the lab does), whose sensors may render a goal picture."""
+    if "task" in kwargs or "episode" in kwargs:
+        return _unseen(original, suite, *args, **kwargs)
     observations = original(suite, *args, **kwargs)
     cameras = [_of_config(s) for s in suite.sensors.values() if s.uuid in observations]
     cameras = [camera for camera in cameras if camera["type"] in (COLOR, DEPTH)]
-    if _is_clean() or not cameras:
+    if _is_unseen() or not cameras:
         return observations
     walk = _walk_of(suite)
     heading = None if walk.sim is None else _heading(walk.sim.get_agent_state())
@@ -504,8 +585,23 @@ def _env_step(original, env, *args, **kwargs):
 
 
 def _env_close(original, env, *args, **kwargs):
+    """``Env.close``: an Env for each episode leaves no simulator or connection behind."""
     _end(env)
-    return original(env, *args, **kwargs)
+    suite = getattr(env.sim, "sensor_suite", None)
+    try:
+        return original(env, *args, **kwargs)
+    finally:
+        _release(suite)
+
+
+def _release(suite):
+    """Forget a sensor suite, its walk and its connection."""
+    if suite is not None:
+        _, walk = _walks.pop(id(suite), (None, None))
+        for sensor in suite.sensors.values():
+            _described.pop(id(sensor), None)
+        if walk is not None:
+            walk.leave()
 
 
 def _end(env):
@@ -516,34 +612,76 @@ def _end(env):
 
 
 def _env_render(original, env, *args, **kwargs):
-    with clean():
-        return original(env, *args, **kwargs)
+    return _unseen(original, env, *args, **kwargs)
 
 
 # habitat-sim without the lab --------------------------------------------------------------------
 
 
 def _sensor_observations(original, sim, *args, **kwargs):
-    """``Simulator.get_sensor_observations``; the lab's simulators go through their suite."""
-    observations = original(sim, *args, **kwargs)
-    if _is_clean() or hasattr(sim, "sensor_suite"):
+    """``Simulator.get_sensor_observations``."""
+    observations = _unseen(original, sim, *args, **kwargs)  # some call themselves for each agent
+    if _is_unseen() or _is_labs(sim):
         return observations
+    return _of_agents(sim, observations, args[0] if args else kwargs.get("agent_ids"))
+
+
+def _async_observations(original, sim, *args, **kwargs):
+    """``Simulator.get_sensor_observations_async_finish``, where habitat-sim has it."""
+    wanted = getattr(sim, "_async_draw_agent_ids", None)  # the call forgets them
+    observations = _unseen(original, sim, *args, **kwargs)
+    if _is_unseen() or _is_labs(sim):
+        return observations
+    return _of_agents(sim, observations, wanted)
+
+
+def _is_labs(sim):
+    """Whether habitat-lab takes the frames, whose sensors they pass: a module of its own, or a
+    method of its simulator, overridden or not. Anyone else gets none of the lab's simulators."""
+    frame, own = sys._getframe(1), (_package(__name__), "habitat_sim")
+    while frame is not None and _package(frame.f_globals.get("__name__")) in own:
+        frame = frame.f_back
+    if frame is None or _package(frame.f_globals.get("__name__")) == "habitat":
+        return frame is not None
+    if not hasattr(sim, "sensor_suite"):
+        return False
+    labs = [kind for kind in type(sim).__mro__ if _package(kind.__module__) == "habitat"]
+    name = frame.f_code.co_name
+    if frame.f_locals.get("self") is sim and any(name in vars(kind) for kind in labs):
+        return True
+    stop(
+        f"{frame.f_code.co_filename}:{frame.f_lineno} takes frames from habitat-lab's simulator by "
+        "get_sensor_observations itself, which pass by its sensors and would be clean: take them "
+        "by env.step, env.sim.get_observations_at(...), or env.render for what the agent does not "
+        "see."
+    )
+
+
+def _package(module):
+    return str(module).partition(".")[0]
+
+
+def _of_agents(sim, observations, wanted):
+    """Corrupt what the acting agent sees, in observations of several agents, by number, or of the
+    ``wanted`` one (None: the acting one). The others are no eyes of the agent."""
     agent = getattr(sim, "_default_agent_id", 0)
-    wanted = args[0] if args else kwargs.get("agent_ids", agent)
-    if isinstance(wanted, int):
-        return _of_agent(sim, observations) if wanted == agent else observations
-    if agent in wanted:  # of several agents, by number; the others are no eyes of the agent
-        observations[agent] = _of_agent(sim, observations[agent])
-    return observations
+    if observations and all(isinstance(seen, dict) for seen in observations.values()):
+        if agent in observations:
+            observations[agent] = _of_agent(sim, observations[agent])
+        return observations
+    one = wanted[0] if isinstance(wanted, (list, tuple)) else wanted
+    return _of_agent(sim, observations) if one is None or one == agent else observations
 
 
 def _of_agent(sim, observations):
     walk = getattr(_thread, "walk", None)
     if walk is None or walk.pid != os.getpid():
         stop(
-            "habitat-sim is used here without habitat-lab, and nobody said in this process which "
-            "episode it is: call mitigate_hook.connect(episode, scene=...) before its first frame."
+            "habitat-sim is used here without habitat-lab, and nobody said in this thread of this "
+            "process which episode it is: call mitigate_hook.connect(episode, scene=...) before "
+            "its first frame."
         )
+    walk.simulated = True
     cameras = [c for c in _of_specifications(sim) if c["name"] in observations]
     return walk.corrupt(observations, cameras, _heading(sim.get_agent(0).get_state()))
 
@@ -635,7 +773,7 @@ class Episode:
     """One episode of a loop that is not Habitat's; ``instruction`` is what the agent is told."""
 
     def __init__(self, walk, name, scene, instruction):
-        self._walk, self._name = walk, name
+        self._walk, self._name, self._thread = walk, name, threading.get_ident()
         walk.current = self
         answer = walk.begin(scene, name, text=instruction, loop=True)
         self.instruction = answer.get("text", instruction)
@@ -648,10 +786,16 @@ class Episode:
         self._check()
         if not self._walk.begun:
             stop(f"episode {self._name} was finished: connect() begins the next one.")
+        if self._walk.simulated:
+            stop(
+                "frames of habitat-sim are corrupted as its simulator gives them, and "
+                "episode.corrupt() would do so again: of such a loop leave it out, and call "
+                "connect() and finish() only."
+            )
         try:
             observations, listed = _described_frames(observations, cameras)
-        except Exception as error:  # the agent might catch it
-            stop(f"an observation could not be read ({type(error).__name__}: {error}).")
+        except BaseException as error:  # the agent might catch it
+            stop(f"an observation could not be read ({_named(error)}).")
         self._walk.steps += 1
         return self._walk.corrupt(observations, listed, heading)
 
@@ -688,6 +832,12 @@ class Episode:
                 f"episode {self._name} was begun in process {self._walk.pid}, and process "
                 f"{os.getpid()} goes on with it, whose frames would be of no episode: call "
                 "mitigate_hook.connect() in the process that walks."
+            )
+        if self._thread != threading.get_ident():
+            stop(
+                f"episode {self._name} was begun by another thread than the one that goes on with "
+                "it, and their frames might be mixed up: call mitigate_hook.connect() in the "
+                "thread that walks."
             )
 
 
@@ -779,7 +929,8 @@ def wanted(episodes):
     episodes = list(episodes)
     if not episodes:
         return []
-    keep = Channel().ask("dataset", keys=[_key(*episode) for episode in episodes])["keep"]
+    keys = [_key(*episode) for episode in episodes]
+    keep = Channel().ask("dataset", keys=keys, least=0)["keep"]
     return episodes if keep is None else [episodes[i] for i in keep]
 
 
@@ -818,9 +969,13 @@ PATCHES = {  # module: ((class, or none for the module's own functions; method; 
         ("Env", "close", _env_close),
         ("Env", "render", _env_render),
     ),
-    "habitat_sim.simulator": (("Simulator", "get_sensor_observations", _sensor_observations),),
+    "habitat_sim.simulator": (
+        ("Simulator", "get_sensor_observations", _sensor_observations),
+        ("Simulator", "get_sensor_observations_async_finish", _async_observations),
+    ),
     "WMNav_env": (("Env", "_run_episode", _wmnav_episode),),
 }
+OPTIONAL = ("get_sensor_observations_async_finish",)  # not in every version
 
 
 def patch(module):
@@ -828,6 +983,8 @@ def patch(module):
     _load_numpy()
     for owner, method, wrapper in PATCHES[module.__name__]:
         kind = getattr(module, owner, None) if owner else module
+        if method in OPTIONAL and not hasattr(kind, method):
+            continue
         if kind is None or not hasattr(kind, method):
             stop(_absent(module, owner, method))
         setattr(kind, method, _wrapped(getattr(kind, method), wrapper))

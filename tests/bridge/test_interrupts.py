@@ -1,0 +1,217 @@
+"""What is broken off, shared by threads or forked: no frame passes clean, no answer is mixed up."""
+
+import signal
+import time
+
+import pytest
+
+from mitigate.bridge import connection
+from mitigate.bridge.hook import mitigate_hook
+from mitigate.bridge.results import read
+from mitigate.bridge.server import Listener
+
+from .conftest import condition, python
+from .test_loops import BEGIN, ran
+from .test_messages import EPISODE, HELLO, SPEC, Peer
+
+BROKEN_OFF = """
+class Timeout(BaseException):  # as those of gevent, func_timeout and asyncio are
+    pass
+def interrupted(name):
+    original = getattr(mitigate_hook, name)
+    def call(*given):
+        setattr(mitigate_hook, name, original)
+        raise Timeout("the time is up")
+    setattr(mitigate_hook, name, call)
+episode = mitigate_hook.connect('a')
+episode.corrupt({'rgb': rgb})
+interrupted(sys.argv[1])
+try:
+    episode.corrupt({'rgb': rgb})
+except BaseException:
+    pass
+print('went on')
+"""
+
+
+@pytest.mark.parametrize("where", ["send", "receive", "_array", "_middle", "_described_frames"])
+def test_an_interrupt_while_a_frame_is_corrupted_ends_the_process(tmp_path, where):
+    code = BROKEN_OFF.replace("{'rgb': rgb}", "{'rgb': rgb, 'depth': depth}")
+    if where == "_middle":  # of the first frame
+        code = code.replace("episode.corrupt({'rgb': rgb, 'depth': depth})\ninter", "inter")
+    with Listener(condition("low_light"), tmp_path) as listener:
+        ended = python(listener, BEGIN + code, where)
+    assert ended.returncode == 97 and "went on" not in ended.stdout, ended.stdout
+    assert "Timeout: the time is up" in read(tmp_path).refused[0]
+
+
+def test_an_interrupt_while_an_episode_begins_ends_the_process(tmp_path):
+    code = BROKEN_OFF.replace("episode.corrupt({'rgb': rgb})\n", "mitigate_hook.connect('b')\n")
+    with Listener(condition("low_light"), tmp_path) as listener:
+        ended = python(listener, BEGIN + code, "receive")
+    assert ended.returncode == 97 and "went on" not in ended.stdout, ended.stdout
+
+
+def test_the_answer_to_another_message_is_not_taken(tmp_path):
+    code = (
+        "episode = mitigate_hook.connect('a')\nepisode.corrupt({'rgb': rgb})\n"
+        "frame = {'kind': 'frame', 'call': 1, 'number': 2}\n"
+        "mitigate_hook.send(episode._walk.channel.socket, frame)\n"
+        "episode.corrupt({'rgb': rgb})\nprint('went on')"
+    )
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 97 and "went on" not in ended.stdout
+    assert "that to another message" in told.refused[0]
+
+
+def test_a_call_within_a_call_ends_the_process(tmp_path):
+    """A signal handler that looks, or a greenlet."""
+    code = (
+        "episode = mitigate_hook.connect('a')\nreceive = mitigate_hook.receive\n"
+        "def again(channel):\n    mitigate_hook.receive = receive\n"
+        "    episode.corrupt({'rgb': rgb})\n    return receive(channel)\n"
+        "mitigate_hook.receive = again\n"
+        "episode.corrupt({'rgb': rgb})\nprint('went on')"
+    )
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 97 and "within another call" in told.refused[0]
+
+
+def test_an_episode_is_walked_by_the_thread_that_began_it(tmp_path):
+    code = (
+        "import threading\nepisode = mitigate_hook.connect('a')\nepisode.corrupt({'rgb': rgb})\n"
+        "def go():\n    episode.corrupt({'rgb': rgb})\n    print('went on')\n"
+        "thread = threading.Thread(target=go)\nthread.start()\nthread.join()"
+    )
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 97 and "in the thread that walks" in told.refused[0]
+
+
+THREADS = """
+import threading
+from habitat.core.env import Env, make_dataset
+env = Env(config={}, dataset=make_dataset(1))
+env.reset()
+shades = []
+def look():
+    for _ in range(40):
+        shades.append(env.sim.get_observations_at([0.0, 0.0, 0.0], 0.0, True)["rgb"].mean())
+threads = [threading.Thread(target=look) for _ in range(3)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+clean = mitigate_hook._unseen(env.sim.get_observations_at, [0.0, 0.0, 0.0], 0.0)["rgb"].mean()
+env.step(0)
+print(len(shades), max(shades) < 0.8 * clean)
+"""
+
+
+def test_threads_that_share_an_environment_see_corrupted_frames(tmp_path):
+    ended, told = ran(tmp_path, THREADS, condition("low_light"))
+    assert ended.stdout.strip() == "120 True" and told.ends["s0/0"]["calls"] == 122
+
+
+FORK = """
+from habitat.core.env import Env, make_dataset
+env = Env(config={}, dataset=make_dataset(2))
+env.reset()
+env.step(1)
+if os.fork() == 0:
+    CHILD
+    os._exit(0)
+os.wait()
+env.step(1)
+env.step(0)
+env.close()
+"""
+
+
+def test_a_fork_does_not_end_the_episode_of_its_parent(tmp_path):
+    ended, told = ran(tmp_path, FORK.replace("CHILD", "env.close()"))
+    assert ended.returncode == 0, ended.stdout
+    assert {name: end["steps"] for name, end in told.ends.items()} == {"s0/0": 3}
+    assert not told.again and not told.refused
+
+
+def test_a_fork_walks_no_episode_of_its_parent(tmp_path):
+    _, told = ran(tmp_path, FORK.replace("CHILD", "env.step(1)"))
+    assert len(told.refused) == 1 and "reset the environment in the process" in told.refused[0]
+
+
+def test_a_fork_that_resets_walks_an_episode_of_its_own(tmp_path):
+    _, told = ran(tmp_path, FORK.replace("CHILD", "env.reset(); env.step(1); env.close()"))
+    assert not told.refused and not told.lost
+    assert {name: end["steps"] for name, end in told.ends.items()} == {"s0/0": 3, "s1/1": 1}
+
+
+def test_a_fork_from_within_a_call_of_another_thread_takes_its_own_lock(tmp_path):
+    code = (
+        "walk = mitigate_hook.connect('a')._walk\nwalk.lock.acquire()\n"
+        "import threading\n"
+        "def go():\n    mitigate_hook._thread.walk = walk\n    if os.fork() == 0:\n"
+        "        mitigate_hook.connect('b').corrupt({'rgb': rgb})\n        os._exit(0)\n"
+        "    print(os.wait()[1])\n"
+        "thread = threading.Thread(target=go)\nthread.start()\nthread.join()"
+    )
+    ended, _ = ran(tmp_path, code)
+    assert ended.stdout.strip() == "0"
+
+
+@pytest.mark.parametrize("stream", ["None", "5", "open(os.devnull)"])
+def test_a_process_stops_without_a_standard_error(tmp_path, stream):
+    code = (
+        f"sys.stderr = {stream}\n"
+        "try:\n    mitigate_hook.connect('a').corrupt({'rgb': rgb, 'left': rgb})\n"
+        "except BaseException:\n    pass\nprint('went on')"
+    )
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 97 and "went on" not in ended.stdout
+    assert "the entry left" in ended.stdout and "the entry left" in told.refused[0]
+
+
+DIES = (
+    BEGIN
+    + """
+episode = mitigate_hook.connect('a')
+episode.corrupt({'rgb': rgb})
+send = mitigate_hook.send
+def last(channel, message):
+    send(channel, message)
+    os.kill(os.getpid(), 9)  # as the kernel does where memory runs out
+mitigate_hook.send = last
+episode.corrupt({'rgb': rgb})
+"""
+)
+
+
+def test_a_worker_that_dies_while_the_server_computes_is_lost(tmp_path):
+    with Listener(condition("low_light"), tmp_path) as listener:
+        assert python(listener, DIES).returncode == -signal.SIGKILL
+        until = time.monotonic() + 5.0
+        while read(tmp_path).connected and time.monotonic() < until:
+            time.sleep(0.02)
+    told = read(tmp_path)
+    assert told.lost == ["a"] and told.connected == 0
+
+
+def test_an_answer_that_nobody_takes_is_an_end(tmp_path, monkeypatch):
+    """The other side is gone before the answer is sent."""
+    made = Peer(tmp_path)
+    for message in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
+        assert "error" not in made.ask(message)
+
+    def broken(*_):
+        raise BrokenPipeError
+
+    monkeypatch.setattr(connection, "send", broken)
+    mitigate_hook.send(made.channel, {"kind": "frame", "call": 1})
+    made.thread.join(5.0)
+    told = read(tmp_path)
+    assert told.lost == ["a/1"] and told.connected == 0
+    made.close()
+
+
+def test_an_answer_repeats_the_number_of_its_message(tmp_path):
+    made = Peer(tmp_path)
+    assert made.ask(HELLO | {"number": 7}) == {"number": 7}
+    assert made.ask({"kind": "dataset", "keys": [], "number": 8}) == {"keep": None, "number": 8}
+    made.close()

@@ -1,0 +1,134 @@
+"""Every way to a simulator's frames: corrupted once, or the process ends and says why."""
+
+import pytest
+
+from .conftest import condition
+from .test_loops import ran
+
+ENV = """
+import habitat, habitat_sim.simulator
+from habitat.core.env import Env, make_dataset
+from habitat.core.simulator import Simulator
+"""
+LAB = (
+    ENV
+    + """
+class Sim(habitat_sim.simulator.Simulator, Simulator):  # as habitat-lab's own is
+    def __init__(self):
+        habitat_sim.simulator.Simulator.__init__(self)
+        Simulator.__init__(self)
+    def step(self, action):
+        self.raw = self.get_sensor_observations()["color_sensor"]
+        return Simulator.step(self, action)
+    def look(self):
+        return self.get_sensor_observations()["color_sensor"]
+env = Env(config={}, dataset=make_dataset(1))
+env.sim = env._sim = env.task._sim = sim = Sim()
+env.reset()
+env.step(1)
+assert (sim.raw[..., :3] == 130).all()  # what the lab's sensors are given
+"""
+)
+
+
+def test_the_lab_itself_and_what_overrides_it_take_frames_for_its_sensors(tmp_path):
+    ended, told = ran(tmp_path, LAB + "env.step(0)\nprint('done')", condition("low_light"))
+    assert ended.stdout == "done\n" and told.ends["s0/0"]["calls"] == 3
+
+
+@pytest.mark.parametrize(
+    "look",
+    [
+        "env.sim.get_sensor_observations()",
+        "env.sim.look()",
+        "habitat_sim.simulator.Simulator.step(env.sim, 1)",
+        "env.sim.start_async_render(); env.sim.get_sensor_observations_async_finish()",
+    ],
+)
+def test_frames_beside_the_labs_sensors_end_the_process(tmp_path, look):
+    ended, told = ran(tmp_path, f"{LAB}{look}\nprint('went on')", condition("low_light"))
+    assert ended.returncode == 97 and "went on" not in ended.stdout
+    assert "takes frames from habitat-lab's simulator by get_sensor_observations" in told.refused[0]
+
+
+def test_frames_of_a_simulator_may_be_given_to_its_sensors_by_keyword(tmp_path):
+    code = ENV + (
+        "env = Env(config={}, dataset=make_dataset(1))\nenv.reset()\n"
+        "suite, place = env.sim.sensor_suite, (0.0, 0.0, 0.0)\n"
+        "clean = mitigate_hook._unseen(suite.get_observations, place)\n"
+        "for seen in (suite.get_observations(place), suite.get_observations(sim_obs=place)):\n"
+        "    print((seen['rgb'] != clean['rgb']).any(), (seen['depth'] == clean['depth']).all())"
+    )
+    ended, _ = ran(tmp_path, code, condition("low_light"))
+    assert ended.stdout == "True True\n" * 2
+
+
+SIM = """
+import habitat_sim.simulator
+sim = habitat_sim.simulator.Simulator()
+episode = mitigate_hook.connect("a")
+"""
+
+
+@pytest.mark.parametrize(
+    ("call", "acting", "goal"),
+    [
+        ("sim.get_sensor_observations()", "['color_sensor']", None),
+        ("sim.get_sensor_observations([0, 1])", "[0]['color_sensor']", "[1]['goal_sensor']"),
+        ("sim.get_sensor_observations(agent_ids=1)", None, "['goal_sensor']"),
+        ("(sim.start_async_render(), sim.get_sensor_observations_async_finish())[1]",
+         "['color_sensor']", None),
+        ("(sim.start_async_render(1), sim.get_sensor_observations_async_finish())[1]",
+         None, "['goal_sensor']"),
+    ],
+)  # fmt: skip
+def test_what_the_acting_agent_of_habitat_sim_sees_is_corrupted_once(tmp_path, call, acting, goal):
+    shown = f"seen{acting}[..., :3].mean()" if acting else "0"
+    other = f"seen{goal}[0, 0, 0]" if goal else "130"
+    ended, _ = ran(tmp_path, f"{SIM}seen = {call}\nprint({shown}, {other})", condition("low_light"))
+    mean, clean = map(float, ended.stdout.split())
+    assert clean == 130 and (mean == 0 if acting is None else 40 < mean < 110)
+
+
+@pytest.mark.parametrize("name", ["clean", "low_light"])
+def test_a_loop_over_habitat_sim_leaves_corrupt_out(tmp_path, name):
+    code = (
+        "frames = sim.get_sensor_observations()\n"
+        "episode.corrupt({'rgb': frames['color_sensor'].copy()})\nprint('went on')"
+    )
+    ended, told = ran(tmp_path, SIM + code, condition(name))
+    assert ended.returncode == 97 and "connect() and finish() only" in told.refused[0]
+    ended, told = ran(tmp_path / "b", SIM + "sim.get_sensor_observations()\nepisode.finish(1)")
+    assert ended.returncode == 0 and told.ends["a"]["calls"] == 1
+
+
+@pytest.mark.parametrize(
+    "again",
+    [
+        "episode.corrupt(seen)",
+        "episode.corrupt({'rgb': seen['rgb'][:8, ::2]})",
+        "mitigate_hook.connect('b').corrupt({'left': seen['rgb']}, cameras={'left': {}})",
+    ],
+)
+def test_a_frame_that_was_corrupted_is_not_corrupted_again(tmp_path, again):
+    code = (
+        "episode = mitigate_hook.connect('a')\nseen = episode.corrupt({'rgb': rgb})\n"
+        f"seen = episode.corrupt({{'rgb': rgb}})\n{again}\nprint('went on')"
+    ).replace("{}}", "{'type': 'rgb'}}")
+    ended, told = ran(tmp_path, code)
+    assert ended.returncode == 97 and "was corrupted before" in told.refused[0]
+
+
+def test_an_env_for_each_episode_leaves_nothing_behind(tmp_path):
+    code = ENV + (
+        "import gc, time\nopen_files = []\n"
+        "for _ in range(6):\n"
+        "    env = Env(config={}, dataset=make_dataset(1))\n"
+        "    env.reset(); env.step(1); env.step(0); env.close(); del env; gc.collect()\n"
+        "    open_files.append(len(os.listdir('/proc/self/fd')))\n"
+        "print(max(open_files) == open_files[0],"
+        " any(isinstance(o, Simulator) for o in gc.get_objects()),"
+        " len(mitigate_hook._walks), len(mitigate_hook._described))"
+    )
+    ended, told = ran(tmp_path, code)
+    assert ended.stdout == "True False 0 0\n" and told.again == 5
