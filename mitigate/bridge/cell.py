@@ -8,7 +8,6 @@ import os
 import signal
 import subprocess
 import time
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TextIO
@@ -19,14 +18,19 @@ from mitigate.bridge.identity import files_of
 from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import Told, without_path
 from mitigate.bridge.server import Listener
+from mitigate.bridge.subset import Subset
 from mitigate.bridge.verdict import episodes, lacking
 from mitigate.core.files import atomic_text
+from mitigate.core.signals import unbroken
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
 from mitigate.scale import tied
 
 DONE, LOG = "done.json", "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats
+GRACE = 3.0  # seconds in which the processes of a command may end by themselves (ours)
+NOTED = 5.0  # seconds in which the server notes what they left in the middle (ours)
+SILENT = 10  # times patience, after which a command that lost an episode is taken to hang (ours)
 
 
 @dataclass
@@ -36,8 +40,8 @@ class Cell:
     settings: what its result depends on, by which a finished one is known again. files: of the
     command, as it was started with (``identity.py``). clean: the folder of the clean condition,
     whose episodes it is to have; None for that itself. recording: the folder that is asked for.
-    tied: whether the command ends when this process is killed. loaded: whether a Python process of
-    it loaded the hook.
+    chosen: says which episodes were asked for. tied: whether the command ends when this process is
+    killed. loaded: whether a Python process of it loaded the hook.
     """
 
     name: str
@@ -54,6 +58,7 @@ class Cell:
     files: dict[str, Any] = field(default_factory=dict)
     clean: Path | None = None
     recording: Path | None = None
+    chosen: Subset | None = None
     tied: bool = False
     loaded: bool = False
     listener: Listener | None = None
@@ -108,8 +113,16 @@ class Cell:
         """The episodes that ended under the clean condition; empty for itself."""
         return set() if self.clean is None else set(results.read(self.clean).ends)
 
+    def beyond(self) -> list[str]:
+        """Episodes that ended under this condition and not under clean, whose run lost them."""
+        return [] if self.clean is None else sorted(self.told().ends.keys() - self.of_clean())
+
     def start(self) -> None:
         """Start the server and the command; what an earlier, unfinished run told is put aside."""
+        with unbroken():  # or what was just started would not be known to ``kill``
+            self._start()
+
+    def _start(self) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
         self.lock = open(self.folder / "lock", "w", encoding="utf-8")  # noqa: SIM115
         try:
@@ -123,6 +136,9 @@ class Cell:
         (self.folder / DONE).unlink(missing_ok=True)
         if (self.folder / EVENTS).is_file():
             os.replace(self.folder / EVENTS, self.folder / f"{EVENTS}.unfinished")
+        chosen = self.chosen if self.clean is None else None
+        if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
+            chosen.forget()  # of a run that came to nothing
         self.files = files_of(self.command)
         self.listener = Listener(self.condition, self.folder, self.patience).__enter__()
         words = {
@@ -157,8 +173,12 @@ class Cell:
             self.kill()
             return problem
         self.loaded = self.listener.was_loaded()
+        self._end_command()
+        self._settle()
         self.kill()
         found = verdict.problem(self, status)
+        if self.clean is not None and self.beyond():  # it is no measure of this one
+            (self.clean / DONE).unlink(missing_ok=True)
         if not found:
             said = {"condition": self.corruption.name, "severity": self.corruption.severity}
             said |= {"repeat": self.repeat, "files": self.files}
@@ -170,14 +190,7 @@ class Cell:
         """End the command with all of its processes, and the server."""
         before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C changes nothing
         try:
-            if self.process is not None:
-                with suppress(ProcessLookupError):
-                    os.killpg(self.process.pid, signal.SIGTERM)
-                with suppress(subprocess.TimeoutExpired):
-                    self.process.wait(3.0)
-                with suppress(ProcessLookupError):
-                    os.killpg(self.process.pid, signal.SIGKILL)
-                self.process.wait()
+            self._end_command()
             if self.listener is not None:
                 self.listener.__exit__()
                 self.listener = None
@@ -186,6 +199,46 @@ class Cell:
             if self.lock is not None:
                 self.lock.close()
                 self.lock = None
+
+    def _end_command(self) -> None:
+        """End all processes of the command: after ``GRACE`` those that are still connected, too."""
+        if self.process is None:
+            return
+        until = time.monotonic() + GRACE
+        there = self._signal(signal.SIGTERM)
+        while there and time.monotonic() < until:
+            if self.process.poll() is not None and self.told().connected < 1:
+                break
+            time.sleep(0.05)
+            there = self._signal(0)
+        self._signal(signal.SIGKILL)
+        self.process.wait()
+
+    def _signal(self, number: int) -> bool:
+        """Send a signal to the processes of the command; return whether there are any."""
+        assert self.process is not None
+        try:
+            os.killpg(self.process.pid, number)
+        except ProcessLookupError:
+            return False
+        return True
+
+    def _settle(self) -> None:
+        """Let the server note what the command left in the middle, also of processes that outlive
+        it (in sessions and containers of their own)."""
+        assert self.listener is not None
+        if not self._is_quiet(NOTED):
+            self.listener.close_connections()
+            self._is_quiet(GRACE)
+
+    def _is_quiet(self, seconds: float) -> bool:
+        """Whether the last connection ends within so many seconds."""
+        until = time.monotonic() + seconds
+        while self.told().connected > 0:
+            if time.monotonic() > until:
+                return False
+            time.sleep(0.05)
+        return True
 
     def _stuck(self) -> str | None:
         """Why a running command will not come to its end, None if it may."""
@@ -201,7 +254,7 @@ class Cell:
         told = self.told()
         if told.refused:
             return f"{told.refused[0]}"
-        if told.lost and told.connected < 1:
+        if told.lost and (told.connected < 1 or silent > SILENT * self.patience):
             return (
                 f"a process of the command ended in the middle of episode {told.lost[0]}, and "
                 f"nothing was heard of any other for {silent:.0f} s; the command was stopped. "

@@ -37,7 +37,8 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
         cfg.severity_depth,
     )
     words, environment, restorer = _words(cfg, out), _environment(cfg), _restorer(cfg)
-    keep = None if cfg.episodes is None else Subset(cfg.episodes, out).keep
+    chosen = None if cfg.episodes is None else Subset(cfg.episodes, out)
+    keep = None if chosen is None else chosen.keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
     text, adapters = shlex.join(command), adapters_of(cfg)
     made: list[Cell] = []
@@ -65,6 +66,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
                 environment,
                 clean=made[0].folder if made else None,
                 recording=recording,
+                chosen=chosen,
             )
         )
     return made

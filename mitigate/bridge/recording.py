@@ -8,11 +8,12 @@ each call (RGB, or depth as 16-bit millimetres), ``cameras.json``, ``episode.jso
 
 from __future__ import annotations
 
+import hashlib
 import json
 import re
 import shutil
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -25,6 +26,7 @@ from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.observation import DEPTH, RGB
 
 CAMERAS = "cameras.json"
+LONGEST = 150  # characters of a name that are kept in a path (ours; a file name has 255 bytes)
 MILLIMETRES, MOST = 1000.0, 65535  # of a count of 16-bit depth; its largest one
 _PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
 
@@ -34,17 +36,28 @@ def plain(name: str) -> str:
     return _PLAIN.sub("-", name).lstrip(".") or "unnamed"
 
 
+def part(name: str) -> str:
+    """Return ``name`` as a part of a path that no other name has: plain, and if it is changed by
+    that, with a hash behind it."""
+    made = plain(name)[:LONGEST]
+    if made == name or not name:
+        return made
+    return f"{made}-{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:8]}"
+
+
 @dataclass
 class Recorder:
     """Writes what passes into ``folder``; of an episode that comes again the later one stays."""
 
     folder: Path
     here: Path | None = None
+    cameras: dict[str, Any] = field(default_factory=dict)  # of the episode
     kinds: ClassVar = (RGB, DEPTH)  # of the cameras that it needs to see
 
     def episode(self, told: Mapping[str, Any]) -> None:
         """Begin the folder of an episode."""
-        self.here = self.folder / plain(stem_of(str(told["scene"]))) / plain(str(told["id"]))
+        self.here = self.folder / part(stem_of(str(told["scene"]))) / part(str(told["id"]))
+        self.cameras = {}
         shutil.rmtree(self.here, ignore_errors=True)  # of an earlier run
         self.here.mkdir(parents=True)
         note = {"unit": 1 / MILLIMETRES, "depth": "16-bit PNG", "frames": "clean"}
@@ -61,13 +74,15 @@ class Recorder:
         """Write the clean frames of a call, and where the agent was."""
         if self.here is None:
             return
-        if not (self.here / CAMERAS).is_file():
+        seen = {part(name): camera for name, camera in rig.told().items()}
+        if not seen.keys() <= self.cameras.keys():
+            self.cameras = seen | self.cameras
             with atomic_text(self.here / CAMERAS) as file:
-                json.dump({plain(name): told for name, told in rig.told().items()}, file)
+                json.dump(self.cameras, file)
         for camera in rig.cameras:
             frame = camera.read(memory, offsets)
             write_bytes(
-                self.here / plain(camera.name) / f"{int(told['call']):06d}.png", png(camera, frame)
+                self.here / part(camera.name) / f"{int(told['call']):06d}.png", png(camera, frame)
             )
         line = {name: told.get(name) for name in ("call", "position", "heading")}
         with open(self.here / "steps.jsonl", "a", encoding="utf-8") as file:
@@ -84,7 +99,7 @@ class Recorder:
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:
     """Whether ``folder`` is a recording that holds all episodes that ended as ``ends`` tell."""
-    places = [folder / plain(stem_of(e["scene"])) / plain(e["episode"]) for e in ends]
+    places = [folder / part(stem_of(e["scene"])) / part(e["episode"]) for e in ends]
     return all((place / "end.json").is_file() for place in places)
 
 

@@ -114,6 +114,8 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
         )
     problems += _run_all(cfg, command, out, name, fitting)
     _warn_of_changes([clean, *fitting], out, known)
+    if not clean.is_done():  # a condition showed that it is not whole
+        raise ValueError("\n".join(problems))
     write_report([clean, *fitting], out)
     if problems:
         raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
@@ -162,6 +164,7 @@ def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ())
 
 def check_options(cfg: DictConfig, command: Sequence[str]) -> None:
     """Raise ValueError for options that make no sense, and without a command."""
+    from mitigate.bridge.subset import SETTLED
     from mitigate.evaluation.metrics import RULES
 
     check_choice(cfg.safeguard)
@@ -186,6 +189,12 @@ def check_options(cfg: DictConfig, command: Sequence[str]) -> None:
         raise ValueError(f"patience={cfg.patience:g} must be 1 to 3600 seconds.")
     if cfg.severity == 0 or cfg.severity_depth == 0:
         raise ValueError("severity=0 changes nothing: for clean runs alone, conditions=[clean].")
+    if cfg.episodes is not None and cfg.patience < SETTLED + 1:
+        raise ValueError(
+            f"patience={cfg.patience:g} is too little with episodes={cfg.episodes}: which are "
+            f"chosen is known {SETTLED:g} s after the last environment came. Give {SETTLED + 1:g} "
+            "or more (the default is 25)."
+        )
     if cfg.episodes is not None and cfg.episodes < 1:
         raise ValueError(f"episodes={cfg.episodes} is none: give 1 or more, or null for all.")
 
@@ -220,8 +229,8 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
                     print(f"{cell.name}: done before, {cell.summary()}", flush=True)
                 else:
                     again = f", measured anew: {why}" if (why := cell.why_anew()) else ""
+                    running.append(cell)  # before: whatever interrupts its start, it is ended
                     cell.start()
-                    running.append(cell)
                     print(f"{cell.name}: started{again}; its output is in {cell.log}", flush=True)
             time.sleep(0.2)
             for cell in list(running):

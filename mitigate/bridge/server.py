@@ -21,6 +21,7 @@ import numpy as np
 
 from mitigate.bridge.connection import Condition, Connection
 from mitigate.bridge.hook import mitigate_hook
+from mitigate.core.signals import raise_ended
 from mitigate.corruptions import Corruption
 from mitigate.corruptions.suite import corrupt
 
@@ -80,6 +81,11 @@ class Listener:
         shutil.rmtree(self.place, ignore_errors=True)
         shutil.rmtree(self.memory, ignore_errors=True)
 
+    def close_connections(self) -> None:
+        """Have connections note what is left in the middle, and end."""
+        with suppress(ProcessLookupError):
+            os.killpg(self.pid, signal.SIGTERM)
+
     def is_alive(self) -> bool:
         """Whether it still serves."""
         with suppress(ChildProcessError):
@@ -115,6 +121,7 @@ class Listener:
             channel.setblocking(True)
             if os.fork() == 0:
                 listening.close()
+                signal.signal(signal.SIGTERM, raise_ended)  # it notes what is left in the middle
                 try:
                     Connection(
                         channel, self.condition, self.folder, self.token, self.memory

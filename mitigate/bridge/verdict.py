@@ -75,12 +75,25 @@ def _unfinished(cell: Cell, told: Told) -> str:
             f"{told.lost[0]}: a process of it died, or its loop gave up. Run again; the "
             f"condition is measured anew. {CRASH}{cell.said()}"
         )
+    if told.connected > 0:
+        return (
+            "the command ended, but processes of it went on, and nobody knows what they left in "
+            "the middle: let it wait for them, and run again."
+        )
     missing = cell.missing()
     if missing:
         return (
             f"{lacking(cell, missing)}, such as {missing[0]}: a process of it died or gave up "
             "before its first step, or it draws its episodes at random (fix its seed, and choose "
             f"some by episodes=). Run again; the condition is measured anew. {CRASH}{cell.said()}"
+        )
+    beyond = cell.beyond()
+    if beyond:
+        return (
+            f"{episodes(len(beyond))} ended under it that clean's run lacks, such as {beyond[0]}: "
+            "a process of clean's died or gave up before its first step, or the command draws its "
+            "episodes at random (fix its seed, and choose some by episodes=). Run again; clean is "
+            f"measured anew, too. {CRASH}"
         )
     if not cell.rows():
         return (

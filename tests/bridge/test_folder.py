@@ -72,6 +72,46 @@ def test_an_episode_that_never_began_is_missed_too(run, program, tmp_path):
     assert ran.returncode == 1 and "1 of clean's 5 episodes is missing, such as z" in ran.stderr
 
 
+BACKGROUND = """
+import os, sys, time, numpy, mitigate_hook
+frame = numpy.full((8, 8, 3), 90, 'uint8')
+if os.fork() and not mitigate_hook.connect('own').corrupt({'rgb': frame}).get('x'):
+    mitigate_hook._thread.walk.end({'success': 1})
+    time.sleep(0.5)
+    os._exit(0)
+%s
+episode = mitigate_hook.connect('late')
+episode.corrupt({'rgb': frame})
+time.sleep(30)
+"""
+
+
+@pytest.mark.parametrize("session", ["", "os.setsid()"])
+def test_an_episode_that_a_background_process_is_in_at_the_end_is_lost(
+    run, tmp_path, monkeypatch, session
+):
+    from mitigate.bridge import cell
+
+    monkeypatch.setattr(cell, "NOTED", 0.5)  # who has a session of its own is waited for
+    file = tmp_path / "nav.py"
+    file.write_text(BACKGROUND % session)
+    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    assert ran.returncode == 1 and "1 episode was left in the middle, such as late" in ran.stderr
+    assert not (tmp_path / "o/conditions/clean/done.json").exists()
+
+
+def test_episodes_that_clean_lacks_have_it_measured_anew(run, tmp_path):
+    out, file = tmp_path / "o", tmp_path / "nav.py"
+    lost = "for name in 'abcd':\n    if name == 'd' and sys.argv[1] == 'clean': break\n"
+    file.write_text(PROGRAM.replace("for name in 'abcd':\n", lost))
+    ran = run(out, "conditions=[low_light,spatter]", f"{sys.executable} {file} {{condition}}")
+    assert ran.returncode == 1 and "1 episode ended under it that clean's run lacks" in ran.stderr
+    assert not list(out.glob("conditions/*/done.json")) and not (out / "rows.jsonl").exists()
+    file.write_text(PROGRAM)
+    ran = run(out, "conditions=[low_light]", f"{sys.executable} {file} {{condition}}")
+    assert ran.returncode == 0 and "clean: started" in ran.stdout
+
+
 def test_the_table_is_of_all_that_is_finished_in_the_folder(run, program, tmp_path):
     out = tmp_path / "o"
     run(out, "conditions=[low_light,spatter]", program)

@@ -4,9 +4,10 @@ import sys
 
 import pytest
 
-from mitigate.bridge.results import read
+from mitigate.bridge.results import OWN, read, rows
 from mitigate.bridge.server import Listener
-from mitigate.bridge.subset import Subset
+from mitigate.bridge.subset import Subset, place
+from mitigate.corruptions import Corruption
 
 from .conftest import condition, python
 
@@ -175,6 +176,48 @@ def test_some_episodes_of_a_loop_are_chosen_as_those_of_habitats_are(tmp_path):
     numbers = keep([f"x.glb/{n}" for n in range(12)])
     assert sorted(told.ends) == sorted(f"x/{n}" for n in numbers)
     assert len(ran(tmp_path / "all", WANTED)[1].ends) == 12
+
+
+@pytest.mark.parametrize("workers", [1, 5])
+def test_any_number_of_workers_is_given_the_same_episodes(tmp_path, workers):
+    keep = Subset(2, tmp_path, settled=0.3).keep
+    code = (
+        f"for n in range({workers}):\n    if os.fork() == 0:\n"
+        f"        pairs = [('x.glb', n) for n in range(20)][n::{workers}]\n"
+        "        for scene, name in mitigate_hook.wanted(pairs):\n"
+        "            episode = mitigate_hook.connect(name, scene=scene)\n"
+        "            episode.corrupt({'rgb': rgb})\n            episode.finish(success=1)\n"
+        f"        os._exit(0)\nfor n in range({workers}): os.wait()"
+    )
+    _, told = ran(tmp_path, code, condition("spatter", keep=keep))
+    places = sorted(range(20), key=lambda n: place(f"x.glb/{n}"))
+    assert sorted(told.ends) == sorted(f"x/{n}" for n in places[:2])
+
+
+def test_the_order_of_entries_changes_no_pixel(tmp_path):
+    code = (
+        "import hashlib\nfor order in (('rgb_b', 'rgb_a'), ('rgb_a', 'rgb_b')):\n"
+        "    episode, frames = mitigate_hook.connect('a'), {'rgb_a': rgb, 'rgb_b': rgb[:8]}\n"
+        "    seen = episode.corrupt({name: frames[name] for name in order})\n"
+        "    print(*[hashlib.md5(seen[n].tobytes()).hexdigest() for n in ('rgb_a', 'rgb_b')])"
+    )
+    ended, _ = ran(tmp_path, code)
+    first, second = ended.stdout.splitlines()
+    assert first == second and first.split()[0] != first.split()[1]
+
+
+def test_a_goal_out_of_reach_is_a_failure_by_the_common_rule(tmp_path):
+    code = (
+        "for name, metres in (('a', 1.0), ('b', numpy.inf)):\n"
+        "    episode = mitigate_hook.connect(name, instruction='go')\n"
+        "    episode.corrupt({'rgb': rgb})\n"
+        "    episode.finish(success=name == 'a', distance_to_goal=metres, path_length=metres)"
+    )
+    _, told = ran(tmp_path, code)
+    label = {"agent": "x", "name": "n", "split": "s", "seed": 0}
+    found = rows(told, Corruption("spatter", 0.6), label, None)
+    assert [row["success"] for row in found if row["rule"] != OWN] == [1.0, 0.0]
+    assert "distance_to_goal" not in found[-1]
 
 
 def test_a_loop_that_lets_none_be_chosen_is_told_so_at_its_first_episode(tmp_path):

@@ -198,6 +198,16 @@ def test_why_a_process_stopped_is_kept_short_and_on_one_line(peer):
     assert problem.startswith("a [31m b") and len(problem) == LONGEST
 
 
+def test_an_episode_without_a_camera_that_is_corrupted_is_refused_at_its_end(peer):
+    depth = CAMERA | {"name": "depth", "type": "depth", "shape": [8, 8, 1], "dtype": "float32"}
+    frame, end = {"kind": "frame", "call": 0}, {"kind": "end", "metrics": {"success": 1}}
+    for message in (HELLO, cameras(depth), EPISODE, frame, SPEC, frame | {"call": 1}, end):
+        assert "error" not in peer.ask(message)
+    for message in (cameras(depth), EPISODE | {"id": "2"}, frame):
+        assert "error" not in peer.ask(message)
+    assert "corrupts rgb, but no call of episode 2 had such a camera" in peer.ask(end)["error"]
+
+
 def test_another_version_is_told_so(peer):
     assert "another version" in peer.ask(HELLO | {"protocol": PROTOCOL + 1})["error"]
 

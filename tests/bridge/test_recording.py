@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from mitigate.bridge.cameras import read_camera
-from mitigate.bridge.recording import Recorder, plain, png
+from mitigate.bridge.cameras import Rig, read_camera
+from mitigate.bridge.recording import Recorder, part, plain, png
 from mitigate.corruptions import DepthSensor
 from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
 
@@ -39,6 +39,30 @@ def test_clean_frames_poses_actions_and_measures_are_written(command, tmp_path):
 def test_names_from_outside_stay_in_the_folder(name):
     made = plain(name)
     assert made and "/" not in made and not made.startswith(".") and "\n" not in made
+
+
+def test_names_that_are_plain_alike_have_parts_of_their_own():
+    names = ["left-door", "left door", "left/door", "日本", "中国", "-", ".x", "x", "", "a" * 400]
+    names.append("a" * 399)
+    made = [part(name) for name in names]
+    assert len({*made}) == len(names) and max(map(len, made)) < 200
+    assert made[0] == "left-door" and made[1].startswith("left-door-") and made[7] == "x"
+    assert all("/" not in name and not name.startswith(".") for name in made)
+
+
+def test_cameras_of_all_calls_are_told(tmp_path):
+    recorder, memory = Recorder(tmp_path), bytearray(4096)
+    recorder.episode({"scene": "k.glb", "id": "left door"})
+    for call, told in enumerate(
+        [
+            {"name": "rgb", "type": "rgb", "shape": [4, 4, 3], "dtype": "uint8"},
+            {"name": "depth", "type": "depth", "shape": [4, 4, 1], "dtype": "float32"},
+        ]
+    ):
+        rig = Rig([told])
+        recorder.frame({"call": call}, rig, memory, rig.lay_out(["rgb", "depth"])[0])
+    (file,) = tmp_path.glob("k/left-door-*/cameras.json")
+    assert {*json.loads(file.read_text())} == {"rgb", "depth"}
 
 
 def test_depth_is_written_in_millimetres_and_holes_stay_holes():

@@ -8,10 +8,12 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 
 import pytest
 
 from mitigate.bridge.run import name_of, split_command
+from mitigate.bridge.subset import Subset
 from mitigate.core.conf import options_text
 from mitigate.evaluation import rows
 
@@ -114,6 +116,78 @@ def test_a_worker_that_dies_does_not_hang_the_run(run, tmp_path):
     assert "ended in the middle of episode s" in ran.stderr
 
 
+def test_a_silent_command_that_lost_an_episode_is_ended_though_others_are_there(
+    run, tmp_path, monkeypatch
+):
+    from mitigate.bridge import cell
+
+    monkeypatch.setattr(cell, "SILENT", 2)  # times patience
+    program = tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook, numpy, os, time\n"
+        "first = mitigate_hook.connect('a')\nfirst.corrupt({'rgb': numpy.zeros((8, 8, 3), 'u1')})\n"
+        "mitigate_hook.connect('b')\ntime.sleep(60)\n"
+    )
+    ran = run(tmp_path / "o", "conditions=[clean] patience=1", f"{sys.executable} {program}")
+    assert ran.returncode == 1 and "ended in the middle of episode a" in ran.stderr
+
+
+def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_path, monkeypatch):
+    from mitigate.bridge import cell
+
+    started = []
+
+    class Interrupted(subprocess.Popen):
+        def __init__(self, *given, **options):
+            super().__init__(*given, **options)
+            started.append(self)
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(cell.subprocess, "Popen", Interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path / "o", "conditions=[clean]", f"{AGENT} --pause 5")
+    assert started[0].poll() is not None
+
+
+def test_rgb_and_depth_may_come_in_calls_of_their_own(run, tmp_path):
+    program = tmp_path / "nav.py"
+    program.write_text(
+        "import mitigate_hook, numpy\n"
+        "rgb, depth = numpy.full((8, 8, 3), 90, 'u1'), numpy.full((8, 8, 1), 2, 'f4')\n"
+        "for name in 'ab':\n    episode = mitigate_hook.connect(name)\n"
+        "    for _ in range(3):\n"
+        "        seen = [episode.corrupt({'rgb': rgb}), episode.corrupt({'depth': depth})]\n"
+        "    print((seen[0]['rgb'] != rgb).any(), (seen[1]['depth'] != depth).any())\n"
+        "    episode.finish(success=1)\n"
+    )
+    out = tmp_path / "o"
+    ran = run(out, "conditions=[low_light,missing_data]", f"{sys.executable} {program}")
+    assert ran.returncode == 0 and "not applicable" not in ran.stdout, ran.stderr
+    shown = [(out / f"conditions/{n}-s0.6/output.txt").read_text()
+             for n in ("low_light", "missing_data")]  # fmt: skip
+    assert shown == ["True False\n" * 2, "False True\n" * 2]
+    assert (out / "conditions/clean/events.jsonl").read_text().count('"spec"') == 2
+
+
+def test_episodes_of_a_run_that_came_to_nothing_are_chosen_anew(run, tmp_path, monkeypatch):
+    from mitigate.bridge import conditions
+
+    monkeypatch.setattr(conditions, "Subset", partial(Subset, settled=0.0))
+    program, out = tmp_path / "nav.py", tmp_path / "o"
+    begin = "import mitigate_hook, numpy\nrgb = numpy.zeros((8, 8, 3), 'u1')\n"
+    program.write_text(f"{begin}mitigate_hook.wanted([('k', n) for n in range(3)])\n")
+    assert run(out, "conditions=[clean] episodes=2", f"{sys.executable} {program}").returncode == 1
+    program.write_text(
+        f"{begin}for scene, name in mitigate_hook.wanted([('k', n) for n in range(90)]):\n"
+        "    episode = mitigate_hook.connect(name, scene=scene)\n"
+        "    episode.corrupt({'rgb': rgb})\n    episode.finish(success=1)\n"
+    )
+    for _ in range(2):
+        ran = run(out, "conditions=[clean] episodes=2", f"{sys.executable} {program}")
+        assert "2 episodes" in ran.stdout and ran.returncode == 0
+    assert json.loads((out / "episodes.json").read_text())["of"] == 90
+
+
 def test_a_condition_that_lost_an_episode_is_not_done(run, tmp_path):
     """The command ends well, but one of its workers was killed."""
     out = tmp_path / "o"
@@ -133,7 +207,11 @@ def test_two_runs_do_not_share_a_folder(run, tmp_path):
 
 @pytest.mark.parametrize(
     ("options", "words"),
-    [("patience=0", "patience=0 must be"), ("severity=0", "severity=0 changes nothing")],
+    [
+        ("patience=0", "patience=0 must be"),
+        ("severity=0", "severity=0 changes nothing"),
+        ("episodes=3 patience=3", "patience=3 is too little with episodes=3"),
+    ],
 )
 def test_options_that_make_no_sense_are_refused(run, tmp_path, options, words):
     assert words in run(tmp_path / "o", options).stderr
