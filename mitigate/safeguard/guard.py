@@ -190,18 +190,19 @@ class _Draft:
     def __init__(self, original: str, tagger: Tags | None = None) -> None:
         self.original, self.tagger = original, tagger
         self.tidied = tidy(original)
+        self.reader = tagger if len(words(self.tidied)) <= TOO_LONG else None  # of the whole text
         self.reasons: list[str] = []
         self.asked = self.taken = 0
         self.plain = not _readable(self.tidied) or (
-            _untouched(original, tagger) and not self._spoken()
+            _untouched(original, self.reader) and not self._spoken()
         )
         heard = rules.lower_capitals(original)
-        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(tagger, heard))
+        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(self.reader, heard))
         self.repair(set())
 
     def _spoken(self) -> bool:
         """Return whether the tagger takes the text for speech."""
-        return self.tagger is not None and is_speech(self.tagger.tag(self.tidied))
+        return self.reader is not None and is_speech(self.reader.tag(self.tidied))
 
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
@@ -210,7 +211,7 @@ class _Draft:
             self.same, self.tagged = True, False
             self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
             return
-        done = rules.repair(self.original, empty.__contains__, self.tagger)
+        done = rules.repair(self.original, empty.__contains__, self.reader)
         self.same = done.text == self.original
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.tagged = self._say_plainly()

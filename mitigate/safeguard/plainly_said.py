@@ -28,12 +28,13 @@ SPEECH = 0.3  # mean probability of dropping a word from which a text counts as 
 class Tagged:
     """A text as a tagger sees it: its ``tokens``; for each the ``edit`` that is likeliest if it
     is not dropped, and the probability ``drop`` that it is; ``attack``: that it is part of an
-    attack, empty where the tagger does not say."""
+    attack, empty where the tagger does not say; ``least``: how much must go for it to be speech."""
 
     tokens: tuple[Token, ...]
     edits: tuple[Edit, ...]
     drop: tuple[float, ...]
     attack: tuple[float, ...] = ()
+    least: float = SPEECH
 
     def edit(self, place: int, least: float = TRIES[0][0], phrases: bool = True) -> Edit:
         """Return what becomes of a token that is dropped from the probability ``least`` on."""
@@ -78,7 +79,7 @@ def judging(tags: Tags | None, text: str) -> Tags | None:
 
 def is_speech(tagged: Tagged) -> bool:
     """Return whether a text is surely no plain route."""
-    return tagged.speech >= SPEECH
+    return tagged.speech >= tagged.least
 
 
 def plainly_said(text: str, tagged: Tagged) -> tuple[str, list[str]]:

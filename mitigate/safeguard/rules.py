@@ -39,11 +39,12 @@ SURE = 0.5
 AHEAD = 0.4  # strangeness of what goes in front of such a rest
 PART_SURE = 0.85  # of a part of a sentence
 # of the log odds of a network that reads the text as well: weights of the rules' and of its own,
-# bias beside what is surely a plain route and elsewhere (chosen so that of plain routes at most one
-# sentence in a thousand goes)
-BOTH, BIAS_PLAIN, BIAS = (0.7, 1.0), 1.5, 0.5
+# and the bias, for a sentence that tells nothing, names things, tells the way: beside what is
+# surely a plain route, and elsewhere (chosen by what went of R2R-CE's train texts)
+BOTH = (0.7, 1.0)
+BIAS_PLAIN, BIAS = (1.0, 0.25, 0.0), (0.5, 0.0, -0.5)
 # a run of words inside a sentence that goes: probability, words, the same of the sentence's others
-SPAN_SURE, SPAN_WORDS, SPAN_REST = 0.85, 3, 0.15
+SPAN_SURE, SPAN_WORDS, SPAN_REST = 0.95, 4, 0.1
 TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
@@ -106,14 +107,24 @@ def judged(text: str, tags: Tags | None = None) -> tuple[Judged, ...]:
     ]
     if tags is not None:
         read = [_attacked(piece, s, tags.tag(text)) for piece, s in zip(found, said, strict=True)]
-        surely = [together(p, q, BIAS) for p, q in zip(foreign, read, strict=True)]
-        rest = [together(p, q, BIAS)
-            for p, q, f in zip(own, read, surely, strict=True) if f < SURE]  # fmt: skip
-        bias = BIAS_PLAIN if sum(rest) < PLAIN * len(rest) else BIAS
+        tells = [gate.weight(s) for s in said]
+        surely = [together(p, q, BIAS[w]) for p, q, w in zip(foreign, read, tells, strict=True)]
+        rest = [together(p, q, BIAS[w])
+            for p, q, w, f in zip(own, read, tells, surely, strict=True) if f < SURE]  # fmt: skip
+        plain = sum(rest) < PLAIN * len(rest)
+        bias = [
+            (BIAS_PLAIN if plain and not leads(s) else BIAS)[w]
+            for s, w in zip(said, tells, strict=True)
+        ]
         own, foreign = (
-            [together(p, q, bias) for p, q in zip(ps, read, strict=True)] for ps in (own, foreign)
+            [together(*row) for row in zip(ps, read, bias, strict=True)] for ps in (own, foreign)
         )
     return tuple(Judged(*row) for row in zip(found, said, own, foreign, strict=True))
+
+
+def leads(sentence: str) -> bool:
+    """Return whether a sentence begins with a motion or a turn."""
+    return any(word in VERBS for word in words(sentence)[:2])
 
 
 def _attacked(piece: Piece, said: str, tagged: Tagged) -> float | None:

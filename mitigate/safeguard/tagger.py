@@ -28,7 +28,7 @@ from mitigate.safeguard.edits import DROP, KEEP, PLAIN, Edit
 from mitigate.safeguard.evidence import LANDMARKS, VERBS
 from mitigate.safeguard.lexicon import FUNCTION, GROUPS
 from mitigate.safeguard.plain_words import PHRASES, plain_form
-from mitigate.safeguard.plainly_said import Tagged
+from mitigate.safeguard.plainly_said import SPEECH, Tagged
 from mitigate.safeguard.ways import RELATION
 from mitigate.safeguard.word_vectors import SCALE, SIZE, SMOLLM2, VECTORS, word_key, word_vectors
 
@@ -150,7 +150,11 @@ def only_with_plain_form(acts: Tensor, plain: Tensor) -> Tensor:
 
 
 def tagged(
-    found: tuple[Token, ...], acts: Tensor, before: Tensor, attack: Sequence[float] = ()
+    found: tuple[Token, ...],
+    acts: Tensor,
+    before: Tensor,
+    attack: Sequence[float] = (),
+    least: float = SPEECH,
 ) -> Tagged:
     """Return the tags of a text's tokens by logits of acts [T, 3] and phrases [T, 1 + P]."""
     acts, before = acts.softmax(-1), before.softmax(-1)
@@ -158,7 +162,7 @@ def tagged(
     phrase[before[:, 0] >= NO_PHRASE] = 0
     plain = acts[:, PLAIN] > acts[:, KEEP]
     made = [Edit(int(act), int(n)) for act, n in zip(plain * PLAIN, phrase, strict=True)]
-    return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()), tuple(attack))
+    return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()), tuple(attack), least)
 
 
 def _hash(text: str, size: int) -> int:
