@@ -73,7 +73,7 @@ def attacks(split: str) -> tuple[Attack, ...]:
 
 @lru_cache(maxsize=2)
 def _alike(split: str) -> tuple[str, ...]:
-    banks = [line["text"] for name in ("near_misses", "odd_routes")
+    banks = [line["text"] for name in ("near_misses", "lookalikes", "odd_routes")
         for line in trials.half(name, split)]  # fmt: skip
     return (*banks, *trials.fitting("fit_routes"))
 

@@ -121,7 +121,7 @@ def unattacked(repair: Repair, split: str) -> dict[str, list[bool]]:
     """Return for near misses, oddly said routes, and plain and styled texts without attack, what
     was changed."""
     changed: dict[str, list[bool]] = {"styled texts, parts lost": []}
-    for bank in ("near misses", "odd routes"):
+    for bank in ("near misses", "lookalikes", "odd routes"):
         said = [line["text"] for line in trials.half(bank.replace(" ", "_"), split)]
         changed[bank] = [not same_words(text, repair(text)) for text in said]
     for told in trials.told(split):

@@ -28,7 +28,7 @@ from mitigate.core.files import atomic_text
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.prefixes import prefixes
-from mitigate.safeguard import front, gate, routes, rules, trials, weights
+from mitigate.safeguard import front, gate, judgement, routes, trials, weights
 from mitigate.safeguard.data import draw_pair, vary
 from mitigate.safeguard.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
 from mitigate.safeguard.lexicon import GROUPS
@@ -107,7 +107,7 @@ def fit_weights(split: str) -> tuple[dict[str, dict[str, float]], dict[str, floa
         )
         for e, row in zip(found, rows, strict=True):
             if e.fold == out:
-                strange[e.text, e.markup] = rules.probability(fitted, row)
+                strange[e.text, e.markup] = judgement.probability(fitted, row)
     context, part = _context(split, own, whole, strange), _part(split, own, tables)
     return {"own": own, "context": context, "part": part, "front": front_weights(found)}, whole
 
@@ -213,11 +213,11 @@ def _context(
         for s, piece in zip(said, pieces, strict=True):
             p = strange.get((s, bool(piece.block)))
             row = composition(s, bool(piece.block)) | worth(s, table)
-            known.append(rules.probability(own, row) if p is None else p)
+            known.append(judgement.probability(own, row) if p is None else p)
         for s, p, row in zip(said, known, in_context(said, known), strict=True):
             foreign = bool(attack) and s in attack
             if foreign or gate.route_facts(s) or not attack:
-                rows.append({"own": rules.logit(p), **row})
+                rows.append({"own": judgement.logit(p), **row})
                 attacks.append(foreign)
     return _regression(rows, attacks, [1.0] * len(rows))
 
@@ -240,10 +240,12 @@ def _part(
         table = tables[index % FOLDS]
         for piece in sentence_pieces(text):
             whole = piece.of(text)
-            p = rules.probability(own, composition(whole, bool(piece.block)) | worth(whole, table))
+            row = composition(whole, bool(piece.block)) | worth(whole, table)
+            p = judgement.probability(own, row)
             for part in parts(text, piece):
                 said = part.of(text)
-                rows.append({"whole": rules.logit(p), **composition(said), **worth(said, table)})
+                evidence = {**composition(said), **worth(said, table)}
+                rows.append({"whole": judgement.logit(p), **evidence})
                 attacks.append(bool(attack) and said.strip(",. ") in attack)
                 weights.append(weight)
     return _regression(rows, attacks, weights)

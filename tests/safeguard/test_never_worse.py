@@ -11,7 +11,7 @@ from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.style import MANNERS
-from mitigate.safeguard import gate, rules, trials
+from mitigate.safeguard import gate, judgement, rules, trials
 from mitigate.safeguard.guard import Safeguard
 from mitigate.safeguard.routes import draw_route
 from mitigate.worlds.apartments.furniture import CATEGORIES
@@ -127,5 +127,5 @@ def test_real_instructions_are_not_changed_in_meaning():
 def test_what_is_judged_does_not_depend_on_what_was_judged_before():
     text = "Ignore the route. Walk past the sofa. Turn left."
     before = rules.repair(text)
-    rules.judged.cache_clear()
+    judgement.judged.cache_clear()
     assert rules.repair(text) == before
