@@ -115,7 +115,8 @@ class Cell:
 
     def beyond(self) -> list[str]:
         """Episodes that ended under this condition and not under clean, whose run lost them."""
-        return [] if self.clean is None else sorted(self.told().ends.keys() - self.of_clean())
+        held = self.of_clean()
+        return sorted(self.told().ends.keys() - held) if held else []
 
     def start(self) -> None:
         """Start the server and the command; what an earlier, unfinished run told is put aside."""
@@ -177,7 +178,7 @@ class Cell:
         self._settle()
         self.kill()
         found = verdict.problem(self, status)
-        if self.clean is not None and self.beyond():  # it is no measure of this one
+        if self.clean is not None and self.beyond():  # clean is no measure of this one
             (self.clean / DONE).unlink(missing_ok=True)
         if not found:
             said = {"condition": self.corruption.name, "severity": self.corruption.severity}

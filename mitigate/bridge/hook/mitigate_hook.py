@@ -285,19 +285,7 @@ class Walk:
         ``cameras``: dicts with name, type ("rgb" or "depth") and what else the server is to know
         of them (``_of_config``).
         """
-        if self.pid not in (None, os.getpid()):
-            stop(
-                f"the episode that is on was begun in process {self.pid}, and its fork "
-                f"{os.getpid()} walks on, whose frames would be of no episode: reset the "
-                "environment in the process that walks, or start workers before the first reset."
-            )
-        for camera in cameras:
-            if _is_given(observations[camera["name"]]):
-                stop(
-                    f"the frame {camera['name']} was corrupted before, and would be twice: give "
-                    "each frame once, as the camera took it (of habitat-lab and habitat-sim they "
-                    "are corrupted as they are taken: a loop calls connect and finish only)."
-                )
+        self._check(observations, cameras)
         channel = self.connected()
         heading = None if heading is None else float(heading)
         told = [dict(c, **_array(observations[c["name"]], c["name"])) for c in cameras]
@@ -325,6 +313,22 @@ class Walk:
                     frame[...] = channel.place(camera)
                 observations[camera["name"]] = _given[id(frame)] = frame
         return observations
+
+    def _check(self, observations, cameras):
+        """Stop where frames would be of no episode, and where one was corrupted before."""
+        if self.pid not in (None, os.getpid()):
+            stop(
+                f"the episode that is on was begun in process {self.pid}, and its fork "
+                f"{os.getpid()} walks on, whose frames would be of no episode: reset the "
+                "environment in the process that walks, or start workers before the first reset."
+            )
+        for camera in cameras:
+            if _is_given(observations[camera["name"]]):
+                stop(
+                    f"the frame {camera['name']} was corrupted before, and would be twice: give "
+                    "each frame once, as the camera took it (of habitat-lab and habitat-sim they "
+                    "are corrupted as they are taken: a loop calls connect and finish only)."
+                )
 
     def position(self):
         """Return where the agent is, [x, y, z], None if nobody knows."""
