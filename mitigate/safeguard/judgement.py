@@ -88,9 +88,11 @@ def _read_too(
         (BIAS_PLAIN if plain and not leads(s) else BIAS)[w]
         for s, w in zip(said, tells, strict=True)
     ]
-    own, foreign = (
-        [together(*row) for row in zip(ps, read, bias, strict=True)] for ps in (own, foreign)
-    )
+    foreign = [together(*row) for row in zip(foreign, read, bias, strict=True)]
+    own = [  # what moves one and tells the way goes only by what the rules say of it
+        p if w == 2 and leads(s) else together(p, q, b)
+        for p, q, b, w, s in zip(own, read, bias, tells, said, strict=True)
+    ]
     return tuple(Judged(*row) for row in zip(found, said, own, foreign, strict=True))
 
 

@@ -69,14 +69,16 @@ def _turns(old: Meaning, new: Meaning) -> str:
 
 def _read(heard: str, said: str) -> str:
     """Return a turn that ``said`` has for who reads it word by word, or that one goes straight on
-    in one text alone; "" if there is none."""
+    or turns around in ``heard`` alone; "" if there is none."""
     before, after = (
         Counter(d for d in facts(text).directions if d != "stop") for text in (heard, said)
     )
     if after - before:
         return f"directions: {', '.join(after - before)} more"
-    ahead = before["straight"] and not after["straight"]
-    return "directions: straight less" if ahead else ""
+    for name in ("straight", "around"):
+        if before[name] and not after[name]:
+            return f"directions: {name} less"
+    return ""
 
 
 def _counted(old: Meaning, new: Meaning, gone: set[str]) -> str:

@@ -26,6 +26,7 @@ from mitigate.safeguard.judgement import (
     SURE,
     Judged,
     judged,
+    leads,
     logit,
     probability,
     strangeness,
@@ -156,7 +157,8 @@ def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piec
             values = {"whole": logit(one.own), **features(said)}
             if in_another_language(said) or probability(PART, values) >= PART_SURE:
                 found.append(part)
-    return sorted(found, key=lambda part: part.start)
+    kept = (p for p in found if not (leads(p.of(text)) and gate.route_facts(p.of(text))))
+    return sorted(kept, key=lambda part: part.start)  # "go back the other way" is no attack
 
 
 def attacked_spans(piece: Piece, tagged: Tagged) -> list[Piece]:

@@ -308,8 +308,13 @@ def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
         if events.is_file():
             break
         time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=20)[1]
+    for _ in range(10):  # Python drops one that comes in the middle of a fork: it is pressed again
+        process.send_signal(signal.SIGINT)
+        try:
+            said = process.communicate(timeout=4)[1]
+            break
+        except subprocess.TimeoutExpired:
+            continue
     assert process.returncode == 130 and "SIGINT: stopped. To go on: " in said
     assert f"suite=clean -- {shlex.join(agent)}" in said
 
