@@ -173,7 +173,7 @@ def label(choice: str) -> str:
 
     first, plus, second = choice.partition("+")
     if plus and first in TAGGERS:
-        return f"tagger+{label(second)}"
+        return f"{first}+{label(second)}"
     files = [Path(choice) / name for name in (ADAPTER_FILE, WEIGHTS)]
     weights = next((file for file in files if file.is_file()), None)
     if weights is None:
@@ -190,19 +190,20 @@ class _Draft:
     def __init__(self, original: str, tagger: Tags | None = None) -> None:
         self.original, self.tagger = original, tagger
         self.tidied = tidy(original)
-        self.reader = tagger if len(words(self.tidied)) <= TOO_LONG else None  # of the whole text
+        short = len(words(self.tidied)) <= TOO_LONG
+        self.judge = tagger if short else None  # reads the text as it is heard
         self.reasons: list[str] = []
         self.asked = self.taken = 0
         self.plain = not _readable(self.tidied) or (
-            _untouched(original, self.reader) and not self._spoken()
+            _untouched(original, self.judge) and not self._spoken()
         )
         heard = rules.lower_capitals(original)
-        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(self.reader, heard))
+        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(self.judge, heard))
         self.repair(set())
 
     def _spoken(self) -> bool:
         """Return whether the tagger takes the text for speech."""
-        return self.reader is not None and is_speech(self.reader.tag(self.tidied))
+        return self.judge is not None and is_speech(self.judge.tag(self.tidied))
 
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
@@ -211,7 +212,7 @@ class _Draft:
             self.same, self.tagged = True, False
             self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
             return
-        done = rules.repair(self.original, empty.__contains__, self.reader)
+        done = rules.repair(self.original, empty.__contains__, self.judge)
         self.same = done.text == self.original
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.tagged = self._say_plainly()

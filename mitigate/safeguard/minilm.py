@@ -62,9 +62,9 @@ def network(dropout: float) -> torch.nn.Module:
         }
     )
     made = BertModel(config, add_pooling_layer=False)
-    made.load_state_dict(
-        {k: v for k, v in load(_weights()).items() if not k.startswith("pooler")}, strict=False
-    )
+    left_out = ("pooler.", "embeddings.position_ids")
+    held = load(_weights())
+    made.load_state_dict({k: v for k, v in held.items() if not k.startswith(left_out)})
     return made.requires_grad_(False)
 
 

@@ -13,7 +13,7 @@ from mitigate.core.seeding import generator
 from mitigate.safeguard import minilm
 from mitigate.safeguard.attacked import draw_attacked
 from mitigate.safeguard.edits import DROP
-from mitigate.safeguard.guard import TAGGERS, Safeguard, open_safeguard
+from mitigate.safeguard.guard import TAGGERS, Safeguard, label, open_safeguard
 from mitigate.safeguard.reader import LONGEST, Reader, open_tags
 from mitigate.safeguard.routes import draw_route
 
@@ -113,3 +113,15 @@ def test_lessons_mark_what_is_put_in_and_are_the_same_again():
 
 def test_it_stands_in_front_of_an_agent_by_its_name(shipped):
     assert isinstance(open_safeguard("reader").tagger, Reader)
+    names = {label(choice) for choice in ("reader", "tagger", "reader+lora", "tagger+lora", "lora")}
+    assert names == {"reader", "tagger", "reader+lora", "tagger+lora", "lora"}
+
+
+def test_a_step_back_is_no_attack(shipped):
+    for text in (
+        "Make a turn and go back. Next, leave through the door and stop by the sink.",
+        "Go back the other way, then turn to your left and stop near the plant.",
+    ):
+        given = Safeguard(tagger=shipped).canonicalise(text).text.lower()
+        assert "go back" in given
+        assert Safeguard().canonicalise(text).text == text
