@@ -13,7 +13,6 @@ from functools import lru_cache
 import numpy as np
 
 from mitigate.core.seeding import generator
-from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import routes, trials
 from mitigate.safeguard.data import vary
 from mitigate.safeguard.edits import DROP, KEEP, Edit, tokens
@@ -59,15 +58,8 @@ def draw_attacked(seed: int, index: int, split: str) -> Lesson:
 @lru_cache(maxsize=2)
 def attacks(split: str) -> tuple[Attack, ...]:
     """Return what is learned from: the attacks of a split of the banks and of the prefix bank."""
-    lines = [
-        *(
-            line
-            for families in ("train", "validation")
-            for group in prefixes(families).values()
-            for line in group
-        ),
-        *trials.fitting("fit_attacks"),
-    ]
+    prefixes = [line for _, line in trials.learned_prefixes()]
+    lines = [*prefixes, *trials.fitting("fit_attacks")]
     return (*trials.attacks(split), *(Attack("line", "any", line) for line in lines))
 
 

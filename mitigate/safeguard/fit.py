@@ -27,7 +27,6 @@ import numpy as np
 from mitigate.core.files import atomic_text
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.landmarks import CANONICAL
-from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import front, gate, judgement, routes, trials, weights
 from mitigate.safeguard.data import draw_pair, vary
 from mitigate.safeguard.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
@@ -145,12 +144,7 @@ def word_table(examples: Sequence[Example]) -> dict[str, float]:
 
 def _attacks(split: str) -> list[Example]:
     found = [(a.mechanism, a.words, 1.0) for a in trials.attacks(split) if a.place == "any"]
-    found += [
-        (family, line, 1.0)
-        for families in ("train", "validation")
-        for family, group in prefixes(families).items()
-        for line in group
-    ]
+    found += [(family, line, 1.0) for family, line in trials.learned_prefixes()]
     found += [(f"ours {i % 8}", line, 1.0) for i, line in enumerate(trials.fitting("fit_attacks"))]
     rng = generator(0, "fit")
     found += [("varied", vary(rng), 0.15) for _ in range(200)]

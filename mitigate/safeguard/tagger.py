@@ -122,8 +122,26 @@ class Tagger(nn.Module):
         return {"words": list(words), "pieces": list(pieces), **flags(found)}
 
     def collate(self, rows: Sequence[Encoded]) -> dict[str, Tensor]:
-        """Return a batch of :meth:`encode`'s rows, padded at the end."""
-        return collate(rows)
+        """Return a batch of ``encode``'s rows, padded at the end."""
+        lengths = [len(row["words"]) for row in rows]
+        width = max(lengths)
+        longest = max(len(p) for row in rows for p in row["pieces"])
+        size = (len(rows), width)
+        batch = {
+            "words": torch.zeros(size, dtype=torch.long),
+            "pieces": torch.zeros(*size, longest, dtype=torch.long),
+            "flags": torch.zeros(*size, len(FLAGS)),
+            "plain": torch.zeros(size, dtype=torch.bool),
+            "length": torch.tensor(lengths),
+        }
+        for i, row in enumerate(rows):
+            n = lengths[i]
+            batch["words"][i, :n] = torch.tensor(row["words"])
+            batch["flags"][i, :n] = torch.tensor(row["flags"])
+            batch["plain"][i, :n] = torch.tensor(row["plain"])
+            padded = [(*p, *[0] * (longest - len(p))) for p in row["pieces"]]
+            batch["pieces"][i, :n] = torch.tensor(padded)
+        return batch
 
     def hide(self, batch: dict[str, Tensor], share: float, rng: np.random.Generator) -> None:
         """Hide the vectors of a share of the words of a batch, and the letters of as many."""
@@ -224,26 +242,3 @@ def flags(found: Sequence[Token]) -> Encoded:
             )
         )
     return rows
-
-
-def collate(rows: Sequence[Encoded]) -> dict[str, Tensor]:
-    """Return a batch of ``Tagger.encode``'s rows, padded at the end."""
-    lengths = [len(row["words"]) for row in rows]
-    width = max(lengths)
-    longest = max(len(p) for row in rows for p in row["pieces"])
-    size = (len(rows), width)
-    batch = {
-        "words": torch.zeros(size, dtype=torch.long),
-        "pieces": torch.zeros(*size, longest, dtype=torch.long),
-        "flags": torch.zeros(*size, len(FLAGS)),
-        "plain": torch.zeros(size, dtype=torch.bool),
-        "length": torch.tensor(lengths),
-    }
-    for i, row in enumerate(rows):
-        n = lengths[i]
-        batch["words"][i, :n] = torch.tensor(row["words"])
-        batch["flags"][i, :n] = torch.tensor(row["flags"])
-        batch["plain"][i, :n] = torch.tensor(row["plain"])
-        padded = [(*p, *[0] * (longest - len(p))) for p in row["pieces"]]
-        batch["pieces"][i, :n] = torch.tensor(padded)
-    return batch

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.seeding import generator
+from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import spoken
 from mitigate.safeguard.text import sentences
 
@@ -75,6 +76,16 @@ def fitting(name: str) -> list[str]:
     """Return the lines of a text that the rules are fitted on."""
     with open(BANKS / f"{name}.txt", encoding="utf-8") as file:
         return [line.strip() for line in file if line.strip() and not line.startswith("#")]
+
+
+def learned_prefixes() -> list[tuple[str, str]]:
+    """Return (family, line) of the prefix bank's train and validation families."""
+    return [
+        (family, line)
+        for split in ("train", "validation")
+        for family, group in prefixes(split).items()
+        for line in group
+    ]
 
 
 def half(name: str, split: str) -> list[dict[str, Any]]:
