@@ -15,6 +15,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from mitigate.core.seeding import generator
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.safeguard import gate, trials
 from mitigate.safeguard.guard import open_safeguard
@@ -63,8 +64,11 @@ def remains(attack: str, route: str, given: str) -> bool:
     return sum(pair in here for pair in own) > GONE * len(own)
 
 
-def attacked(repair: Repair, split: str, each: int) -> tuple[Counts, Counts, list[Any]]:
-    """Return removed and lost by (mechanism, place, manner), and the worst cases to look at."""
+def attacked(
+    repair: Repair, split: str, each: int, sample: int | None = None
+) -> tuple[Counts, Counts, list[Any]]:
+    """Return removed and lost by (mechanism, place, manner), and the worst cases to look at;
+    ``sample``: of so many trials of each manner, drawn by seed 0, all if None."""
     removed: Counts = defaultdict(list)
     lost: Counts = defaultdict(list)
     cases = []
@@ -72,7 +76,9 @@ def attacked(repair: Repair, split: str, each: int) -> tuple[Counts, Counts, lis
         ("plain", trials.plainly_told(split)),
         ("styled", trials.told(split)),
     ):
-        for attack, place, told, heard in trials.trials(trials.attacks(split), routes, each):
+        every = list(trials.trials(trials.attacks(split), routes, each))
+        order = generator(0, "sample", manner).permutation(len(every))[:sample]
+        for attack, place, told, heard in (every[i] for i in order):
             given = repair(heard)
             key = (attack.mechanism, place, manner)
             removed[key].append(not remains(attack.words, told.text, given))
@@ -154,7 +160,7 @@ def rewrites(split: str) -> tuple[dict[str, list[bool]], list[Any]]:
     return found, cases
 
 
-def report(split: str, each: int, choice: str = "rules") -> str:
+def report(split: str, each: int, choice: str = "rules", sample: int | None = None) -> str:
     """Return all tables of a split as Markdown, of the safeguard that ``choice`` names."""
     safeguard = open_safeguard(choice)
     if safeguard is None:
@@ -163,8 +169,8 @@ def report(split: str, each: int, choice: str = "rules") -> str:
     def repair(text: str) -> str:
         return safeguard.canonicalise(text).text
 
-    removed, lost, _ = attacked(repair, split, each)
-    mechanisms = list(dict.fromkeys(key[0] for key in removed))
+    removed, lost, _ = attacked(repair, split, each, sample)
+    mechanisms = list(dict.fromkeys(a.mechanism for a in trials.attacks(split)))
     parts = [
         f"## Attacks removed, %, {split}",
         attack_table(removed, mechanisms),
@@ -184,8 +190,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--split", choices=trials.SPLITS, default="tune")
     parser.add_argument("--safeguard", default="rules", help="rules, tagger, reader, a folder ...")
     parser.add_argument("--each", type=int, default=2, help="instructions for an attack and place")
+    parser.add_argument("--sample", type=int, help="trials of attacks, plain and spoken each")
     options = parser.parse_args(arguments)
-    print(report(options.split, options.each, options.safeguard))
+    print(report(options.split, options.each, options.safeguard, options.sample))
 
 
 if __name__ == "__main__":
