@@ -12,7 +12,7 @@ from mitigate.bridge.cell import DONE, Cell
 from mitigate.bridge.randomness import randomness
 from mitigate.bridge.results import OWN
 from mitigate.corruptions import CLEAN, Corruption
-from mitigate.evaluation import rows
+from mitigate.evaluation import report, rows
 from mitigate.evaluation.metrics import RULES
 
 ROWS = "rows.jsonl"
@@ -32,14 +32,13 @@ def write_report(made: Sequence[Cell], out: Path) -> None:
         )
     rows.write(out / ROWS, found)
     rule = made[0].rule
-    from mitigate.evaluation import report  # matplotlib is slow to import
-
     written = report.write(found, out, first=OWN if rule is None else str(RULES[rule]), least=2)
     print((out / "table.md").read_text("utf-8"), *(f"wrote {w}" for w in written), sep="\n")
     again = [cell.rows() for cell in cells if cell.corruption.name == "clean"]
     if len(again) > 1:
-        print(randomness(again), flush=True)
-        (out / "randomness.md").write_text(randomness(again), encoding="utf-8")
+        told = randomness(again)
+        print(told, flush=True)
+        (out / "randomness.md").write_text(told, encoding="utf-8")
 
 
 def earlier(made: Sequence[Cell], out: Path) -> list[Cell]:
