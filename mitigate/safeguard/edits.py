@@ -114,7 +114,8 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
         return heard
     out: list[str] = []  # words, marks and the space before each
     end = -1  # of the last token that was kept, where nothing stands between
-    for token, edit in zip(found, edits, strict=True):
+    joined = _joining(found, edits)
+    for place, (token, edit) in enumerate(zip(found, edits, strict=True)):
         phrase = PHRASES[edit.before - 1].split() if edit.before else []
         if phrase and phrase[-1] != plain_form(token.lower):  # "stop" is not said twice
             for word in phrase:
@@ -123,7 +124,9 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
         if edit.act == DROP:
             end = -1
             continue
-        if token.is_word:
+        if place in joined:
+            out[-1] += token.text
+        elif token.is_word:
             said = _lowered(token, heard) if end < 0 else token.text
             said = plain_form(token.lower) if edit.act == PLAIN else said
             out += [heard[end : token.start] if end >= 0 else " ", said]
@@ -132,6 +135,17 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
             out += [" " if token.text in '([“"' else "", said]
         end = token.end
     return _closed(out)
+
+
+def _joining(found: Sequence[Token], edits: Sequence[Edit]) -> set[int]:
+    """Return the places of kept hyphens inside a word, and of what stands behind them."""
+    joined: set[int] = set()
+    for place in range(1, len(found) - 1):
+        one, mark, other = found[place - 1 : place + 2]
+        tight = mark.text == "-" and one.end == mark.start and mark.end == other.start
+        if tight and all(e == Edit(KEEP) for e in edits[place : place + 2]) and edits[place - 1].act != DROP:
+            joined |= {place, place + 1}
+    return joined
 
 
 def _lowered(token: Token, heard: str) -> str:

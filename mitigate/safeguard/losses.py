@@ -21,6 +21,7 @@ _ENDS = bag(
 _STEP = re.compile(
     rf"\b(?:{'|'.join(sorted(MOTION))}|step|get)\b(?: \w+){{0,2}} (?:in|out|through|inside|outside|"
     r"across|past|between|behind|over|under|around|round|back|beyond|along|off|up|down)\b"
+    r"|\b(?:gone|went|walked|go) too far\b"
     r"|\b(?:past|behind|through|into|under|around|between|beside|across|over|along|before|beyond) "
     r"(?:it|them|that|those|this|there)\b"
 )

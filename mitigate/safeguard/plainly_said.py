@@ -14,6 +14,7 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard import gate
 from mitigate.safeguard.edits import DROP, KEEP, Edit, edited
 from mitigate.safeguard.pieces import sentence_pieces
+from mitigate.safeguard.taken_back import taken_back
 from mitigate.safeguard.text import MASK, words
 
 # probability of dropping from which a word goes, and whether phrases are put, at each try; then the
@@ -121,7 +122,7 @@ def _sentence(
     found = [tagged.tokens[i] for i in places]
     refused = ""
     for least, phrases in tries:
-        edits = [tagged.edit(i, least, phrases) for i in places]
+        edits = taken_back(found, [tagged.edit(i, least, phrases) for i in places])
         if all(edit == Edit(KEEP) for edit in edits):
             return heard, refused
         said = edited(text, edits, found)

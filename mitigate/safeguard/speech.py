@@ -28,6 +28,22 @@ _BEFORE_SIDE = """
     then left angle degrees 90 ninety pivot rotate swing hang
     """
 _NO_TURN = "".join(f"(?<!{word} )" for word in _BEFORE_SIDE.split())
+# a stop in many words
+STOP = re.compile(
+    r"\b(?:"
+    r"(?:come|comes|coming|draw|roll|slow) to (?:(?:a|an|your|its|full|complete|gentle|final) )*"
+    r"(?:rest|halt|standstill|stop)|"
+    r"(?:conclude|terminate|end|finish|complete|cease|discontinue)s? "
+    r"(?:(?:your|the|its|all|any|forward|further) )*(?:journey|transit|movement|motion|moving|"
+    r"travels?|progress|progression|walk|walking|advance|route|navigation|traversal|locomotion)|"
+    r"(?:hang|sit|hold) tight|stay put|chill(?: out)?(?= (?:there|here|by|at|in|next|right|beside|near))|"
+    r"(?:hold|maintain|assume|take up|adopt)(?: \w+){0,3} position|await(?:ing)? further \w+|"
+    r"(?:finish|wrap) up(?= (?:just |right )?(?:at|by|in|on|to|near|next|beside|there|outside|inside|"
+    r"under|between))|"
+    r"(?:terminate|cease)(?= (?:there|here|at|by|in|on|within|beside|near|upon|once|when|adjacent))|"
+    r"(?:park|plant|station) yourself"
+    r")\b"
+)
 _REMOVED = tuple(
     (re.compile(pattern), said)
     for pattern, said in (
@@ -46,12 +62,10 @@ _REMOVED = tuple(
          r"(?:[- ]hand)?(?: one| side)?\b", " "),
         # a number taken back
         (rf"\b{_NUMBER},? (?:{_BACK},? )+(?={_NUMBER}\b)", ""),
-        # a stop in many words
-        (r"\b(?:come|comes|coming) to (?:(?:a|an|your|its|full|complete|gentle|final) )*"
-         r"(?:rest|halt|standstill|stop)\b", "stop"),
-        (r"\b(?:conclude|terminate|end|finish|complete|cease|discontinue)s? "
-         r"(?:(?:your|the|its|all|any|forward|further) )*(?:journey|transit|movement|motion|"
-         r"travels?|progress|progression|walk|walking|advance|route)\b", "stop"),
+        (STOP.pattern, "stop"),
+        # "up" that leads nowhere
+        (r"\bfirst up\b|(?<=\bend) up\b|(?<=\bends) up\b|(?<=\bending) up\b|\b(?:heads|hurry|cheer|"
+         r"listen|wake|giv(?:e|ing)|look|sign|catch|set|pick|wind|speed|buckle) up\b", " "),
         # emphasis and agreement
         (r"\bright(?=[?])|(?:(?<=[.!?;] )|^)(?:all )?right[,.!:;]\s+(?!right|left)|, right(?=[,?])|"
          r"\b(?:all|that's|you're|be|it's all|quite) right(?=[.!?,])", " "),

@@ -18,8 +18,9 @@ _EQUAL = tuple(
         ),
         (r"(?:have )?left (the [\w ]{3,20}?) behind", r"out of \1"),
         (r"indoors", "inside"),
+        (r"com(?:e|es|ing) (?:across|upon)\b|(?:run|runs|bump|bumps) into\b", "reach"),
         (r"outdoors", "outside"),
-        (r"(?:i am|i'm) looking for|look(?:ing)? for|locate|search for|hunt for", "find"),
+        (r"(?:i am|i'm) looking for|look(?:ing)? for|locate\b|search for|hunt for", "find"),
         (
             r"(?:turn|turning|keep|have|face|facing|with) (?:your )?back (?:to|on|"
             r"towards?)\b",
@@ -117,7 +118,7 @@ _EQUAL = tuple(
         (
             r"(?:walk|go|step|cut|straight|cross|head)?(?:ing)? ?(?:straight )?(?:across|"
             r"over)(?= the| a)|cross(?:ing)?(?= the| a)",
-            "across",
+            " across",
         ),
         (
             r"(?:exit|leave|leaving|go out|get out|walk out|come out|head out|out)(?= (?:by|"
