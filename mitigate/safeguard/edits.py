@@ -7,9 +7,10 @@ motion by another name: whatever edits are chosen, they cannot tell of what was 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 from mitigate.corruptions.language.tagger import Token, tag
 from mitigate.safeguard.lexicon import FUNCTION
@@ -29,6 +30,61 @@ class Edit:
 
     act: int
     before: int = 0
+
+
+class Said(NamedTuple):
+    """A ``word`` or mark that would be given on, in lower case; the ``place`` of its token, or of
+    the one that the ``phrase`` stands before which it is of."""
+
+    word: str
+    place: int
+    phrase: bool
+
+
+@dataclass
+class Edited:
+    """A sentence's tokens and what becomes of each, to be changed in place: its act, and the number
+    of the phrase ``before`` it."""
+
+    found: Sequence[Token]
+    acts: list[int]
+    before: list[int]
+
+    def kept(self, place: int) -> bool:
+        """Return whether the token stays, as it is or in its plain form."""
+        return self.acts[place] != DROP
+
+    def kept_words(self, place: int) -> list[str]:
+        """Return the tokens that stay from ``place`` on, in lower case."""
+        return [t.lower for p, t in enumerate(self.found) if p >= place and self.kept(p)]
+
+    def give_back(self, places: Iterable[int]) -> bool:
+        """Keep what stands at ``places``, without phrases; return whether that changes anything."""
+        changed = False
+        for place in places:
+            changed |= self.acts[place] == DROP or self.before[place] != 0
+            self.before[place] = 0
+            if self.acts[place] == DROP:
+                self.acts[place] = KEEP
+        return changed
+
+    def said(self) -> list[Said]:
+        """Return the words and marks that would be given on."""
+        made: list[Said] = []
+        for place, token in enumerate(self.found):
+            if self.before[place]:
+                phrase = PHRASES[self.before[place] - 1].split()
+                if phrase[-1] != plain_form(token.lower):
+                    made += [Said(word, place, True) for word in phrase]
+            if self.kept(place):
+                made.append(Said(token.lower, place, False))
+        return made
+
+    def end_of_clause(self, place: int) -> int:
+        """Return the place of the next mark from ``place`` on, or the sentence's end."""
+        while place < len(self.found) and self.found[place].is_word:
+            place += 1
+        return place
 
 
 def tokens(text: str) -> list[Token]:
@@ -143,7 +199,11 @@ def _joining(found: Sequence[Token], edits: Sequence[Edit]) -> set[int]:
     for place in range(1, len(found) - 1):
         one, mark, other = found[place - 1 : place + 2]
         tight = mark.text == "-" and one.end == mark.start and mark.end == other.start
-        if tight and all(e == Edit(KEEP) for e in edits[place : place + 2]) and edits[place - 1].act != DROP:
+        if (
+            tight
+            and all(e == Edit(KEEP) for e in edits[place : place + 2])
+            and edits[place - 1].act != DROP
+        ):
             joined |= {place, place + 1}
     return joined
 

@@ -1,0 +1,140 @@
+"""What a sentence of speech tells to do, by its words and their places: steps, and which of several
+places is meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from mitigate.corruptions.language.directions import MOTION, TURN_VERBS
+from mitigate.corruptions.language.tagger import Token
+from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.lexicon import FUNCTION
+
+# verbs by which one goes by a thing -> the way; then the words for it behind any verb of motion
+_STEPS = {
+    "through": "traverse", "past": "pass passes passing bypass bypassing skirt skirting",
+    "into": "enter enters entering access accessing",
+    "out": "exit exits exiting leave leaves leaving quit depart departing vacate evacuate egress",
+    "up": "climb climbs climbing ascend ascending mount", "down": "descend descending",
+    "across": "cross crosses crossing", "along": "follow follows following",
+    "towards": "approach approaching", "around": "circle circling",
+}  # fmt: skip
+_WAYS = {
+    "through": "through thru via", "past": "past beyond by", "into": "into inside in",
+    "out": "out outside from", "up": "up upstairs upwards upward",
+    "down": "down downstairs downwards downward", "around": "around round", "across": "across over",
+    "along": "along", "between": "between", "under": "under beneath underneath",
+    "behind": "behind", "onto": "onto",
+}  # fmt: skip
+STEP = {word: way for way, words in _STEPS.items() for word in words.split()}
+WAY = {word: way for way, words in _WAYS.items() for word in words.split()} | STEP
+MOVES = (
+    MOTION
+    | TURN_VERBS
+    | bag(
+        """
+        hop get gets getting slip duck trot dash scoot stride pace march amble saunter meander
+        wandering mosey coming venture journey travel relocate roll drive run jog tiptoe squeeze
+        nip cut zip pad aim return progress strolling stepping moves goes walks heads heading
+        maneuver manoeuvre transit back backing swing ease edge zoom dart breeze
+        """
+    )
+) - STEP.keys()
+TURNS = TURN_VERBS | bag(
+    "take taking make making go going head heading cut curve bend round move walk step face facing "
+    "keep rotation turn-off angle orient reorient spin spinning execute perform effect"
+)
+DOORS = bag(
+    "door doors doorway doorways archway arch gate entrance opening exit entry doorframe threshold "
+    "passage passageway hallway hall corridor"
+)
+PRONOUNS = bag("it them that those these this there one ones both")
+DETERMINERS = bag("the a an your my its")
+MARKS = frozenset('.,;:!?-–—()"“”')
+THERE, WHICH, END = "there", "which", "end"  # ways that no word of WAY tells
+# ways of which one may be said for the other
+_SAME = frozenset(
+    frozenset(pair.split())
+    for pair in (
+        "up along", "down along", "onto into", "onto up", "onto across", "onto out", "into through",
+        "across through", "along through",
+    )
+)  # fmt: skip
+_OTHERS = bag("i he she they people somebody someone who which that anybody everyone it")
+_TO = bag("to towards toward for")
+_TURN_OF = bag("next second third fourth last other opposite first")
+_ROOMS = DOORS | bag("room rooms bedroom bathroom floor level one stairs landing")
+_PLACES = bag("on at to it's is")
+_MANNER = bag("direction order front manner line way parallel")  # "in this manner" leads nowhere
+_EXITS = bag("exit egress entrance entry end")
+_FAR = 5  # words behind a verb of motion in which its way is told
+
+
+class Step(NamedTuple):
+    """The places of its ``first`` and ``last`` word, and the ``way``."""
+
+    first: int
+    last: int
+    way: str
+
+
+def steps(found: Sequence[Token]) -> Iterator[Step]:
+    """Yield each step that a sentence tells the agent, in whatever words."""
+    for place, token in enumerate(found):
+        behind = _words(found, place + 1)
+        if _of_others(found, place) or (
+            token.lower == "following" and behind and behind[0] in MARKS | PRONOUNS
+        ):
+            continue
+        if token.lower in _EXITS and "of" in behind[:2]:
+            yield Step(place, place + 1 + behind.index("of"), END)
+        elif place and found[place - 1].lower in DETERMINERS:
+            continue  # a noun
+        elif token.lower in STEP:
+            yield Step(place, place, STEP[token.lower])
+        elif token.lower in MOVES and (step := _way(found, place)):
+            yield step
+
+
+def _way(found: Sequence[Token], verb: int) -> Step | None:
+    """Return the way that is told behind a verb of motion."""
+    for at in range(verb + 1, min(verb + _FAR, len(found))):
+        word, behind = found[at].lower, _words(found, at + 1)
+        pronoun = behind[:1] != [] and behind[0] in PRONOUNS
+        if word in MARKS or word in MOVES or word in STEP:
+            return None
+        if word == THERE:
+            return Step(verb, at, THERE)
+        if word in _TO and pronoun:
+            return Step(verb, at + 1, THERE)
+        if word in WAY and word != "from" and not (word == "in" and _MANNER & {*behind}):
+            return Step(verb, at + pronoun, WAY[word])
+    return None
+
+
+def which(found: Sequence[Token]) -> Iterator[Step]:
+    """Yield each place that is told from others by its turn ("the next room")."""
+    for place, token in enumerate(found[:-1]):
+        if token.lower in _TURN_OF and found[place + 1].lower in _ROOMS:
+            before = [t.lower for t in found[max(0, place - 2) : place]]
+            lead = sum(word in DETERMINERS or word in WAY or word in _PLACES for word in before)
+            yield Step(place - lead, place + 1, WHICH)
+
+
+def same(one: str, other: str) -> bool:
+    """Return whether a way may be said for another."""
+    return one == other or frozenset((one, other)) in _SAME
+
+
+def _of_others(found: Sequence[Token], place: int) -> bool:
+    """Return whether what a verb tells is done by others ("the door that leads out")."""
+    before = [t.lower for t in found[max(0, place - 2) : place]]
+    if not before or before[-1] in _OTHERS:
+        return bool(before)
+    small = before[-1] in FUNCTION and before[-1] not in ("you", "and", "to")
+    return before[0] in _OTHERS and small
+
+
+def _words(found: Sequence[Token], place: int) -> list[str]:
+    return [token.lower for token in found[place : place + 3]]
