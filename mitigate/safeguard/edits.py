@@ -80,6 +80,13 @@ class Edited:
                 made.append(Said(token.lower, place, False))
         return made
 
+    def clause(self, place: int) -> tuple[int, int]:
+        """Return the first place of the words between marks around ``place``, and the mark's."""
+        first = place
+        while first and self.found[first - 1].is_word:
+            first -= 1
+        return first, self.end_of_clause(place)
+
     def end_of_clause(self, place: int) -> int:
         """Return the place of the next mark from ``place`` on, or the sentence's end."""
         while place < len(self.found) and self.found[place].is_word:

@@ -9,9 +9,11 @@ from collections.abc import Iterable
 from mitigate.corruptions.language.directions import MOTION
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
 from mitigate.corruptions.language.landmarks import normal
+from mitigate.corruptions.language.tagger import tag
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.meaning import Meaning, meaning, missing, moved
 from mitigate.safeguard.plain_words import plain_form
+from mitigate.safeguard.steps import steps
 
 # words by which one may mean to stop without saying so
 _ENDS = bag(
@@ -40,8 +42,12 @@ def unproven(heard: str, said: str, aside: Iterable[str]) -> str:
     problem = _turns(old, new) or _read(heard, said) or _counted(old, new, gone)
     if problem:
         return problem
-    if not said and (step := _STEP.search(heard.lower())):
-        return f"a step lost: {step.group()}"
+    if not said:
+        if step := _STEP.search(heard.lower()):
+            return f"a step lost: {step.group()}"
+        found = tag(heard)
+        for told in steps(found):
+            return f"a step lost: {' '.join(t.lower for t in found[told.first : told.last + 1])}"
     named = {normal(plain_form(word)) for word in gone}
     for name in missing(old, new, speech=True):
         if name not in named:

@@ -105,6 +105,7 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
         or (kind == "NOUN" and after in _SUBJECTS and rest[:1] in ([], ["."]))
         or (word in _SOON and after in DETERMINERS and side_first([after, *rest]))
         or (ends and (word in MOVES or word in _DANGLING))
+        or (word == "to" and after in ("and", "or"))
     )
 
 

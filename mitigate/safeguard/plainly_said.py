@@ -14,14 +14,12 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard import gate
 from mitigate.safeguard.edits import DROP, KEEP, Edit, edited
 from mitigate.safeguard.pieces import sentence_pieces
-from mitigate.safeguard.taken_back import taken_back
+from mitigate.safeguard.taken_back import SURE, taken_back
 from mitigate.safeguard.text import MASK, words
 
-# probability of dropping from which a word goes, and whether phrases are put, at each try; then the
-# probability from which a word may go although it may tell of the way (chosen on the validation
-# voices)
+# probability of dropping from which a word goes, and whether phrases are put, at each try (chosen
+# on the validation voices)
 TRIES = ((0.65, True), (0.65, False), (0.95, False))
-SURE = 0.9
 SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
 
 
@@ -122,7 +120,8 @@ def _sentence(
     found = [tagged.tokens[i] for i in places]
     refused = ""
     for least, phrases in tries:
-        edits = taken_back(found, [tagged.edit(i, least, phrases) for i in places])
+        edits = [tagged.edit(i, least, phrases) for i in places]
+        edits = taken_back(found, edits, [tagged.drop[i] for i in places])
         if all(edit == Edit(KEEP) for edit in edits):
             return heard, refused
         said = edited(text, edits, found)

@@ -13,12 +13,16 @@ from mitigate.safeguard.lexicon import FUNCTION
 
 # verbs by which one goes by a thing -> the way; then the words for it behind any verb of motion
 _STEPS = {
-    "through": "traverse", "past": "pass passes passing bypass bypassing skirt skirting",
-    "into": "enter enters entering access accessing",
-    "out": "exit exits exiting leave leaves leaving quit depart departing vacate evacuate egress",
-    "up": "climb climbs climbing ascend ascending mount", "down": "descend descending",
-    "across": "cross crosses crossing", "along": "follow follows following",
-    "towards": "approach approaching", "around": "circle circling",
+    "through": "traverse traversing",
+    "past": "pass passes passing passed bypass bypassing bypassed",
+    "into": "enter enters entering entered access accessing ingress",
+    "out": "exit exits exiting exited leave leaves leaving quit quitting depart departing "
+    "departure vacate vacating evacuate egress",
+    "up": "climb climbs climbing climbed ascend ascending ascended ascent mount mounted mounting "
+    "surmount",
+    "down": "descend descending descended descent", "across": "cross crosses crossing crossed",
+    "along": "follow follows following followed", "towards": "approach approaching approached",
+    "around": "circle circling skirt skirting reverse",
 }  # fmt: skip
 _WAYS = {
     "through": "through thru via", "past": "past beyond by", "into": "into inside in",
@@ -106,6 +110,8 @@ def _way(found: Sequence[Token], verb: int) -> Step | None:
             return None
         if word == THERE:
             return Step(verb, at, THERE)
+        if word in ("about", "back") and found[verb].lower in TURN_VERBS:
+            return Step(verb, at, "around")
         if word in _TO and pronoun:
             return Step(verb, at + 1, THERE)
         if word in WAY and word != "from" and not (word == "in" and _MANNER & {*behind}):

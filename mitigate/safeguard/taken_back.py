@@ -3,6 +3,7 @@
 A tagger decides word by word. Its edits of a sentence are read once more here, by what stands
 where, and each of these is mended by giving back what was heard:
 
+- a word that may tell of the way, by what the train voices say beside it (``speech_words.py``);
 - a phrase that nothing heard backs ("turn" before what is no side, a way that nobody spoke of);
 - a denial or a condition of which a part would stay ("not a lot, just slightly": "not slightly");
 - a step or a stop that would be lost, in whatever words ("go past it", "hop up the steps");
@@ -24,13 +25,25 @@ from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.neighbours import STOPS, parted, side_first
 from mitigate.safeguard.plain_words import PHRASES
 from mitigate.safeguard.speech import STOP
-from mitigate.safeguard.steps import DOORS, MARKS, PRONOUNS, TURNS, WAY, WHICH, same, steps, which
+from mitigate.safeguard.speech_words import speech_words
+from mitigate.safeguard.steps import (
+    DOORS,
+    MARKS,
+    PRONOUNS,
+    TURNS,
+    WAY,
+    WHICH,
+    Step,
+    same,
+    steps,
+    which,
+)
 
 _AT = bag("in inside outside by from")  # where a thing is, unless a verb of motion stands before
 _IF = bag("if unless")
 _DENIALS = _IF | bag(
     "not never don't dont doesn't didn't can't cannot won't isn't aren't wasn't shouldn't mustn't "
-    "needn't n't forget avoid ignore disregard skip without instead rather except nor neither "
+    "needn't n't no forget avoid ignore disregard skip without instead rather except nor neither "
     "attention alone"
 )
 # what denies nothing of the way
@@ -38,21 +51,28 @@ _NO_DENIAL = re.compile(
     r"(?:do not|don't|never|not to) (?:forget|worry|hesitate|mind|fret|panic)|"
     r"if (?:you|i) (?:will|would|please|may|might|could|don't|do not|like|wish|can)\b|"
     r"if (?:needed|possible|necessary|that)|"
-    r"not (?:far|long|only|yet|at all|too|very|quite|sure)|can't miss|don't you\b|not a problem"
+    r"not (?:far|long|only|yet|at all|too|very|quite|sure)|"
+    r"no (?:problem|worries|hurry|rush|doubt|pressure|sweat|less|fewer)\b|"
+    r"can't miss|don't you\b|not a problem"
 )
 _DIRECTION = re.compile(r"(?<![^ ])in the direction of(?= )")
 _QUOTES = frozenset("'\"“”‘’`")
+# probability of dropping from which a word may go although it may tell of the way (chosen on the
+# validation voices)
+SURE = 0.9
 _ROUNDS = 24  # each gives something back, so there is an end anyway
 
 
-def taken_back(found: Sequence[Token], edits: Sequence[Edit]) -> list[Edit]:
-    """Return the ``edits`` of a sentence's tokens less those that would harm what it says."""
+def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[float]) -> list[Edit]:
+    """Return the ``edits`` of a sentence's tokens less those that would harm what it says;
+    ``drop``: how probably each token goes."""
     made = Edited(found, [edit.act for edit in edits], [edit.before for edit in edits])
     if not any(made.before) and not made.kept_words(0):
         return list(edits)  # the gate decides on whole sentences
     _towards(made)
     for _ in range(_ROUNDS):
-        if not any([_phrases(made), _denials(made), _steps(made), _stops(made), parted(made)]):
+        mends = (_words(made, drop), _phrases(made), _denials(made), _steps(made), _stops(made))
+        if not any([*mends, parted(made)]):
             break
     _marks(made)
     return [Edit(act, phrase) for act, phrase in zip(made.acts, made.before, strict=True)]
@@ -69,21 +89,51 @@ def _towards(made: Edited) -> None:
             made.before[behind] = NUMBER["towards"]
 
 
+def _words(made: Edited, drop: Sequence[float]) -> bool:
+    """Give back words of a clause that may tell of the way: of one of which a part stays, all but
+    what people say beside it; of others all, unless each such word surely goes. Return whether
+    there were such."""
+    changed, start = False, 0
+    while start < len(made.found):
+        end = made.end_of_clause(start)
+        content = [p for p in range(start, end) if made.found[p].lower not in FUNCTION]
+        told = [p for p in content if made.found[p].lower not in speech_words()]
+        if any(made.kept(p) for p in content):
+            for place in told:
+                if not made.kept(place):
+                    made.acts[place], changed = KEEP, True
+        elif any(drop[p] < SURE for p in told):
+            changed |= made.give_back(range(start, end))
+        start = end + 1
+    return changed
+
+
 def _phrases(made: Edited) -> bool:
     """Take back phrases that nothing heard backs; return whether there were such."""
-    heard = {step.way for step in steps(made.found)}
-    heard |= {WAY[token.lower] for token in made.found if token.lower in WAY}
+    open_ways = {step.way for step in steps(made.found) if _without_thing(made.found, step)}
     changed = False
     for place, number in enumerate(made.before):
-        if number and not _backed(made, place, PHRASES[number - 1].split(), heard):
+        if not number:
+            continue
+        clause = [token.lower for token in made.found[slice(*made.clause(place))]]
+        heard = open_ways | {WAY[word] for word in clause if word in WAY}
+        if not _backed(made, place, PHRASES[number - 1].split(), heard, clause):
             made.before[place], changed = 0, True
     return changed
 
 
-def _backed(made: Edited, place: int, phrase: Sequence[str], heard: set[str]) -> bool:
+def _without_thing(found: Sequence[Token], step: Step) -> bool:
+    """Return whether a step goes by what was named before: by "it", or by nothing."""
+    behind = found[step.last + 1 : step.last + 2]
+    return found[step.last].lower in PRONOUNS or not behind or behind[0].lower in MARKS
+
+
+def _backed(
+    made: Edited, place: int, phrase: Sequence[str], heard: set[str], clause: Sequence[str]
+) -> bool:
     following = made.kept_words(place)
     if "turn" in phrase or phrase[-2:] == ["make", "a"]:
-        turning = any(token.lower in TURNS for token in made.found)
+        turning = any(word in TURNS for word in clause)
         if not turning or not ("around" in phrase or side_first(following)):
             return False
     for word in phrase:
