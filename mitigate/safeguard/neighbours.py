@@ -28,7 +28,7 @@ _SUBJECTS = bag("you they we i")
 _SOON = bag("immediately slightly sharply directly")
 _HALVES = bag("living dining laundry")  # of the names of rooms
 _NO_START = bag("of than which")
-_SEEKS = bag(
+SEEKS = bag(
     "track tracking hunt hunting localize localise detect identify acquire discover seek spot look "
     "looking search searching find finding fetch locate where's"
 )
@@ -57,7 +57,21 @@ def parted(made: Edited) -> bool:
         inside = other.place == one.place and one.phrase == other.phrase
         if not heard and not inside and _clash(made, one, other) and _mend(made, one, other):
             return True
-    return _begins(made, said) or _ends(made, said)
+    return _twice(made, said) or _begins(made, said) or _ends(made, said)
+
+
+def _twice(made: Edited, said: Sequence[Said]) -> bool:
+    """Take out "turn" behind a side that one turns to, and "to" before "stop" and "at"."""
+    for one, other, third in zip(said, said[1:], [*said[2:], Said("", 0, False)], strict=False):
+        turned = (one.word, third.word) == ("turn", "turn") and other.word in ("left", "right")
+        if turned and not third.phrase and third.place > one.place + 2 - one.phrase:
+            made.acts[third.place] = DROP
+            return True
+        stops = other.word in STOPS and other.place > one.place + 1
+        if one.word == "to" and not one.phrase and (stops or (other.phrase and other.word == "at")):
+            made.acts[one.place] = DROP
+            return True
+    return False
 
 
 def _mend(made: Edited, one: Said, other: Said) -> bool:
@@ -103,8 +117,10 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
         or (word in _HALVES and (ends or after in FUNCTION))
         or (word in _OF and (plain_form(after) in _BARE or after in STEP or after == "straight"))
         or (kind == "NOUN" and after in _SUBJECTS and rest[:1] in ([], ["."]))
+        or (word in _SUBJECTS and made.found[other.place].tag in ("ADP", "DET", "NOUN", "ADJ"))
+        or (word in STOPS and after == "to")
         or (word in _SOON and after in DETERMINERS and side_first([after, *rest]))
-        or (ends and (word in MOVES or word in _DANGLING))
+        or (ends and (word in _DANGLING or (word in MOVES and word != "turn")))
         or (word == "to" and after in ("and", "or"))
     )
 
@@ -116,7 +132,7 @@ def _begins(made: Edited, said: Sequence[Said]) -> bool:
     if words and words[0].word in _NO_START and not words[0].phrase:
         return made.give_back(range(words[0].place))
     things = [w.place for w in words if not w.phrase and made.found[w.place].tag == "NOUN"]
-    sought = any(token.lower in _SEEKS for token in made.found)
+    sought = any(token.lower in SEEKS for token in made.found)
     if not (sought and things) or any(plain_form(w.word) in _VERBS for w in words):
         return False
     first = things[0]

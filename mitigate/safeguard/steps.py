@@ -66,12 +66,14 @@ _SAME = frozenset(
     )
 )  # fmt: skip
 _OTHERS = bag("i he she they people somebody someone who which that anybody everyone it")
+_PEOPLE = bag("i he she they people somebody someone anybody everyone")
 _TO = bag("to towards toward for")
 _TURN_OF = bag("next second third fourth last other opposite first")
 _ROOMS = DOORS | bag("room rooms bedroom bathroom floor level one stairs landing")
 _PLACES = bag("on at to it's is")
 _MANNER = bag("direction order front manner line way parallel")  # "in this manner" leads nowhere
 _EXITS = bag("exit egress entrance entry end")
+_NO_STEPS = {("followed", "by"), ("hang", "out"), ("hang", "around")}
 _FAR = 5  # words behind a verb of motion in which its way is told
 
 
@@ -87,9 +89,9 @@ def steps(found: Sequence[Token]) -> Iterator[Step]:
     """Yield each step that a sentence tells the agent, in whatever words."""
     for place, token in enumerate(found):
         behind = _words(found, place + 1)
-        if _of_others(found, place) or (
-            token.lower == "following" and behind and behind[0] in MARKS | PRONOUNS
-        ):
+        if _of_others(found, place) or (token.lower, *behind[:1]) in _NO_STEPS:
+            continue
+        if token.lower == "following" and behind and behind[0] in MARKS | PRONOUNS:
             continue
         if token.lower in _EXITS and "of" in behind[:2]:
             yield Step(place, place + 1 + behind.index("of"), END)
@@ -135,11 +137,13 @@ def same(one: str, other: str) -> bool:
 
 def _of_others(found: Sequence[Token], place: int) -> bool:
     """Return whether what a verb tells is done by others ("the door that leads out")."""
-    before = [t.lower for t in found[max(0, place - 2) : place]]
+    before = [t.lower for t in found[max(0, place - 4) : place]]
+    since = max((p for p, word in enumerate(before) if word in MARKS or word == "you"), default=-1)
+    before = before[since + 1 :]
     if not before or before[-1] in _OTHERS:
         return bool(before)
-    small = before[-1] in FUNCTION and before[-1] not in ("you", "and", "to")
-    return before[0] in _OTHERS and small
+    small = before[-1] in FUNCTION and before[-1] not in ("and", "to")
+    return bool(before[-2:-1] and before[-2] in _OTHERS and small) or bool(_PEOPLE & {*before})
 
 
 def _words(found: Sequence[Token], place: int) -> list[str]:

@@ -9,8 +9,8 @@ where, and each of these is mended by giving back what was heard:
 - a step or a stop that would be lost, in whatever words ("go past it", "hop up the steps");
 - words that do not go together, or stand alone, but for what was taken out (``neighbours.py``).
 
-Nothing is put that was neither heard nor chosen by the tagger, but for "stop", "find" and
-"towards" where that was said in other words.
+Nothing is put that was neither heard nor chosen by the tagger, but for "stop", "find",
+"at" and "towards" where that was said in other words.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.lexicon import FUNCTION
-from mitigate.safeguard.neighbours import STOPS, parted, side_first
+from mitigate.safeguard.neighbours import SEEKS, STOPS, parted, side_first
 from mitigate.safeguard.plain_words import PHRASES
 from mitigate.safeguard.speech import STOP
 from mitigate.safeguard.speech_words import speech_words
@@ -55,7 +55,21 @@ _NO_DENIAL = re.compile(
     r"no (?:problem|worries|hurry|rush|doubt|pressure|sweat|less|fewer)\b|"
     r"can't miss|don't you\b|not a problem"
 )
-_DIRECTION = re.compile(r"(?<![^ ])in the direction of(?= )")
+# what is said in many words -> the phrase for it
+_SAYINGS = (
+    (re.compile(r"(?<![^ ])in the direction of(?= )"), "towards"),
+    (
+        re.compile(
+            r"(?<![^ ])(?:when|once|as soon as|after|upon)(?: you(?:'ve|'re| have| are)?)? "
+            r"(?:get to|gotten to|reach(?:ed|ing)?|arriv(?:e|ed|ing) at|com(?:e|ing) to)(?= the )"
+        ),
+        "at",
+    ),
+    (re.compile(r"(?<![^ ])in (?:the vicinity of|(?:close |the )?proximity (?:to|of))(?= )"), "by"),
+)
+_PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
+_WHEN = bag("until till before prior after upon once when")  # tells when, of what comes then
+_BRACKETS = frozenset("()[]")
 _QUOTES = frozenset("'\"“”‘’`")
 # probability of dropping from which a word may go although it may tell of the way (chosen on the
 # validation voices)
@@ -69,24 +83,45 @@ def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[flo
     made = Edited(found, [edit.act for edit in edits], [edit.before for edit in edits])
     if not any(made.before) and not made.kept_words(0):
         return list(edits)  # the gate decides on whole sentences
-    _towards(made)
+    _sayings(made)
     for _ in range(_ROUNDS):
-        mends = (_words(made, drop), _phrases(made), _denials(made), _steps(made), _stops(made))
-        if not any([*mends, parted(made)]):
+        mended = [_denials(made), _words(made, drop), _phrases(made), _times(made), _steps(made)]
+        if not any([*mended, _stops(made), parted(made)]):
             break
     _marks(made)
     return [Edit(act, phrase) for act, phrase in zip(made.acts, made.before, strict=True)]
 
 
-def _towards(made: Edited) -> None:
-    """Say "towards" for "in the direction of"."""
+def _sayings(made: Edited) -> None:
+    """Say what is said in many words by its phrase, where they would not all stay."""
     text, places = _spelled(made.found)
-    for match in _DIRECTION.finditer(text):
-        first = places[match.start()]
-        behind = first + 4
-        if any(made.kept(p) for p in range(behind, made.end_of_clause(behind))):
-            made.acts[first:behind], made.before[first:behind] = [DROP] * 4, [0] * 4
-            made.before[behind] = NUMBER["towards"]
+    for pattern, phrase in _SAYINGS:
+        for match in pattern.finditer(text):
+            first = places[match.start()]
+            behind = first + 1 + match.group().count(" ")
+            thing = any(made.kept(p) for p in range(behind, made.end_of_clause(behind)))
+            if thing and not all(made.kept(p) for p in range(first, behind)):
+                count = behind - first
+                made.acts[first:behind], made.before[first:behind] = [DROP] * count, [0] * count
+                made.before[behind] = NUMBER[phrase]
+                if made.found[behind].lower == "the":
+                    made.acts[behind] = KEEP
+
+
+def _times(made: Edited) -> bool:
+    """Give back words that say when a thing is done that is still told; return whether there were
+    such."""
+    changed = False
+    for place, token in enumerate(made.found):
+        behind = range(place + 1, min(place + 6, made.end_of_clause(place)))
+        if token.lower in _WHEN and not made.kept(place) and not any(
+            made.before[p] for p in (place, *behind)
+        ):  # fmt: skip
+            told = [p for p in behind if made.kept(p)]
+            before = any(made.kept(p) for p in range(place) if made.found[p].is_word)
+            if told and before:
+                changed |= made.give_back(range(place, told[0]))
+    return changed
 
 
 def _words(made: Edited, drop: Sequence[float]) -> bool:
@@ -97,7 +132,7 @@ def _words(made: Edited, drop: Sequence[float]) -> bool:
     while start < len(made.found):
         end = made.end_of_clause(start)
         content = [p for p in range(start, end) if made.found[p].lower not in FUNCTION]
-        told = [p for p in content if made.found[p].lower not in speech_words()]
+        told = [p for p in content if made.found[p].lower not in speech_words() | SEEKS]
         if any(made.kept(p) for p in content):
             for place in told:
                 if not made.kept(place):
@@ -134,7 +169,8 @@ def _backed(
     following = made.kept_words(place)
     if "turn" in phrase or phrase[-2:] == ["make", "a"]:
         turning = any(word in TURNS for word in clause)
-        if not turning or not ("around" in phrase or side_first(following)):
+        emphasis = following[:1] == ["right"] and following[1:2] and following[1] in _PLACED
+        if not turning or emphasis or not ("around" in phrase or side_first(following)):
             return False
     for word in phrase:
         way = WAY.get(word)
@@ -217,10 +253,10 @@ def _stops(made: Edited) -> bool:
 
 def _marks(made: Edited) -> None:
     """Keep the hyphen of a word of which both parts are kept ("180-degree"), no other, and no
-    single quote."""
-    quotes = [p for p, t in enumerate(made.found) if t.text in _QUOTES and made.kept(p)]
-    if len(quotes) % 2:
-        for place in quotes:
+    single quote or bracket."""
+    for pair in (_QUOTES, _BRACKETS):
+        kept = [p for p, t in enumerate(made.found) if t.text in pair and made.kept(p)]
+        for place in kept if len(kept) % 2 else ():
             made.acts[place] = DROP
     for place in range(1, len(made.found) - 1):
         one, mark, other = made.found[place - 1 : place + 2]

@@ -1,0 +1,157 @@
+"""Edits of speech that would lose or change what is said are taken back.
+
+In the sentences below, words in braces are those that a tagger would take out, and a phrase that it
+would put stands in angle brackets before its word.
+"""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from mitigate.safeguard import speech_words
+from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, edited, tokens
+from mitigate.safeguard.taken_back import taken_back
+
+
+def given(marked: str, drop: float = 0.99) -> str:
+    """Return what is given on of a marked sentence; ``drop``: how sure the tagger is."""
+    heard, out, before = "", set(), {}
+    inside = False
+    for part in re.split(r"([{}]|<[^>]+>)", marked):
+        if part in ("{", "}"):
+            inside = part == "{"
+        elif part.startswith("<"):
+            before[len(heard)] = NUMBER[part[1:-1]]
+        else:
+            if inside:
+                out |= set(range(len(heard), len(heard) + len(part)))
+            heard += part
+    found = tokens(heard)
+    starts = sorted(before)
+    phrases = {min(t.start for t in found if t.start >= at): before[at] for at in starts}
+    edits = [Edit(DROP if t.start in out else KEEP, phrases.get(t.start, 0)) for t in found]
+    chances = [drop if edit.act == DROP else 0.0 for edit in edits]
+    return edited(heard, taken_back(found, edits, chances), found)
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("{There's a} piano, {so you go past it}, and turn left.", "go past it"),
+        ("{You will need to get up those} and stop at the lamp.", "get up those"),
+        ("{Just} hop {up} the steps and turn left.", "hop up the steps"),
+        ("{I'd like you to quit} the cabin and turn left.", "quit the cabin"),
+        ("Turn {about} and go left.", "turn about"),
+        ("{Then it's} the {next} room {you want}, stop there.", "room"),
+    ],
+)
+def test_a_step_in_whatever_words_comes_back(marked, said):
+    assert said in given(marked).lower()
+
+
+def test_a_step_that_another_way_of_saying_tells_may_go():
+    assert given("<go past the>{There's a} piano{, so you go past it}.") == ("Go past the piano.")
+
+
+def test_what_others_do_is_no_step():
+    marked = "Stop at the door{, which people use to go through}."
+    assert given(marked) == "Stop at the door."
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("Turn left, not {a lot}, {just} slightly.", "not a lot"),
+        ("{Forget about the} cellar, go straight.", "Forget about the cellar"),
+        ("{No need to} go all the way in, stop at the door.", "No need to go all the way in"),
+        ("Start over {if you lose the trail}.", "Start over if you lose the trail"),
+        ("{Pay no attention to the} noise, go straight.", "Pay no attention to the noise"),
+    ],
+)
+def test_a_denial_and_a_condition_are_kept_or_dropped_whole(marked, said):
+    assert said in given(marked)
+
+
+def test_what_denies_nothing_of_the_way_may_go():
+    assert given("{Don't worry, just} walk past the lamp.") == "Walk past the lamp."
+    assert given("{If you would, kindly} walk past the lamp.") == "Walk past the lamp."
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("Pass the bench with <turn>a red heart and go straight.", "turn a red"),
+        ("<go through the>{There's a} mirror and you walk by it.", "through"),
+        ("See <up>the couch and go straight.", "up"),
+        ("Walk past the bed and <turn>right out onto the porch.", "turn"),
+    ],
+)
+def test_a_phrase_that_nothing_heard_backs_is_taken_back(marked, said):
+    assert said not in given(marked)
+
+
+@pytest.mark.parametrize(
+    "marked",
+    [
+        "{At the bench make a} <turn>left.",
+        "<go through the>{You will find a} door.",
+        "<go past the>{There is a} lamp, {and you walk by it}.",
+    ],
+)
+def test_a_phrase_that_is_backed_stays(marked):
+    phrase = re.findall(r"<([^>]+)>", marked)[0]
+    assert phrase in given(marked).lower()
+
+
+@pytest.mark.parametrize(
+    "marked",
+    [
+        "Walk to the bench and {hang tight there}.",
+        "{Assume a holding position} next to the bench.",
+        "Go past the lamp and {call it a day} by the bench.",
+        "{All movement is to be discontinued} beside the bench.",
+    ],
+)
+def test_a_stop_in_other_words_is_said(marked):
+    assert "stop" in given(marked).lower()
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("Go {beyond} the bed.", "Go beyond the bed."),
+        ("Stop {and enjoy the} air.", "Stop and enjoy the air."),
+        ("Enter the living {area} and stop.", "Enter the living area and stop."),
+        ("Turn {180-}degree.", "Turn 180-degree."),
+        ("Make a 180-degree turn {if you would}.", "Make a 180-degree turn."),
+        ("{Would you mind tracking down} a bed?", "Find a bed?"),
+        ("Walk {in the direction of} the bed.", "Walk towards the bed."),
+        ("Turn left {when you get to} the bed.", "Turn left at the bed."),
+        ("Stop {prior to} reaching the rug.", "Stop prior to reaching the rug."),
+    ],
+)
+def test_words_that_do_not_go_together_get_back_what_stood_between(marked, said):
+    assert given(marked) == said
+
+
+def test_a_word_that_may_tell_of_the_way_stays_in_a_clause_that_stays():
+    assert given("Penetrate the large {banquet} hall.") == "Penetrate the large banquet hall."
+    assert given("{Kindly} walk into the hall.") == "Walk into the hall."
+
+
+def test_a_clause_of_unknown_words_goes_only_if_each_surely_goes():
+    marked = "{Orthogonal reversal,} then go straight."
+    assert given(marked, drop=0.8).startswith("Orthogonal reversal")
+    assert given(marked, drop=0.95) == "Then go straight."
+
+
+def test_edits_that_harm_nothing_stay_as_they_are():
+    assert (
+        given("{So, um,} walk past the sofa {for me} and stop.") == "Walk past the sofa and stop."
+    )
+
+
+def test_the_words_of_speech_are_those_of_the_train_voices():
+    assert speech_words.speech_words() == speech_words.counted()
