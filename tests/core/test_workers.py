@@ -137,6 +137,33 @@ def stopped_by(how, folder):
     return pids
 
 
+GROUP = """
+import os, signal
+from pathlib import Path
+from mitigate.core.signals import held
+from tests.core.test_workers import Lines, Squares, groups, results
+with held() as ending:
+    for item in results(Squares(Path({folder!r})), groups("wait", "wait"), 2, Lines()):
+        if item and not ending.number:
+            os.killpg(0, signal.SIGTERM)
+        print(item)
+print("ended by", ending.number)
+"""
+
+
+def test_a_signal_to_all_processes_is_the_parents_to_answer(tmp_path):
+    """As SLURM and ``timeout`` send it: workers that it killed looked like a lack of memory."""
+    ended = subprocess.run(
+        [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        start_new_session=True,
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "(5, 25)" in ended.stdout and f"ended by {int(signal.SIGTERM)}" in ended.stdout
+
+
 def alive(pids):
     return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
 
