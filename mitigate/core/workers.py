@@ -151,11 +151,15 @@ class _Crew:
             for _ in range(self.size):
                 self.crew.append(_Worker(self.context, self.copy))
             while self.done < self.total:
-                self._hand_out()
-                for worker in self._talking():
+                with held() as ending:  # what is there to hear is handed out before it ends
+                    self._hand_out()
+                    talking = self._talking()
+                for worker in talking:
                     yield from self._hear(worker)
                 self._report_stuck()
                 yield None
+                if ending.number is not None:
+                    raise Ended(ending.number)
         finally:
             for worker in self.crew:
                 worker.process.kill()
