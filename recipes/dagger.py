@@ -32,6 +32,15 @@ class Dagger(Imitate):
     resumed run draws the same ones. Raises ValueError for an agent whose walks are no plain data.
     """
 
+    @classmethod
+    def misfit(cls, agent: Any) -> str:
+        if getattr(agent, "plain_walks", True):
+            return super().misfit(agent)
+        return (
+            "its walks are no plain data, so none can be kept. Choose recipe=imitation, or "
+            "recipe=base if it stores features."
+        )
+
     def __init__(
         self,
         agent: Any,
@@ -59,8 +68,8 @@ class Dagger(Imitate):
         """As ``Rollouts.jobs``, each with the oracle's share; none where nothing is walked."""
         if step % self.every:
             return []
-        expert = falling_share(step, self.steps, self.least)
-        return [(*job, expert) for job in self.rollouts.jobs(step)]
+        expert, jobs = falling_share(step, self.steps, self.least), super().jobs(step)
+        return [(*job, expert) for job in jobs]
 
     def work(self, job: tuple) -> Any:
         *own, self.rollouts.expert_share = job

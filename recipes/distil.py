@@ -22,8 +22,8 @@ from torch import Tensor
 from mitigate.core import checkpoint
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import batch_of, imitation, loss_weights, masked
-from mitigate.recipes.pretrain import views_to_learn
-from mitigate.training.parts import load_teacher, train_only
+from mitigate.recipes.pretrain import VIEWS_ALONE, views_to_learn
+from mitigate.training.parts import OWN, SEEING, TRAINABLE, load_teacher, train_only
 from mitigate.training.poses import Poses
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import Rollouts
@@ -41,6 +41,9 @@ class Distil(Recipe):
     With ``w_kl = w_feat = 0`` this is imitation, bit for bit. Raises FileNotFoundError for a
     missing teacher; ValueError as imitation does.
     """
+
+    needs = TRAINABLE
+    otherwise = f"This recipe learns from episodes that the agent walks. {OWN}"
 
     def __init__(
         self,
@@ -93,7 +96,7 @@ class Distil(Recipe):
         return self
 
     def jobs(self, step: int) -> list[tuple]:
-        return self.rollouts.jobs(step)
+        return self.rollouts.jobs(step, self.workers)
 
     def work(self, job: tuple) -> Any:
         return self.rollouts.work(job)
@@ -155,6 +158,8 @@ class DistilViews(Recipe):
     """
 
     ahead = True
+    needs = SEEING
+    otherwise = VIEWS_ALONE
 
     def __init__(
         self,
@@ -197,7 +202,7 @@ class DistilViews(Recipe):
         return self
 
     def jobs(self, step: int) -> list[tuple]:
-        return self.poses.jobs(step)
+        return self.poses.jobs(step, self.workers)
 
     def work(self, job: tuple) -> Any:
         return self.poses.work(job)

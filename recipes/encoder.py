@@ -48,6 +48,11 @@ class HardenEncoder(Recipe):
     """
 
     here = True  # the frames are in this process
+    needs = ("choose_trained", "sensor", "model")
+    otherwise = (
+        "This recipe takes an image encoder in an agent's place: agent=efficientnet_lite0, or "
+        "agent=encoder with agent.model=... for one of your own (docs/encoder.md)."
+    )
 
     def __init__(
         self,

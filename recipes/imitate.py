@@ -18,7 +18,7 @@ from torch import Tensor
 
 from mitigate.agents.agent import Decisions, Output
 from mitigate.corruptions import Schedule
-from mitigate.training.parts import train_only
+from mitigate.training.parts import OWN, TRAINABLE, train_only
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import Rollouts
 from mitigate.worlds.world import TrainingEpisodes, World
@@ -38,6 +38,9 @@ class Imitate(Recipe):
 
     Raises ValueError for an unknown part and for no episodes.
     """
+
+    needs = TRAINABLE
+    otherwise = f"This recipe learns from episodes that the agent walks. {OWN}"
 
     def __init__(
         self,
@@ -74,7 +77,7 @@ class Imitate(Recipe):
         return self.rollouts.identity()
 
     def jobs(self, step: int) -> list[tuple]:
-        return self.rollouts.jobs(step)
+        return self.rollouts.jobs(step, self.workers)
 
     def work(self, job: tuple) -> Any:
         return self.rollouts.work(job)

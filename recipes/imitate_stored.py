@@ -15,7 +15,7 @@ from torch import Tensor
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import batch_of, falling_share, imitation, loss_weights
-from mitigate.training.parts import train_only
+from mitigate.training.parts import TRAINABLE, train_only
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import PIECES
 from mitigate.worlds.world import TrainingEpisodes, World
@@ -28,6 +28,12 @@ class ImitateStored(Recipe):
     variants: of each scene under corruptions that ``schedule`` draws, stored beside the clean one;
     0: clean alone.
     """
+
+    needs = ("store", "stored_parts", *TRAINABLE)
+    otherwise = (
+        "Only agents whose features are stored learn so (agent=topological); recipe=dagger trains "
+        "the others from nothing."
+    )
 
     def __init__(
         self,

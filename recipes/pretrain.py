@@ -16,10 +16,15 @@ from torch import Tensor
 from mitigate.agents.adapters import adapted, adapter_parameters
 from mitigate.agents.agent import Seeing
 from mitigate.corruptions import Schedule
-from mitigate.training.parts import freeze
+from mitigate.training.parts import OWN, SEEING, freeze
 from mitigate.training.poses import Poses
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes, World
+
+VIEWS_ALONE = (
+    f"This recipe teaches encoders on views alone. {OWN} Or leave the stages that do out "
+    "(stages.NAME=null)."
+)
 
 
 class Pretrain(Recipe):
@@ -29,6 +34,8 @@ class Pretrain(Recipe):
     """
 
     ahead = True
+    needs = SEEING
+    otherwise = VIEWS_ALONE
 
     def __init__(
         self,
@@ -55,7 +62,7 @@ class Pretrain(Recipe):
         )
 
     def jobs(self, step: int) -> list[tuple]:
-        return self.poses.jobs(step)
+        return self.poses.jobs(step, self.workers)
 
     def work(self, job: tuple) -> Any:
         return self.poses.work(job)

@@ -27,6 +27,7 @@ from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes
 
 SCALES = (1, 4)  # pixels: errors of edges, and of surfaces (ours)
+RESTORER = "This recipe takes a restorer in an agent's place: agent=restorer (docs/restoration.md)."
 COARSE = 0.5  # weight of the frames before they are refined (ours)
 
 
@@ -40,6 +41,8 @@ class Restore(Recipe):
     """
 
     ahead = True
+    needs = ("restore", "doubt", "parts")
+    otherwise = RESTORER
 
     def __init__(
         self,

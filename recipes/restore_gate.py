@@ -21,6 +21,7 @@ from torch import Tensor
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
+from mitigate.recipes.restore import RESTORER
 from mitigate.restoration.frames import SensorRestorer
 from mitigate.restoration.network import texture
 from mitigate.restoration.pairs import Pairs, pairs_of
@@ -58,6 +59,8 @@ class RestoreGate(Recipe):
     """
 
     here = True  # a step takes milliseconds
+    needs = ("restore", "doubt", "parts")
+    otherwise = RESTORER
 
     def __init__(
         self,

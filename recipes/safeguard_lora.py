@@ -29,6 +29,8 @@ class SafeguardLora(Recipe):
     """
 
     here = True  # a pair is quick, and the model is large
+    needs = ("encode_pair", "tokenizer")
+    otherwise = "It takes a language model in an agent's place: agent=safeguard."
 
     def __init__(
         self,

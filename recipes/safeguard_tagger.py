@@ -38,6 +38,8 @@ class SafeguardTagger(Recipe):
     """
 
     here = True  # a lesson is quick
+    needs = ("tag", "hide", "collate")
+    otherwise = "It takes a tagger or a reader in an agent's place: agent=tagger or agent=reader."
 
     def __init__(
         self,

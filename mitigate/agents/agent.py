@@ -88,6 +88,8 @@ class Trainable(Protocol):
     ``loss_weights`` (attribute, optional): of its auxiliary losses by name; 1 where it names none.
     ``frozen`` (attribute, optional): names of modules that never train, such as a borrowed
     backbone; adapters in them do.
+    ``plain_walks`` (attribute, optional): False if what :meth:`collect` returns is no plain data
+    (dicts, lists, texts, numbers and tensors), which DAgger keeps on disk.
     ``precompute(piece, *, clean)`` (optional): the piece with what no trained weight changes
     computed, called on worker processes; ``clean`` asks for what ``decide(clean=True)`` needs.
     ``as_teacher()`` (optional): a copy without what was added to make it robust; by default a copy

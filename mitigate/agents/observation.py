@@ -47,12 +47,12 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
         )
     channels, first = CHANNELS[name], () if views == 1 else (views,)
     size = found.shape[-2] if found.ndim > 1 else 0
-    if found.shape != (*first, size, size, channels):
-        wanted = f"square views at once: [{views}, H, H, {channels}], view k at 30 k degrees to "
-        one = f"square view ahead: [H, H, {channels}]. Set views=1 in the world's config."
+    if not size or found.shape != (*first, size, size, channels):
+        wanted = f"square views at once: [{views}, H, H, {channels}], H > 0, view k at 30 k "
+        one = f"square view ahead: [H, H, {channels}], H > 0. Set views=1 in the world's config."
         raise ValueError(
             f"{name} has the shape {list(found.shape)}, but the agent sees {views} "
-            + (one if views == 1 else f"{wanted}the right.")
+            + (one if views == 1 else f"{wanted}degrees to the right.")
         )
     if name == DEPTH:
         _check_unit(found, views)

@@ -52,6 +52,8 @@ class StepwiseAgent(nn.Module):
     actions = 4
     limit = 100
 
+    plain_walks = False  # steps hold arrays
+
     def forward(self, frames: Frames, texts: Sequence[str]) -> tuple[Tensor, dict[str, Tensor]]:
         """Logits [B, actions] and features by name of B observations, which hold what ``needs``
         names as the world's sensors give it, and the instructions."""

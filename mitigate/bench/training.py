@@ -23,7 +23,6 @@ from typing import Any
 from unittest import mock
 
 import torch
-from omegaconf import OmegaConf
 
 from mitigate.core import conf, precision, seeding
 from mitigate.core.build import build, build_agent
@@ -120,9 +119,7 @@ def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
         "train", [f"recipe={name}", f"env.layouts={LAYOUTS}", "env.cached=2", *options]
     )
     found = []
-    if cfg.schedule.mode == "success_distributed":  # measured on one episode: that is not a step
-        for node in filter(None, cfg.stages.values()):
-            OmegaConf.update(node, "recipe.refresh_episodes", 1, force_add=True)
+    cfg.refresh_episodes = 1  # of a success-distributed schedule: measuring is not a step
     agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
     with Workers(cores()) as workers:
         for stage, node in cfg.stages.items():

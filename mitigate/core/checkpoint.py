@@ -144,7 +144,9 @@ def weights_file(path: str | Path) -> Path:
     if not file.is_file():
         raise FileNotFoundError(
             f"There are no weights at {given}: expected a .safetensors file or a folder that holds "
-            f"{WEIGHTS}, such as checkpoints/base. Train one with `make train RECIPE=base`."
+            f"{WEIGHTS}, such as checkpoints/base. Train some with `make train RECIPE=base`, or as "
+            "docs/agents.md says for other kinds: RECIPE=dagger, for topological_imagenet "
+            "RECIPE=swap_encoder."
         )
     return file
 

@@ -21,7 +21,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, ClassVar, Protocol
 
 from mitigate.core.progress import Progress, duration
-from mitigate.core.signals import Ended, held
+from mitigate.core.signals import ENDING, Ended, held
 
 SECOND = 1.0  # between two looks at workers that say nothing
 STUCK = 60.0  # seconds with one job after which a worker is reported, and again after as many
@@ -151,11 +151,15 @@ class _Crew:
             for _ in range(self.size):
                 self.crew.append(_Worker(self.context, self.copy))
             while self.done < self.total:
-                self._hand_out()
-                for worker in self._talking():
+                with held() as ending:  # what is there to hear is handed out before it ends
+                    self._hand_out()
+                    talking = self._talking()
+                for worker in talking:
                     yield from self._hear(worker)
                 self._report_stuck()
                 yield None
+                if ending.number is not None:
+                    raise Ended(ending.number)
         finally:
             for worker in self.crew:
                 worker.process.kill()
@@ -227,9 +231,16 @@ def context(preload: str) -> Any:
     return context
 
 
+def leave_to_parent() -> None:
+    """Ignore, in a worker, the signals that end a command: they reach its whole process group, and
+    the parent finishes what is at hand and ends the workers."""
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
+
+
 def _serve(pipe: Connection, copy: bytes) -> None:
     """A worker's life: groups of jobs in, (result, None) or (None, error) out."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the parent ends workers
+    leave_to_parent()
     try:
         task: Task = pickle.loads(copy)
         with task.ready():

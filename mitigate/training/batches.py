@@ -8,7 +8,6 @@ thread. So any number of workers, none included, gives the same batches.
 from __future__ import annotations
 
 import pickle
-import signal
 import time
 from collections import deque
 from contextlib import suppress
@@ -20,7 +19,7 @@ import torch
 from mitigate.core import precision
 from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
-from mitigate.core.workers import WorkersDied, context, portable
+from mitigate.core.workers import WorkersDied, context, leave_to_parent, portable
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe, do
 
@@ -237,7 +236,7 @@ def _packed(recipe: Recipe) -> bytes:
 
 def _serve(connection: Connection) -> None:
     """The life of a worker: messages in, the results of jobs out, until the connection ends."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the training ends it
+    leave_to_parent()
     recipe, kind, weights, done = Recipe(), "fp32", {}, 0
     with suppress(EOFError, BrokenPipeError, ConnectionResetError):
         while True:

@@ -17,6 +17,9 @@ from mitigate.core.names import unknown
 
 ADAPTERS = "adapters"  # in a list of parts: all of them, wherever they are
 POLICY = "policy"  # in place of a list of parts: all but the encoders
+TRAINABLE = ("parts", "collect", "join", "decide")  # what an agent has that learns on episodes
+SEEING = ("parts", "encoders", "labels", "see")  # ... whose encoders learn on single observations
+OWN = "Choose an agent that has these (docs/agents.md), or give it these (docs/bring-your-own.md)."
 START = "start"  # as a teacher: the agent as it is when the stage begins
 
 
@@ -34,7 +37,7 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     part, for parameters that are in no part, and for an agent that is not trainable.
     """
     if not isinstance(agent, Trainable):
-        lacking = [n for n in ("parts", "collect", "join", "decide") if not hasattr(agent, n)]
+        lacking = [name for name in TRAINABLE if not hasattr(agent, name)]
         raise ValueError(
             f"{type(agent).__name__} cannot be trained on episodes: it has no "
             f"{', '.join(lacking)} (mitigate/agents/agent.py, docs/bring-your-own.md)."

@@ -73,8 +73,9 @@ class Poses:
             self._world = made
         return self._world
 
-    def jobs(self, step: int) -> list[tuple]:
-        """(step, piece, of how many, panoramas, the schedule's state) of each piece."""
+    def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
+        """(step, piece, of how many, panoramas, the schedule's state) of each piece; ``workers``:
+        processes that measure success rates where there are none."""
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
             self.schedule.refresh(
                 measure(
@@ -85,6 +86,7 @@ class Poses:
                     episodes=self.refresh_episodes,
                     seed=self.seed,
                     step=step,
+                    workers=workers,
                 )
             )
             self.agent.train()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
@@ -22,6 +22,16 @@ class Recipe(nn.Module):
 
     here = False  # whether jobs are done in the training's own process, never by a worker
     ahead = False  # whether jobs depend on no weights, so that workers may do them ahead of time
+    needs: ClassVar[tuple[str, ...]] = ()  # what it uses of an agent, by name
+    otherwise: ClassVar[str] = ""  # what to do with an agent that lacks some of it, a sentence
+    workers: int | None = None  # processes that jobs() may start; None: a core each, 0: none
+
+    @classmethod
+    def misfit(cls, agent: Any) -> str:
+        """Return why this kind of recipe cannot train ``agent`` and what to do, "" if it can; asked
+        before the first stage of a run begins."""
+        lacking = [name for name in cls.needs if not hasattr(agent, name)]
+        return f"it has no {', '.join(lacking)}. {cls.otherwise}" if lacking else ""
 
     def start(self) -> None:
         """Make what must be there before the first batch, such as a cache of features; called once,

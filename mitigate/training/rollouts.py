@@ -68,10 +68,11 @@ class Rollouts:
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
         return {**getattr(self.training, "identity", dict)(), **prior}
 
-    def jobs(self, step: int) -> list[tuple]:
-        """(step, piece, of how many, episodes, the schedule's state) of each piece."""
+    def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
+        """(step, piece, of how many, episodes, the schedule's state) of each piece; ``workers``:
+        processes that measure success rates where they are due."""
         if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):
-            self.refresh(step)
+            self.refresh(step, workers)
         parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
         state = self.schedule.state_dict()
         return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
@@ -104,7 +105,7 @@ class Rollouts:
         """A panorama as the agent saw it in the last batch."""
         return {} if self.picture is None else {"seen": self.picture}
 
-    def refresh(self, step: int) -> None:
+    def refresh(self, step: int, workers: int | None = None) -> None:
         """Measure the success under every corruption on training episodes, for the schedule."""
         self.schedule.refresh(
             measure(
@@ -115,6 +116,7 @@ class Rollouts:
                 episodes=self.refresh_episodes,
                 seed=self.seed,
                 step=step,
+                workers=workers,
             )
         )
         self.agent.train()

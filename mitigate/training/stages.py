@@ -1,4 +1,4 @@
-"""One stage of a training: build its recipe, train by it, or say why it has nothing to do."""
+"""One stage of a training: build its recipe, and train by it."""
 
 from __future__ import annotations
 
@@ -14,7 +14,6 @@ from mitigate.core import checkpoint, seeding
 from mitigate.core.build import build
 from mitigate.core.files import atomic_text
 from mitigate.training.batches import Workers
-from mitigate.training.parts import POLICY, policy_parts
 from mitigate.training.ranks import Ranks
 from mitigate.training.trainer import Trainer
 
@@ -37,12 +36,8 @@ def train_stage(
     start = checkpoint.weights_sha(agent)
     agent.requires_grad_(True)
     recipe = build(stage.recipe, agent=agent)
-    identity = {
-        "agent": plain(cfg.agent),
-        "start": start,
-        "recipe": dict(_identity(plain(stage.recipe))),
-        **recipe.identity(),
-    }
+    recipe.workers = cfg.workers
+    identity = {"start": start, **named(cfg, stage), **recipe.identity()}
     ranks = ranks or Ranks()
     if ranks.first and not checkpoint.checkpoints(folder):  # else the trainer compares first
         with atomic_text(folder / IDENTITY) as file:
@@ -53,20 +48,9 @@ def train_stage(
     return trainer.precision
 
 
-def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
-    """Why a stage has nothing to train in this kind of agent, or None: it sees no such sensor,
-    stores no features, or is nothing but encoders. So one recipe serves agents of all kinds."""
-    sensor, parts, variants = (
-        OmegaConf.select(stage, f"recipe.{key}") for key in ("modality", "train_parts", "variants")
-    )
-    kind, encoders = type(agent).__name__, getattr(agent, "encoders", None)
-    if sensor and encoders and sensor not in encoders:
-        return f"{kind} has no {sensor} encoder"
-    if variants and not hasattr(agent, "store"):
-        return f"{kind} stores no features"
-    if parts == POLICY and encoders and not policy_parts(agent):
-        return f"nothing but encoders is learned in {kind}"
-    return None
+def named(cfg: DictConfig, stage: DictConfig) -> dict[str, Any]:
+    """Of a stage's identity, what its settings alone say."""
+    return {"agent": plain(cfg.agent), "recipe": dict(_identity(plain(stage.recipe)))}
 
 
 def trainer_settings(cfg: DictConfig, stage: DictConfig) -> dict[str, Any]:

@@ -32,15 +32,16 @@ def measure(
 
     ``episodes`` of ``training`` are drawn from (seed, step), the same ones under every corruption,
     and walked in what ``world`` makes. ``agent`` is a module with reset and act; it is left in eval
-    mode. ``workers``: processes, on which the rates do not depend; None: one a core if there is
-    work for them, and this one alone for an agent on a GPU.
+    mode. ``workers``: processes, on which the rates do not depend; 0: this one alone; None: one a
+    core if there is work for them, and this one alone for an agent on a GPU.
     """
     rng = generator(seed, "refresh", step)
     drawn = [training.draw(rng, (0, 1)) for _ in range(episodes)]
     met = [schedule.corruption(name) for name in schedule.names]
     groups = [[(e, c, {"corruption": c.name, "seed": seed}) for c in met] for e in drawn]
     task = EpisodeTask(agent, world)
-    if workers is None and any(p.device.type != "cpu" for p in agent.parameters()):
+    on_gpu = any(p.device.type != "cpu" for p in agent.parameters())
+    if workers == 0 or (workers is None and on_gpu):
         workers = 1
     total = len(drawn) * len(met)
     started = processes.count(workers, total, WORTH)

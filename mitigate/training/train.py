@@ -12,7 +12,6 @@ import re
 import sys
 from contextlib import nullcontext
 from dataclasses import dataclass, field
-from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +19,7 @@ import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
-from hydra.utils import get_method, get_object
+from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
 from torch import nn
 
@@ -35,10 +34,10 @@ from mitigate.corruptions import Corruption
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import EvaluationConfig, FinetuneConfig, WeightsConfig, load
-from mitigate.training import limits
+from mitigate.training import fitting, limits
 from mitigate.training.batches import MOST, Workers
 from mitigate.training.ranks import Ranks
-from mitigate.training.stages import nothing_to_do, plain, train_stage, trainer_settings
+from mitigate.training.stages import plain, train_stage, trainer_settings
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
 # seconds of one core for an episode, by the agent's views: with one it decides at every step
@@ -87,6 +86,7 @@ class TrainConfig:
     init: str | None = None
     init_parts: list[str] | None = None
     rollouts: int = 24
+    refresh_episodes: int = 8
     runs: str = "runs"
     folder: str | None = None
     workers: int | None = None
@@ -119,15 +119,12 @@ def run(cfg: DictConfig) -> Path:
 
 
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
-    node = cfg.agent if cfg.init_parts else begun_from(cfg.agent, cfg.init)
+    begun = begun_from(cfg.agent, cfg.init)  # refuses the weights of another kind of agent
+    node = cfg.agent if cfg.init_parts else begun
     agent = build_agent(node, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
-    _check_settings(cfg.agent, agent)
     OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
-    for name, stage in cfg.stages.items():
-        idle = None if stage is None else nothing_to_do(stage, agent)
-        if idle:
-            cfg.stages[name] = None
-            say(f"{name}: left out, {idle}")
+    fitting.leave_out(cfg, agent)
+    fitting.check(cfg, agent, folder)
     if ranks.first:
         say(plan(cfg, folder))
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
@@ -188,6 +185,11 @@ def check(cfg: DictConfig) -> None:
         raise ValueError(
             f"rollouts={cfg.rollouts} must be a number of episodes a step, from 1 to "
             f"{MOST_ROLLOUTS}, as rollouts=24."
+        )
+    if not 1 <= cfg.refresh_episodes <= MOST_ROLLOUTS:
+        raise ValueError(
+            f"refresh_episodes={cfg.refresh_episodes} must be a number of episodes that a success "
+            f"rate is measured on, from 1 to {MOST_ROLLOUTS}, as refresh_episodes=8."
         )
     if cfg.workers is not None and not 0 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(
@@ -257,18 +259,6 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
     barred = getattr(agent, OWN_CONFIG_ONLY, ())
     held = {name: value for name, value in data(plain(node)).items() if name not in barred}
     return {"_target_": node._target_, **held, **data(own)}
-
-
-def _check_settings(node: DictConfig, agent: nn.Module) -> None:
-    """Raise ValueError for settings of an agent that could not be given back to its class."""
-    known = {*signature(get_object(node._target_)).parameters, *map(str, node)}
-    own: dict[str, Any] = getattr(agent, "settings", dict)()
-    wrong = sorted(name for name in own if name not in known)
-    if wrong:
-        raise ValueError(
-            f"settings() of {type(agent).__name__} names {', '.join(wrong)}, which its constructor "
-            "does not take: return its arguments, so that the agent can be built again."
-        )
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="train")

@@ -32,6 +32,7 @@ def seen(**changed):
         ("rgb", seen()["rgb"][:4], ValueError, "12 square views"),
         ("rgb", np.moveaxis(seen()["rgb"], -1, 1), ValueError, r"\[12, H, H, 3\]"),
         ("rgb", np.zeros((12, 48, 64, 3), np.uint8), ValueError, "square"),
+        ("rgb", np.zeros((12, 0, 0, 3), np.uint8), ValueError, "H > 0"),
         ("depth", (seen()["depth"] * 1000).astype(np.uint16), TypeError, "/ 1000"),
         ("depth", seen()["depth"] * 1000, ValueError, "divide by 1000"),
         ("depth", seen()["depth"][..., 0], ValueError, r"\[12, H, H, 1\]"),

@@ -10,11 +10,12 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from threading import Timer
 
 import pytest
 
 from mitigate.core import workers
-from mitigate.core.signals import Ended
+from mitigate.core.signals import Ended, held
 from mitigate.core.workers import WorkersDied, results
 from tests.deaths import die_in_a_message
 
@@ -137,6 +138,33 @@ def stopped_by(how, folder):
     return pids
 
 
+GROUP = """
+import os, signal
+from pathlib import Path
+from mitigate.core.signals import held
+from tests.core.test_workers import Lines, Squares, groups, results
+with held() as ending:
+    for item in results(Squares(Path({folder!r})), groups("wait", "wait"), 2, Lines()):
+        if item and not ending.number:
+            os.killpg(0, signal.SIGTERM)
+        print(item)
+print("ended by", ending.number)
+"""
+
+
+def test_a_signal_to_all_processes_is_the_parents_to_answer(tmp_path):
+    """As SLURM and ``timeout`` send it: workers that it killed looked like a lack of memory."""
+    ended = subprocess.run(
+        [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        start_new_session=True,
+    )
+    assert ended.returncode == 0, ended.stderr
+    assert "(5, 25)" in ended.stdout and f"ended by {int(signal.SIGTERM)}" in ended.stdout
+
+
 def alive(pids):
     return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
 
@@ -159,6 +187,16 @@ def test_as_many_workers_as_cores_but_none_for_a_few_jobs(monkeypatch):
     assert workers.count(3, 1, 10) == 3
     with pytest.raises(ValueError, match="workers=0: give 1 or more"):
         workers.count(0, 100, 10)
+
+
+def test_a_signal_ends_many_jobs_at_once_within_a_training(tmp_path):
+    """Which holds signals until its step is done: measuring success rates takes minutes."""
+    (tmp_path / "long").touch()
+    began = time.monotonic()
+    Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()
+    with pytest.raises(Ended) as ended, held():
+        run(Squares(tmp_path), groups("tell", "tell"))
+    assert ended.value.status == 143 and time.monotonic() - began < 10
 
 
 def test_alone_a_job_that_was_begun_is_finished_before_a_signal_ends_it(tmp_path):

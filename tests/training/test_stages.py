@@ -10,8 +10,8 @@ from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import conf
 from mitigate.training import train
+from mitigate.training.fitting import nothing_to_do
 from mitigate.training.parts import policy_parts, train_only
-from mitigate.training.stages import nothing_to_do
 from tests.tiny import TinyAgent
 
 RGB, DEPTH, POLICY, STORED = (

@@ -19,10 +19,10 @@ def test_rates_do_not_depend_on_the_number_of_processes(capsys):
     agent, world = wanderer(stop=0.0).train(), partial(ApartmentsWorld, 16)
     schedule = Schedule("success_distributed", 0.6, names=("flare", "missing_data"))
     options = {"episodes": 3, "seed": 0, "step": 60}
-    alone, two = (
-        measure(agent, schedule, world, DrawnEpisodes(2), **options, workers=n) for n in (1, 2)
+    none, alone, two = (
+        measure(agent, schedule, world, DrawnEpisodes(2), **options, workers=n) for n in (0, 1, 2)
     )
-    assert alone == two and set(alone) == {"flare", "missing_data"} and not agent.training
+    assert none == alone == two and set(alone) == {"flare", "missing_data"} and not agent.training
     assert "success at step 60: 6 episodes" in capsys.readouterr().out
 
 

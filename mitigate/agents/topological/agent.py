@@ -152,7 +152,7 @@ class TopologicalAgent(nn.Module):
     loss_weights = learning.LOSS_WEIGHTS
     encoders: ClassVar = {"rgb": ("rgb_encoder",), "depth": ("depth_encoder", "waypoint_head")}
     labels: ClassVar = {"rgb": "concepts", "depth": "free"}
-
+    plain_walks = False
     stored_parts = ("planner",)  # what trains on stored features
 
     def store(self, world: Callable[[], Any], folder: str, **variants: Any) -> Store:

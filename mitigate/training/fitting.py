@@ -1,0 +1,135 @@
+"""Whether a recipe, an agent, a world and a run's folder fit together, asked before the first step.
+
+One recipe serves agents of many kinds: a stage that has nothing to train in one is left out.
+"""
+
+from __future__ import annotations
+
+import json
+from inspect import signature
+from pathlib import Path
+from typing import Any
+
+from hydra.utils import get_object
+from omegaconf import DictConfig, OmegaConf
+from torch import nn
+
+from mitigate.core import checkpoint
+from mitigate.core.build import maker
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.progress import say
+from mitigate.training.parts import POLICY, policy_parts
+from mitigate.training.stages import IDENTITY, named
+from mitigate.training.trainer import differences
+
+OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
+
+
+def leave_out(cfg: DictConfig, agent: nn.Module) -> None:
+    """Set the stages of ``cfg`` that have nothing to train in ``agent`` to None, and say so.
+
+    Raises ValueError if none is left, but for an agent that is blinded and evaluated: that tells
+    something of it as it is.
+    """
+    for name, stage in cfg.stages.items():
+        idle = None if stage is None else nothing_to_do(stage, agent)
+        if idle:
+            cfg.stages[name] = None
+            say(f"{name}: left out, {idle}")
+    if any(cfg.stages.values()):
+        return
+    if not (cfg.evaluation.enabled and cfg.agent.get("blind")):
+        raise ValueError(
+            f"Nothing of {type(agent).__name__} would be trained: the recipe {cfg.name} has no "
+            "other stages than those that were left out. Choose another recipe or agent "
+            "(recipes/README.md, docs/agents.md)."
+        )
+    say(f"nothing is trained: the agent is evaluated with agent.blind={list(cfg.agent.blind)}")
+
+
+def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
+    """Why a stage has nothing to train in this kind of agent, or None: it sees no such sensor,
+    stores no features, or is nothing but encoders."""
+    sensor, parts, variants = (
+        OmegaConf.select(stage, f"recipe.{key}") for key in ("modality", "train_parts", "variants")
+    )
+    kind, encoders = type(agent).__name__, getattr(agent, "encoders", None)
+    if sensor and encoders and sensor not in encoders:
+        return f"{kind} has no {sensor} encoder"
+    if variants and not hasattr(agent, "store"):
+        return f"{kind} stores no features"
+    if parts == POLICY and encoders and not policy_parts(agent):
+        return f"nothing but encoders is learned in {kind}"
+    return None
+
+
+def check(cfg: DictConfig, agent: nn.Module, folder: Path) -> None:
+    """Raise ValueError, before a step is taken, for a stage that cannot train ``agent``, for a
+    world that shows it another number of views, and for a ``folder`` with another run."""
+    _check_settings(cfg.agent, agent)
+    for name, stage in cfg.stages.items():
+        recipe = None if stage is None else get_object(stage.recipe._target_)
+        misfit = getattr(recipe, "misfit", lambda _: "")(agent)
+        if misfit:
+            raise ValueError(
+                f"{type(agent).__name__} cannot be trained by the stage {name} of recipe="
+                f"{cfg.name}: {misfit}"
+            )
+    _check_views(cfg, agent)
+    _check_folder(cfg, folder)
+
+
+def _check_settings(node: DictConfig, agent: nn.Module) -> None:
+    """Raise ValueError for settings of an agent that could not be given back to its class."""
+    known = {*signature(get_object(node._target_)).parameters, *map(str, node)}
+    own: dict[str, Any] = getattr(agent, "settings", dict)()
+    wrong = sorted(name for name in own if name not in known)
+    if wrong:
+        raise ValueError(
+            f"settings() of {type(agent).__name__} names {', '.join(wrong)}, which its constructor "
+            "does not take: return its arguments, so that the agent can be built again."
+        )
+
+
+def _check_views(cfg: DictConfig, agent: nn.Module) -> None:
+    wanted = getattr(agent, "views", None)
+    if wanted is None:
+        return
+    for name, sensor in maker(cfg.env.world)().sensors.items():
+        views = sensor.shape[0] if len(sensor.shape) == 4 else 1
+        if name in (RGB, DEPTH) and views != wanted:
+            raise ValueError(
+                f"The world {cfg.env.name} shows {views} of 12 views in {name}, but "
+                f"{type(agent).__name__} takes {wanted}. Set env.views={wanted}, as conf/agent "
+                "does for this kind of agent, or choose another agent."
+            )
+
+
+def _check_folder(cfg: DictConfig, folder: Path) -> None:
+    """Raise ValueError if checkpoints in ``folder`` are of other stages, or of other settings."""
+    for file in sorted(folder.glob(f"*/{IDENTITY}")):
+        name = file.parent.name
+        if not checkpoint.checkpoints(file.parent):
+            continue
+        if name not in cfg.stages:
+            raise ValueError(
+                f"{folder} holds a run of another recipe: it has trained a stage {name}, and the "
+                f"recipe {cfg.name} has {', '.join(map(str, cfg.stages))}. {OTHER_FOLDER}"
+            )
+        if cfg.stages[name] is not None:
+            _check_same(file, json.loads(json.dumps(named(cfg, cfg.stages[name]))))
+
+
+def _check_same(file: Path, now: dict[str, Any]) -> None:
+    """Raise ValueError if the identity in ``file`` names other settings than ``now``; the trainer
+    compares all of it, but only when its stage begins."""
+    try:
+        held = json.loads(file.read_text(encoding="utf-8"))
+    except ValueError:  # damaged: the checkpoints have it, too
+        return
+    different = differences({key: held.get(key) for key in now}, now)
+    if different:
+        raise ValueError(
+            f"{file.parent} holds a run with other settings ({'; '.join(different[:6])}). Use the "
+            f"old settings to resume it. {OTHER_FOLDER}"
+        )

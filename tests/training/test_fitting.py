@@ -1,0 +1,144 @@
+"""What does not fit together is refused before the first step, in one paragraph."""
+
+from __future__ import annotations
+
+import pytest
+from omegaconf import open_dict
+
+from mitigate.core import checkpoint, conf
+from mitigate.recipes.dagger import Dagger
+from mitigate.recipes.encoder import HardenEncoder
+from mitigate.recipes.imitate import Imitate
+from mitigate.recipes.imitate_stored import ImitateStored
+from mitigate.recipes.pretrain import Pretrain
+from mitigate.recipes.restore import Restore
+from mitigate.training import train
+from tests.tiny import TinyAgent, TinyRecipe
+
+OFF = "evaluation.enabled=false"
+
+
+def refusal(folder, *options: str) -> str:
+    cfg = conf.load_config("train", ["debug=smoke", "workers=0", f"folder={folder}", *options])
+    with pytest.raises(ValueError) as found:
+        train.run(cfg)
+    assert not list(folder.glob("*/step-*.pt"))
+    return str(found.value)
+
+
+@pytest.mark.parametrize(
+    ("recipe", "agent", "words"),
+    [
+        ("base", "recurrent", ["stage planner", "store", "recipe=dagger"]),
+        ("base", "frontier", ["stage planner", "store", "recipe=dagger"]),
+        ("swap_encoder", "recurrent", ["is of the agent", "TopologicalAgent"]),
+        ("dagger", "topological", ["stage policy", "no plain data", "recipe=imitation"]),
+        ("encoder", "recurrent", ["stage encoder", "agent=efficientnet_lite0"]),
+        ("restore", "frontier", ["stage rgb", "agent=restorer"]),
+        ("safeguard_tagger", "frontier", ["stage tagger", "agent=tagger"]),
+        ("da_per_episode", "restorer", ["stage perception_rgb", "no labels, see"]),
+    ],
+)
+def test_a_recipe_for_other_agents_says_which_it_takes(tmp_path, recipe, agent, words):
+    said = refusal(tmp_path, f"recipe={recipe}", f"agent={agent}", OFF)
+    assert all(word in said for word in words), said
+
+
+@pytest.mark.parametrize(
+    "recipe", [Dagger, HardenEncoder, Imitate, ImitateStored, Pretrain, Restore]
+)
+def test_a_recipe_names_what_the_agent_lacks_and_what_to_do(recipe):
+    said = recipe.misfit(TinyAgent())
+    assert said.startswith("it has no ") and len(said.split(". ")) > 1
+    assert not TinyRecipe.misfit(TinyAgent())
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        ["recipe=replan", "agent=recurrent"],
+        ["recipe=da_per_episode", "agent=frontier", "experiment=frozen"],
+        ["recipe=ablation", "agent=frontier", "agent.blind=[rgb]", OFF],
+    ],
+)
+def test_a_run_in_which_nothing_trains_is_refused(tmp_path, options):
+    assert "Nothing of" in refusal(tmp_path, *options)
+
+
+def test_a_blinded_agent_that_learns_nothing_is_evaluated_as_it_is(tmp_path, monkeypatch, capsys):
+    met = []
+    monkeypatch.setattr(train, "get_method", lambda _: lambda cfg, *agents: met.append(agents))
+    options = ["recipe=ablation", "agent=frontier", "agent.blind=[rgb]", f"folder={tmp_path}"]
+    train.run(conf.load_config("train", [*options, "workers=0"]))
+    before, after = met[0][:2]
+    assert before.blind == () and after.blind == ("rgb",)
+    assert checkpoint.weights_sha(before) == checkpoint.weights_sha(after)
+    assert "nothing is trained: the agent is evaluated with agent.blind" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("agent", "views", "taken"), [("recurrent", 12, 1), ("frontier", 12, 1), ("topological", 1, 12)]
+)
+def test_a_world_with_another_number_of_views_is_refused(tmp_path, agent, views, taken):
+    said = refusal(tmp_path, f"agent={agent}", f"env.views={views}", OFF)
+    assert f"takes {taken}" in said and f"env.views={taken}" in said
+
+
+def tiny(folder, name: str, *stages: str, width: int = 8):
+    cfg = conf.load_config("train", [OFF, f"folder={folder}", "trainer.steps=2", "workers=0"])
+    with open_dict(cfg):
+        cfg.name, cfg.init = name, None
+        cfg.agent = {"_target_": "tests.tiny.TinyAgent", "width": width}
+        stage = train.StageConfig(recipe={"_target_": "tests.tiny.TinyRecipe"})
+        cfg.stages = dict.fromkeys(stages, stage)
+    return cfg
+
+
+def test_a_folder_with_a_run_of_another_recipe_is_left_as_it_is(tmp_path):
+    train.run(tiny(tmp_path, "one", "first"))
+    before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+    with pytest.raises(ValueError, match=r"another recipe: it has trained a stage first.*folder="):
+        train.run(tiny(tmp_path, "two", "second"))
+    assert before == {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
+
+
+def test_a_later_stage_with_other_settings_is_refused_before_the_first_trains(tmp_path):
+    train.run(tiny(tmp_path, "one", "second"))
+    with pytest.raises(ValueError, match=r"second holds a run with other settings \(agent.width"):
+        train.run(tiny(tmp_path, "two", "first", "second", width=16))
+    assert not (tmp_path / "first").exists()
+    train.run(tiny(tmp_path, "three", "second"))  # the same goes on
+
+
+@pytest.mark.parametrize(
+    ("place", "options"),
+    [
+        ("poses", ["recipe=stacked"]),
+        ("rollouts", ["recipe=da_success", "experiment=frozen"]),
+    ],
+)
+def test_a_trial_measures_success_on_one_episode_and_starts_no_process(
+    tmp_path, monkeypatch, place, options
+):
+    met = []
+
+    def measured(*_, episodes, workers, **others):
+        met.append((episodes, workers))
+        raise InterruptedError
+
+    monkeypatch.setattr(f"mitigate.training.{place}.measure", measured)
+    options = [*options, "agent=recurrent", "debug=smoke", "workers=0", f"folder={tmp_path}"]
+    with pytest.raises(InterruptedError):
+        train.run(conf.load_config("train", [*options, OFF]))
+    assert met == [(1, 0)]
+
+
+def test_what_a_setting_of_an_agent_may_be_is_said_for_that_setting(tmp_path):
+    said = refusal(tmp_path, "agent=recurrent", "agent.blind=[sonar]", OFF)
+    assert "agent.blind" in said and "a list of rgb, depth, instruction" in said
+    assert "agent.size" not in said
+
+
+def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
+    with pytest.raises(FileNotFoundError, match="topological_imagenet RECIPE=swap_encoder"):
+        checkpoint.weights_file(tmp_path / "base")
