@@ -281,7 +281,7 @@ def _load(path: Path) -> Any:
             if another is None:
                 lines = str(error).rpartition("WeightsUnpickler error: ")[2].splitlines()
                 said = [line for line in lines if line.strip() and "weights_only" not in line]
-                problem = said[0].strip() if said else "it holds more than tensors"
+                problem = said[0].strip(" .") if said else "it holds more than tensors"
                 break
             named.append(another[1] if "." in another[1] else f"builtins.{another[1]}")
             problem = f"it names {another[1]}"
