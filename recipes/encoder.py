@@ -29,7 +29,7 @@ from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality
 from mitigate.encoders.frames import Frames, collect, corrupted
 from mitigate.encoders.model import Encoder
-from mitigate.encoders.sources import TRAIN, source_of
+from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
 from mitigate.training.parts import without_adapters
 from mitigate.training.recipe import Recipe
 
@@ -41,7 +41,8 @@ class HardenEncoder(Recipe):
     """Args:
     agent: the encoder; its adapters, or all of its weights, are trained in place.
     world, episodes, split, label: where frames come from (``source_of``). schedule: of corruptions;
-        those of the encoder's sensor are drawn. frames: read once, from the training scenes.
+        those of the encoder's sensor are drawn. frames: read once, from the training scenes; of
+        files the unseen ones are read, too, so that what is wrong with one shows at once.
     batch: frames a step. micro_batch: of them in memory at once.
     w_feat, w_gate: of the loss above. per_channel: whether v is of each channel, so that all count
         alike, or the mean of all.
@@ -77,8 +78,9 @@ class HardenEncoder(Recipe):
                 f"recipe.frames ({frames}) at least 1."
             )
         self.agent, self.batch_size, self.micro = agent, batch, micro_batch
+        agent.requires_grad_(False)  # of parameters of TorchScript that train there is no copy
+        self.teacher = without_adapters(agent).eval()
         agent.choose_trained()
-        self.teacher = without_adapters(agent).requires_grad_(False).eval()
         names = tuple(name for name in schedule.names if modality(name) == agent.sensor)
         if not names:
             raise ValueError(
@@ -89,16 +91,24 @@ class HardenEncoder(Recipe):
         self.count, self.seed, self.w_feat, self.w_gate = frames, seed, w_feat, w_gate
         self.per_channel = per_channel
         self.frames: Frames | None = None
+        if self.source.files:
+            self.frames = collect(self.source, TRAIN, frames, seed)
+            collect(self.source, UNSEEN, frames, seed)
         self.targets: Tensor | None = None
         self.variance = torch.ones(())
         self.backbone = backbone_sha(agent.model)
         self._last: np.ndarray | None = None
 
     def identity(self) -> dict[str, str]:
-        return {"encoder_sha256": checkpoint.weights_sha(self.teacher)}
+        found = {"encoder_sha256": checkpoint.weights_sha(self.teacher)}
+        if self.source.files:
+            assert self.frames is not None
+            found["frames_sha256"] = self.frames.sha256()
+        return found
 
     def start(self) -> None:
-        self.frames = collect(self.source, TRAIN, self.count, self.seed)
+        if self.frames is None:
+            self.frames = collect(self.source, TRAIN, self.count, self.seed)
         device, self.targets = next(self.teacher.parameters(), torch.zeros(())).device, None
         clean = torch.from_numpy(self.frames.frames).split(self.micro)
         first = self._clean(clean[0].to(device))

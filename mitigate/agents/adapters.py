@@ -177,7 +177,8 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
 def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     """Insert the adapters that ``save_adapters`` wrote; returns the adapted modules' names.
 
-    Each goes to its module's device and dtype. Raises FileNotFoundError if a file is missing;
+    Each goes to its module's device and dtype. The sha256 beside the file is compared if there is
+    one (that of a shipped folder is in its card). Raises FileNotFoundError if a file is missing;
     ValueError for a damaged file, for a model that has adapters already, for adapters trained on
     another backbone (or this one in another dtype), or for modules that ``model`` does not have.
     """
@@ -221,15 +222,19 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
 def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> nn.Module:
     """Return the adapter of ``settings`` with the weights ``tensors``. Raises TypeError or
-    RuntimeError if they do not fit; no memory is taken for what does not."""
-    settings = dict(settings)
+    RuntimeError if they do not fit, or are not as an adapter of that kind writes them; no memory is
+    taken for what does not."""
+    given = {name: value for name, value in settings.items() if name != "kind"}
     shape = RingAdapter if "views" in settings else ConvAdapter
-    kind = {"tokens": TokenAdapter, "gate": FrameGate}.get(settings.pop("kind", None), shape)
+    kind = {"tokens": TokenAdapter, "gate": FrameGate}.get(str(settings.get("kind")), shape)
     with torch.device("meta"):
-        wanted = {name: value.shape for name, value in kind(**settings).state_dict().items()}
+        empty: Any = kind(**given)
+    if json.dumps(empty.settings, sort_keys=True) != json.dumps(settings, sort_keys=True):
+        raise TypeError(f"an adapter with {empty.settings} does not have the settings {settings}")
+    wanted = {name: value.shape for name, value in empty.state_dict().items()}
     if wanted != {name: value.shape for name, value in tensors.items()}:
         raise TypeError(f"the tensors are not of the shapes that {SETTINGS} says")
-    adapter = kind(**settings)
+    adapter = kind(**given)
     adapter.load_state_dict(tensors)
     return adapter
 

@@ -86,7 +86,10 @@ def read(path: Path, unit: float) -> np.ndarray:
     if modality(path) == RGB:
         return _decode(path)
     metres = _load(path) if path.suffix.lower() == ".npy" else _decode(path) * unit
-    return metres.astype(np.float32).reshape(*metres.shape[:2], 1)
+    if metres.ndim < 2 or metres.shape[2:] not in ((), (1,)) or not metres.size:
+        raise LeftOutError(f"has the shape {list(metres.shape)}: depth is [H, W] or [H, W, 1]")
+    with np.errstate(over="ignore"):  # becomes infinite
+        return metres.astype(np.float32).reshape(*metres.shape[:2], 1)
 
 
 def _decode(path: Path) -> np.ndarray:

@@ -4,6 +4,7 @@ of 96 pixels are 133 MB.
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +32,10 @@ class Frames:
     def __len__(self) -> int:
         return len(self.frames)
 
+    def sha256(self) -> str:
+        """The first 12 hex digits of the sha256 of all pixels."""
+        return hashlib.sha256(np.ascontiguousarray(self.frames).data).hexdigest()[:12]
+
 
 def corrupted(
     frames: Frames, index: int, corruption: Corruption, key: Key, sensor: DepthSensor
@@ -44,8 +49,8 @@ def corrupted(
 
 
 def collect(source: Source, split: str, count: int, seed: int) -> Frames:
-    """About ``count`` frames of a split, as many from each scene. Raises ValueError for frames of
-    several sizes or too many for the memory."""
+    """About ``count`` frames of a split, as many from each scene; fewer frames are some of these.
+    Raises ValueError for frames of several sizes, too many for the memory, or all black."""
     scenes = list(source.scenes(split))
     order = generator(seed, "encoder scenes", split).permutation(len(scenes))
     used = sorted(order[:count])
@@ -59,6 +64,11 @@ def collect(source: Source, split: str, count: int, seed: int) -> Frames:
             shots += found
             scene += [int(index)] * len(found)
             progress.advance()
+    if not any(shot.frame.any() for shot in shots):
+        raise ValueError(
+            f"All of the {len(shots)} {split} frames are 0 everywhere: black, or depth without a "
+            "pixel that is a number of metres. Look at the files, or at the world's sensors."
+        )
     labels = None if shots[0].labels is None else np.stack([s.labels for s in shots])  # type: ignore[misc]
     return Frames(
         np.stack([shot.frame for shot in shots]),

@@ -10,10 +10,12 @@ import importlib
 import importlib.util
 import pickle
 import re
+import traceback
 import zipfile
 from collections import OrderedDict
 from collections.abc import Mapping
 from contextlib import suppress
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -75,21 +77,48 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
         thing: Any = importlib.import_module(name)
     except ImportError as error:
         raise ValueError(_not_importable(path, error)) from error
+    except Exception as error:  # of any kind: it is somebody's code
+        raise ValueError(
+            f"agent.model={path}: importing {name} failed ({told(error)}). Mend that module."
+        ) from error
     for part in attribute.split("."):
         if not hasattr(thing, part):
             there = [n for n in dir(thing) if not n.startswith("_")]
             raise ValueError(f"agent.model={path}: {unknown('callable', part, there)}")
         thing = getattr(thing, part)
+    made = _called(path, thing, kwargs)
+    if not isinstance(made, nn.Module):
+        raise ValueError(f"agent.model={path} made a {type(made).__name__}, not a torch nn.Module.")
+    return made
+
+
+def _called(path: str, thing: Any, kwargs: dict[str, Any]) -> Any:
     try:
-        made = thing(**kwargs)
+        with suppress(ValueError):  # some built-in callables do not say what they take
+            signature(thing).bind(**kwargs)
     except TypeError as error:
         raise ValueError(
             f"agent.model={path} cannot be called with {kwargs} ({error}). Set its arguments: "
             "agent.kwargs.NAME=VALUE (a new one: +agent.kwargs.NAME=VALUE)."
         ) from error
-    if not isinstance(made, nn.Module):
-        raise ValueError(f"agent.model={path} made a {type(made).__name__}, not a torch nn.Module.")
-    return made
+    try:
+        return thing(**kwargs)
+    except Exception as error:  # of any kind, as above
+        raise ValueError(
+            f"agent.model={path} failed when it was called with {kwargs} ({told(error)}). Mend it, "
+            "or change its arguments (agent.kwargs.NAME=VALUE)."
+        ) from error
+
+
+def told(error: Exception, line: int = 0) -> str:
+    """What went wrong in somebody's code, and where: "KeyError: 'x', in net.py, line 3". ``line``:
+    of a message of several, the one to show."""
+    lines = str(error).strip().splitlines() or [""]
+    what = f"{type(error).__name__}: {lines[line][:200]}"
+    if isinstance(error, SyntaxError):  # says itself where
+        return what
+    frame = traceback.extract_tb(error.__traceback__)[-1]
+    return f"{what}, in {frame.filename}, line {frame.lineno}"
 
 
 def _not_importable(path: str, error: ImportError) -> str:
@@ -126,7 +155,12 @@ def _exported(path: Path) -> nn.Module:
             f"{path} is no exported program ({str(error).splitlines()[0]}). Write one with "
             "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)."
         ) from error
-    return torch.export.unflatten(program)
+    model = torch.export.unflatten(program)
+    for module in model.modules():
+        graph: Any = getattr(module, "graph", None)
+        for node in () if graph is None else graph.nodes:
+            node.meta.pop("val", None)  # a tensor without values, which cannot be copied
+    return model
 
 
 def find_weights(weights: str) -> Path:
@@ -161,9 +195,9 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
         *(f"{n} is missing" for n in wanted if n not in own),
         *(f"{n} is unknown" for n in own if n not in wanted),
         *(
-            f"{n} is {tuple(own[n].shape)}, not {tuple(wanted[n].shape)}"
+            f"{n} is {_form(own[n])}, not {_form(wanted[n])}"
             for n in wanted
-            if n in own and own[n].shape != wanted[n].shape
+            if n in own and not _fits(own[n], wanted[n])
         ),
     ]
     if wrong:
@@ -176,6 +210,17 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
         )
     model.load_state_dict(own)
     checkpoint.check_finite(model, f"The weights {weights}")
+
+
+def _fits(found: Tensor, wanted: Tensor) -> bool:
+    """Whether a weight can be read into another: floats of any size, but no integers as floats."""
+    whole = found.shape == wanted.shape and found.layout == wanted.layout
+    return whole and (found.is_floating_point() or not wanted.is_floating_point())
+
+
+def _form(value: Tensor) -> str:
+    layout = "" if value.layout == torch.strided else f" {str(value.layout).removeprefix('torch.')}"
+    return f"{str(value.dtype).removeprefix('torch.')} {tuple(value.shape)}{layout}"
 
 
 def read_state(path: Path) -> dict[str, Tensor]:
@@ -234,8 +279,9 @@ def _load(path: Path) -> Any:
         except pickle.UnpicklingError as error:
             another = re.search(r"Unsupported global: GLOBAL (\S+) was not", str(error))
             if another is None:
-                told = str(error).partition("WeightsUnpickler error: ")[2] or str(error)
-                problem = told.strip().splitlines()[0]
+                lines = str(error).rpartition("WeightsUnpickler error: ")[2].splitlines()
+                said = [line for line in lines if line.strip() and "weights_only" not in line]
+                problem = said[0].strip(" .") if said else "it holds more than tensors"
                 break
             named.append(another[1] if "." in another[1] else f"builtins.{another[1]}")
             problem = f"it names {another[1]}"

@@ -187,12 +187,14 @@ class Encoder(nn.Module):
     def _item(self, output: Any) -> Tensor:
         """The target in what the model returned."""
         if self.output is not None and not isinstance(output, Tensor):
-            held = dict(output) if isinstance(output, Mapping) else dict(enumerate(output))
-            if self.output in held:
+            held: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
+            held |= enumerate(output) if isinstance(output, (tuple, list)) else ()
+            if isinstance(held.get(self.output), Tensor):
                 return held[self.output]
-            names = [str(name) for name in held]
+            names = [str(name) for name, value in held.items() if isinstance(value, Tensor)]
         elif self.output is None:
-            chosen = next(iter(output.values())) if isinstance(output, Mapping) else first(output)
+            named = isinstance(output, Mapping)
+            chosen = next(iter(output.values()), None) if named else first(output)
             if isinstance(chosen, Tensor):
                 return chosen
             names = list(output) if isinstance(output, Mapping) else []
@@ -214,20 +216,25 @@ class Encoder(nn.Module):
         dtype = torch.uint8 if self.sensor == "rgb" else torch.float32
         frames = torch.ones(2, size, size, channels, dtype=dtype)
         try:
-            features = self(frames)
-        except (RuntimeError, TypeError, AssertionError) as error:
-            lines = str(error).strip().splitlines() or [type(error).__name__]
+            self.model(self.transform(frames))
+        except Exception as error:  # of any kind: it is somebody's code
             raise ValueError(
                 f"The encoder {self.given['model']} does not take {self.sensor} frames [2, "
-                f"{channels}, {size}, {size}] ({lines[-1][:200]}). Set agent.transform.size to its "
-                "input's pixels and agent.sensor to rgb or depth; a program traced or exported for "
-                "one frame takes no two: give it a dynamic number of frames."
+                f"{channels}, {size}, {size}] ({loading.told(error, -1)}). Set "
+                "agent.transform.size to its input's pixels and agent.sensor to rgb or depth; a "
+                "program traced or exported for one frame takes no two: give it a dynamic number "
+                "of frames."
             ) from error
-        if len(features) != 2 or features.dim() not in (2, 3, 4):
-            raise ValueError(
-                f"agent.output={self.output} gives {tuple(features.shape)} for two frames: it must "
-                "be [n, C], [n, C, h, w] or [n, T, C]. Name another module or item."
-            )
+        features: Any = self(frames)
+        what = type(features).__name__
+        if isinstance(features, Tensor):
+            what = f"{str(features.dtype).removeprefix('torch.')} {tuple(features.shape)}"
+            if features.is_floating_point() and features.dim() in (2, 3, 4) and len(features) == 2:
+                return
+        raise ValueError(
+            f"agent.output={self.output} gives {what} for two frames: it must be floats [n, C], "
+            "[n, C, h, w] or [n, T, C]. Name another module or item."
+        )
 
     def far(self) -> DepthSensor:
         """What depth corruptions must know of the sensor."""

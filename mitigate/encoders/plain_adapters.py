@@ -34,9 +34,15 @@ def attach(model, folder, check=True):
     converted to half precision first).
 
     Returns the model to use: ``model`` itself, or for TorchScript, which takes no hooks, a module
-    around it. Raises ValueError for a folder that is damaged or does not fit, and OSError for a
-    missing file.
+    around it. Raises ValueError for a folder that is damaged or does not fit and for a model that
+    has adapters already, and OSError for a missing file.
     """
+    hooks = [hook for m in model.modules() for hook in getattr(m, "_forward_hooks", {}).values()]
+    if any(isinstance(hook, _Adapter) for hook in hooks):
+        raise ValueError(
+            f"This model has adapters already, and those in {folder} would be added to them: build "
+            "the model and load its weights again first."
+        )
     settings, tensors = read(folder)
     shapes = settings["adapters"]
     wrapped = set(shapes) <= {"before", "behind"} and not hasattr(model, "before")

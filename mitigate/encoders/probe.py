@@ -4,6 +4,7 @@ for: cosine, a linear probe of labels, and retrieval; each with 95 % intervals o
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -39,6 +40,8 @@ class Score:
 
 
 def _estimate(value: float, samples: np.ndarray) -> Estimate:
+    if not len(samples):
+        return Estimate(float(value), math.nan, math.nan)
     low, high = np.quantile(samples, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     return Estimate(float(value), float(low), float(high))
 
@@ -68,13 +71,14 @@ def features(
 
 
 class Resamples:
-    """Scenes drawn with replacement: ``weights`` float32 [R, N], how often each frame counts."""
+    """Scenes drawn with replacement: ``weights`` float32 [R, N], how often each frame counts. Of a
+    single scene there are none (R = 0): it does not say how much scenes differ."""
 
     def __init__(self, scene: np.ndarray, seed: int = 0, count: int = RESAMPLES) -> None:
         _, own = np.unique(scene, return_inverse=True)
         scenes = int(own.max()) + 1
         draws = np.random.Generator(np.random.PCG64(seed)).multinomial(
-            scenes, np.full(scenes, 1 / scenes), size=count
+            scenes, np.full(scenes, 1 / scenes), size=count if scenes > 1 else 0
         )
         self.weights = draws[:, own].astype(np.float32)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from torch import nn
 
-from mitigate.core.build import build, maker
+from mitigate.core import checkpoint
+from mitigate.core.build import build_agent, maker
 from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_json
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import names, title
 from mitigate.encoders.folder import lines
@@ -22,6 +25,7 @@ from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.conditions import conditions
 from mitigate.training.parts import without_adapters
+from mitigate.training.stages import IDENTITY
 
 BEFORE, AFTER = "before", "after"
 MEAN = "mean over corruptions"
@@ -38,13 +42,16 @@ Scores = dict[tuple[str, str, str], Score]
 def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
     """Print and write how well features survive each corruption, before and after a training.
 
-    ``cfg`` is a training's config: 12 frames for each of ``evaluation.episodes``, from the scenes
-    of ``evaluation.split``, under the conditions of the suite that the encoder's sensor meets.
-    ``base`` is not used: the encoder before is the one as it came.
+    ``cfg`` is a training's config: 12 frames for each of ``evaluation.episodes``, as many as were
+    trained with at most, from the scenes of ``evaluation.split``, under the conditions of the suite
+    that the encoder's sensor meets.
+    The encoder before is the one as it came, or, with ``tune=all``, as the training began: ``base``
+    where that was with ``init``.
     """
     assert isinstance(trained, Encoder)
     train, unseen = _frames(cfg, trained.sensor)
-    before: Any = build(cfg.agent) if trained.tune == "all" else without_adapters(trained)
+    whole = trained.tune == "all"
+    before: Any = _begun(cfg, base, folder) if whole else without_adapters(trained)
     encoders: dict[str, Encoder] = {BEFORE: before.eval(), AFTER: trained.eval()}
     met = _conditions(cfg, trained.sensor)
     scores = with_mean(measure(encoders, met, train, unseen, cfg.seed))
@@ -58,6 +65,21 @@ def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
     print(f"To load it in plain PyTorch:\n\n{lines(trained, folder / 'agent')}", flush=True)
 
 
+def _begun(cfg: Any, base: Any, folder: Path) -> nn.Module:
+    """The encoder as the training found it. Raises ValueError if it cannot be made again."""
+    made = build_agent(cfg.agent, weights=None, seed=cfg.seed) if base is None else base
+    stage = next(name for name, stage in cfg.stages.items() if stage is not None)
+    noted = read_json(folder / stage / IDENTITY, "Train again in another folder.")
+    if checkpoint.weights_sha(made) != noted["encoder_sha256"]:
+        raise ValueError(
+            f"agent.model={cfg.agent.model} has other weights than when the training began, so "
+            "there is no before to compare with: its file was changed, or it draws them anew each "
+            "time. Name its weights (agent.weights=FILE) and train again in another folder. What "
+            f"was trained is in {folder / 'agent'}."
+        )
+    return made
+
+
 def _frames(cfg: Any, sensor: str) -> tuple[Frames, Frames]:
     """Training frames for the probe and its centre, and unseen ones."""
     recipe = next(stage for stage in cfg.stages.values() if stage is not None).recipe
@@ -65,7 +87,7 @@ def _frames(cfg: Any, sensor: str) -> tuple[Frames, Frames]:
     source = source_of(
         maker(cfg.env.world), sensor, cfg.env.episodes, quick.split, recipe.get("label")
     )
-    count = recipe.frames if quick.episodes is None else EACH * quick.episodes
+    count = min(recipe.frames, EACH * quick.episodes) if quick.episodes else recipe.frames
     train = collect(source, TRAIN, min(recipe.frames, MOST_TRAIN), cfg.seed)
     return train, collect(source, UNSEEN, count, cfg.seed)
 
@@ -104,13 +126,15 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
 
 
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
-    """One a measure and condition: before, after and the difference, each [value, low, high]."""
+    """One a measure and condition: before, after and the difference, each [value, low, high]; null
+    for an interval that there is not."""
     made = []
     for condition, what in _cells(scores):
         first, second = (scores[state, condition, what] for state in (BEFORE, AFTER))
         found = {BEFORE: first.estimate, AFTER: second.estimate, "gain": second.minus(first)}
         values = {
-            name: [round(v, 4) for v in (e.value, e.low, e.high)] for name, e in found.items()
+            name: [None if math.isnan(v) else round(v, 4) for v in (e.value, e.low, e.high)]
+            for name, e in found.items()
         }
         made.append({"measure": what, "condition": condition, **values, "of": about})
     return made
@@ -118,7 +142,10 @@ def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
 
 def table(scores: Scores, about: str) -> str:
     """Markdown: a block for each measure."""
-    parts = [f"# Features before and after\n\n{about}. In brackets 95 % intervals over scenes.\n"]
+    parts = [
+        f"# Features before and after\n\n{about}. In brackets 95 % intervals over scenes (n/a: of "
+        "one scene alone there is none).\n"
+    ]
     for what, named in MEASURES.items():
         own = [condition for condition, other in _cells(scores) if other == what]
         if own:
@@ -135,7 +162,8 @@ def _line(scores: Scores, condition: str, what: str) -> str:
 
 
 def _text(e: Estimate, sign: str = "") -> str:
-    return f"{e.value:{sign}.2f} [{e.low:{sign}.2f}, {e.high:{sign}.2f}]"
+    between = "n/a" if math.isnan(e.low) else f"{e.low:{sign}.2f}, {e.high:{sign}.2f}"
+    return f"{e.value:{sign}.2f} [{between}]"
 
 
 def _cells(scores: Scores) -> list[tuple[str, str]]:

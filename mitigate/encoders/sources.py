@@ -6,6 +6,7 @@ frames of each scene.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +15,11 @@ from typing import Any, Protocol
 import cv2
 import numpy as np
 
+from mitigate.agents.observation import FARTHEST
 from mitigate.core.files import RECORDING, find
 from mitigate.core.names import unknown
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
+from mitigate.core.progress import say
 from mitigate.core.seeding import generator
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.plan import make_plan, told
@@ -24,6 +27,8 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
+FEWEST_UNSEEN = 5  # blocks of a single folder, so that they show how much scenes differ (ours)
+NEAR = 0.05  # share of a frame's depth that is nearer than ``FARTHEST``, if it is metres (ours)
 
 
 @dataclass(frozen=True)
@@ -37,7 +42,9 @@ class Shot:
 
 
 class Source(Protocol):
-    """Where frames come from."""
+    """Where frames come from; ``files``: from files, which may be damaged, or change."""
+
+    files: bool
 
     def scenes(self, split: str) -> Sequence[str]:
         """Names of the scenes of a split."""
@@ -56,6 +63,8 @@ class WorldFrames:
     Raises ValueError for a world that cannot look from anywhere or has no such sensor, and for
     scenes in both splits.
     """
+
+    files = False
 
     def __init__(
         self, made: Any, sensor: str, unseen: str, label: str | None = "concepts", every: int = 2
@@ -111,13 +120,17 @@ class FolderFrames:
     Args:
         path: the folder. sensor: "rgb" or "depth". Each folder with frames in it is a scene (of a
             recording by ``mitigate run``, each of its scenes); of a single one, each ``block``
-            frames in the order of their names are. held_out: share of
-            the scenes that are unseen; one whose path begins with "val" or "test" is, if there is
-            one, and then no other.
+            frames in the order of their names are, or fewer, so that five blocks are unseen.
+        held_out: share of the scenes that are unseen; one whose path begins with "val" or "test"
+            is, if there is one, and then no other.
         size: pixels of a side to which all are resized when they are read; None: as they are, which
             must then be one size. unit: metres of one count of a 16-bit PNG.
-    Raises FileNotFoundError if there is no folder or no frame, ValueError for too few.
+    Says which files are left out. Pixels of depth that are not above 0 or no number become 0.
+    Raises FileNotFoundError if there is no folder or no frame, ValueError for too few, and for a
+    file that cannot be read or holds no depth in metres.
     """
+
+    files = True
 
     def __init__(
         self,
@@ -147,9 +160,10 @@ class FolderFrames:
         train = [name for name in files if name not in named]
         if not named or not train:
             raise ValueError(
-                f"{self.path} has {len(files)} scenes, and training and unseen frames must come "
-                "from different ones: make folders in it, one a place (those called val... or "
-                f"test... are the unseen ones), or put more than {self.block} frames into it."
+                f"{self.path} has {len(files)} scenes (frames: {sum(map(len, files.values()))}, "
+                f"{self.left_out}), and training and unseen frames must come from different ones: "
+                "make folders in it, one a place (those called val... or test... are the unseen "
+                "ones), or put more frames into it."
             )
         return train if split == TRAIN else named
 
@@ -169,27 +183,57 @@ class FolderFrames:
             if frame.path.as_posix() not in plan.left_out:
                 scene = frame.path.parts[0] if recorded else frame.episode
                 scenes.setdefault(scene, []).append(self.path / frame.path)
+        self.left_out = _left_out(plan.left_out)
         if not scenes:
             other = told(plan.other_files) or "none"
             raise FileNotFoundError(
                 f"{self.path} holds no {self.sensor} frames: {plan.other_modality} of the other "
-                f"sensor, {len(plan.left_out)} damaged, other files {other}. RGB is 8-bit RGB in "
-                "PNG or JPEG, depth 16-bit grey PNG or NPY metres (agent.sensor=depth)."
+                f"sensor, {self.left_out}, other files {other}. RGB is 8-bit RGB in PNG or JPEG, "
+                "depth 16-bit grey PNG or NPY metres (agent.sensor=depth)."
             )
+        if plan.left_out:
+            say(f"{self.path}: {self.left_out}")
         if len(scenes) > 1:
             return scenes
         ((name, files),) = scenes.items()
-        starts = range(0, len(files), self.block)
-        return {f"{name}#{at // self.block:04d}": files[at : at + self.block] for at in starts}
+        size = max(1, min(self.block, int(len(files) * self.held_out / FEWEST_UNSEEN)))
+        starts = range(0, len(files), size)
+        return {f"{name}#{at // size:04d}": files[at : at + size] for at in starts}
 
     def _read(self, path: Path) -> np.ndarray:
-        frame = frame_files.read(path, self.unit)
+        try:
+            frame = frame_files.read(path, self.unit)
+            if self.sensor == frame_files.DEPTH:
+                frame = _metres(frame)
+        except (OSError, ValueError) as error:
+            raise ValueError(f"{path} {error}. Mend it, or take it out of the folder.") from error
         if self.size is not None and frame.shape[:2] != (self.size, self.size):
             shrinks = self.size < max(frame.shape[:2])
             kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
             kind = cv2.INTER_NEAREST if frame.shape[-1] == 1 else kind  # holes stay holes
             frame = cv2.resize(frame, (self.size, self.size), interpolation=kind)
         return frame.reshape(*frame.shape[:2], -1)
+
+
+def _metres(depth: np.ndarray) -> np.ndarray:
+    """Depth with holes as 0. Raises ValueError, the reason, for what cannot be metres."""
+    held = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
+    known = held[held > 0]
+    if len(known) and np.quantile(known, NEAR) > FARTHEST:
+        raise ValueError(
+            f"is no depth in metres: most of it is farther away than {FARTHEST:g}, the middle "
+            f"{np.median(known):g}. Divide NPY by 1000 if it is millimetres; env.unit is the "
+            "metres of one count of a PNG"
+        )
+    return held
+
+
+def _left_out(files: Mapping[str, str]) -> str:
+    """In words how many files are left out, each reason with the first of them."""
+    first = {why: name for name, why in reversed([*files.items()])}
+    counted = Counter(files.values()).most_common(3)
+    reasons = [f"{count} as {first[why]}, which {why}" for why, count in counted]
+    return f"{len(files)} left out" + (f" ({'; '.join(reasons)})" if reasons else "")
 
 
 def source_of(

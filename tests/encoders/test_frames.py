@@ -78,12 +78,14 @@ def test_folders_called_val_are_the_unseen_ones(tmp_path):
 
 
 def test_a_single_folder_is_cut_into_blocks(tmp_path):
-    for number in range(12):
-        write(tmp_path, f"{number}.png", number)
+    for number in range(100):
+        write(tmp_path, f"{number}.png", number, 2)
     source = FolderFrames(str(tmp_path), block=3)
-    assert len(source.scenes(TRAIN)) == 3 and len(source.scenes(UNSEEN)) == 1
+    assert len(source.scenes(TRAIN)) == 27 and len(source.scenes(UNSEEN)) == 7
     first = list(source.shots(source.scenes(TRAIN)[0], 3, 0))
     assert len(first) == 3
+    few = FolderFrames(str(tmp_path))  # blocks of 50 would leave one unseen
+    assert len(few.scenes(TRAIN)) == 20 and len(few.scenes(UNSEEN)) == 5
 
 
 def test_frames_of_several_sizes_are_refused_unless_resized(tmp_path):
@@ -102,6 +104,86 @@ def test_depth_files_become_metres(tmp_path):
         np.save(tmp_path / f"s{number}/1.npy", np.full((6, 6), 2.5, np.float32))
     frames = collect(FolderFrames(str(tmp_path), "depth"), TRAIN, 2, 0)
     assert sorted(frames.frames[:, 0, 0, 0].tolist()) == [1.5, 2.5]
+
+
+HOLES = np.array([[np.nan, np.inf, -np.inf], [-1, 0, 2.5]], np.float32)
+
+
+def test_pixels_without_depth_become_0(tmp_path):
+    for number in range(2):
+        (tmp_path / f"s{number}").mkdir()
+        np.save(tmp_path / f"s{number}/0.npy", HOLES)
+    frames = collect(FolderFrames(str(tmp_path), "depth"), TRAIN, 1, 0)
+    assert frames.frames[0, ..., 0].tolist() == [[0, 0, 0], [0, 0, 2.5]]
+
+
+@pytest.mark.parametrize(
+    ("depth", "says"),
+    [
+        (np.full((6, 6), 1500.0), "is no depth in metres: .* the middle 1500"),
+        (np.linspace(0, 5000, 900).reshape(30, 30), "is no depth in metres"),
+        (np.ones((6, 6, 3)), r"has the shape \[6, 6, 3\]"),
+        (np.ones(6), r"has the shape \[6\]"),
+        (np.ones((0, 0)), r"has the shape \[0, 0\]"),
+        (np.ones((6, 6), np.uint16), "holds uint16"),
+    ],
+)
+def test_a_file_that_is_no_depth_is_named(tmp_path, depth, says):
+    for number in range(2):
+        (tmp_path / f"s{number}").mkdir()
+        np.save(tmp_path / f"s{number}/0.npy", depth)
+    with pytest.raises(ValueError, match=f"s0/0.npy {says}.*take it out of the folder"):
+        collect(FolderFrames(str(tmp_path), "depth", size=4), TRAIN, 1, 0)
+
+
+def test_frames_that_show_nothing_are_refused(tmp_path):
+    for number in range(2):
+        (tmp_path / f"s{number}").mkdir()
+        np.save(tmp_path / f"s{number}/0.npy", np.full((6, 6), 1e300))
+    with pytest.raises(ValueError, match="All of the 1 train frames are 0 everywhere"):
+        collect(FolderFrames(str(tmp_path), "depth"), TRAIN, 1, 0)
+
+
+def test_files_that_are_left_out_are_told_with_their_reasons(tmp_path, capsys):
+    for number in range(5):
+        write(tmp_path, f"s{number}/a.png", number)
+        Image.new("RGBA", (12, 12)).save(tmp_path / f"s{number}/b.png")
+    (tmp_path / "s0/c.png").write_bytes(b"x")
+    FolderFrames(str(tmp_path))
+    said = " ".join(capsys.readouterr().out.split())
+    assert "6 left out (5 as s0/b.png, which is a 8-bit RGB with alpha PNG" in said
+    assert "1 as s0/c.png, which is no PNG file" in said
+    for file in tmp_path.glob("s*/a.png"):
+        file.unlink()
+    with pytest.raises(FileNotFoundError, match=r"6 left out \(5 as s0/b.png"):
+        FolderFrames(str(tmp_path))
+    write(tmp_path, "s0/a.png", 0)
+    with pytest.raises(ValueError, match=r"has 1 scenes \(frames: 1, 6 left out \(5 as s0/b.png"):
+        FolderFrames(str(tmp_path)).scenes(TRAIN)
+
+
+@pytest.mark.parametrize("spoil", ["grey", "cut"])
+def test_a_picture_that_cannot_be_read_is_named(tmp_path, spoil):
+    for number in range(2):
+        write(tmp_path, f"s{number}/0.jpg", number)
+    file = tmp_path / "s0/0.jpg"
+    if spoil == "grey":
+        Image.new("L", (12, 12)).save(file)
+    else:
+        file.write_bytes(file.read_bytes()[:-200])
+    says = "has the colours L" if spoil == "grey" else "cannot be decoded"
+    with pytest.raises(ValueError, match=f"{file} {says}.*take it out of the folder"):
+        collect(FolderFrames(str(tmp_path)), TRAIN, 1, 0)
+
+
+def test_fewer_frames_are_some_of_more(tmp_path):
+    for scene in range(7):
+        for number in range(1 + scene % 3):
+            write(tmp_path, f"s{scene}/{number}.png", 10 * scene + number)
+    source = FolderFrames(str(tmp_path))
+    more = {frame.tobytes() for frame in collect(source, TRAIN, 9, 0).frames}
+    for count in range(1, 9):
+        assert {frame.tobytes() for frame in collect(source, TRAIN, count, 0).frames} <= more
 
 
 def test_what_a_folder_lacks_is_said(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import sys
 import types
@@ -48,6 +49,83 @@ def test_a_wrong_model_is_explained(model, kwargs, says, monkeypatch):
     monkeypatch.setitem(sys.modules, "efficientnet_lite_pytorch", None)
     with pytest.raises((ValueError, FileNotFoundError), match=says):
         load_model(model, kwargs)
+
+
+BROKEN = {
+    "at_import": "1 / 0",
+    "no_python": "def make(:",
+    "no_name": "import no_such_package",
+    "inside": "def make():\n    return 1 + 'a'",
+    "key": "def make():\n    return {}['x']",
+}
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("at_import", r"importing at_import failed \(ZeroDivisionError: .*at_import.py, line 1\)"),
+        ("no_python", r"importing no_python failed \(SyntaxError: .*no_python.py, line 1\)\)"),
+        ("no_name", "cannot be imported: No module named 'no_such_package'"),
+        ("inside", r"failed when it was called with {} \(TypeError: .*inside.py, line 2\)"),
+        ("key", r"failed when it was called with {} \(KeyError: 'x', in .*key.py, line 2\)"),
+    ],
+)
+def test_what_breaks_in_somebodys_code_is_told_with_its_place(tmp_path, monkeypatch, name, says):
+    (tmp_path / f"{name}.py").write_text(BROKEN[name])
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(ValueError, match=says):
+        load_model(f"{name}:make")
+
+
+class Gives(TinyNet):
+    """Returns what ``kind`` says in place of its classes."""
+
+    def __init__(self, kind: str) -> None:
+        super().__init__()
+        self.kind = kind
+
+    def forward(self, x):
+        y = super().forward(x)
+        made = {"number": y.sum(), "counts": y.long(), "nothing": None, "deep": {"a": {"b": y}}}
+        return made[self.kind]
+
+
+@pytest.mark.parametrize(
+    ("kind", "output", "says"),
+    [
+        ("number", None, r"gives float32 \(\) for two frames"),
+        ("counts", None, r"gives int64 \(2, 5\) for two frames: it must be floats"),
+        ("nothing", None, "it returns a NoneType"),
+        ("nothing", 0, "it returns a NoneType"),
+        ("deep", None, "it returns a dict"),
+        ("deep", "a", "it returns a dict"),
+        ("missing", None, r"take rgb frames .*\(KeyError: 'missing', in .*, line [0-9]+\)"),
+    ],
+)
+def test_an_output_that_is_no_target_is_explained(kind, output, says):
+    with pytest.raises(ValueError, match=says):
+        encoder(model=f"{__name__}:Gives", kwargs={"kind": kind}, output=output)
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda v: (100 * v).int(), r"stem.weight is int32 \(8, 3, 3, 3\), not float32"),
+        (lambda v: v.to_sparse(), r"stem.weight is float32 \(8, 3, 3, 3\) sparse_coo, not float32"),
+    ],
+)
+def test_weights_of_another_form_are_named(tmp_path, change, says):
+    state = {k: change(v) if v.is_floating_point() else v for k, v in tiny().state_dict().items()}
+    torch.save(state, tmp_path / "w.pth")
+    with pytest.raises(ValueError, match=says):
+        load_weights(tiny(), str(tmp_path / "w.pth"))
+
+
+def test_weights_in_half_precision_are_read(tmp_path):
+    torch.save({k: v.half() for k, v in tiny().state_dict().items()}, tmp_path / "w.pth")
+    made = tiny()
+    load_weights(made, str(tmp_path / "w.pth"))
+    assert made.stem.weight.dtype == torch.float32
 
 
 def test_a_torchscript_takes_adapters_before_and_behind(tmp_path):
@@ -147,6 +225,20 @@ def test_nothing_is_unpickled(tmp_path, capsys):
     with pytest.raises(ValueError, match="cannot be read without running code|holds no tensors"):
         load_weights(tiny(), str(tmp_path / "w.pth"))
     assert "this ran" not in capsys.readouterr().out
+
+
+class Commands:
+    """A pickle that would give a text to the shell: torch never lets its function in."""
+
+    def __reduce__(self):
+        return (os.system, ("exit",))
+
+
+def test_nobody_is_told_to_read_a_hostile_file_with_less_care(tmp_path):
+    torch.save({**tiny().state_dict(), "a": Commands()}, tmp_path / "w.pth")
+    with pytest.raises(ValueError, match=r"\(.*\.system .*\)\. Save the tensors") as caught:
+        load_weights(tiny(), str(tmp_path / "w.pth"))
+    assert "weights_only" not in str(caught.value)
 
 
 def test_a_missing_package_of_weights_names_the_extra():

@@ -12,7 +12,7 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate.agents.adapters import insert_adapters, save_adapters
+from mitigate.agents.adapters import insert_adapters, load_adapters, save_adapters
 from mitigate.encoders import plain_adapters
 from mitigate.encoders.loading import Wrapped
 from tests.encoders.test_token_adapters import ENCODERS, answer, shaken
@@ -50,11 +50,11 @@ def test_a_torchscript_is_wrapped(tmp_path):
         assert not torch.equal(attached(frames), script(frames))
 
 
-def saved(folder: Path) -> nn.Module:
+def saved(folder: Path, gate: bool = False) -> nn.Module:
     make, shape, target, *_ = ENCODERS["cnn"]
     torch.manual_seed(0)
     model, frames = make().eval(), torch.randn(3, *shape)
-    insert_adapters(model, [target], run=lambda n: model(frames[:n]))
+    insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
     save_adapters(shaken(model), folder)
     torch.manual_seed(0)
     return make().eval()
@@ -97,6 +97,30 @@ def test_settings_of_any_other_form_are_refused(tmp_path, shape):
     file.write_text(json.dumps(settings))
     with pytest.raises(ValueError, match="damaged, or of adapters that this file does not know"):
         plain_adapters.attach(model, tmp_path)
+
+
+def test_adapters_come_in_once(tmp_path):
+    model = plain_adapters.attach(saved(tmp_path), tmp_path)
+    with pytest.raises(ValueError, match="has adapters already"):
+        plain_adapters.attach(model, tmp_path)
+    script = torch.jit.trace(nn.Conv2d(3, 3, 1), torch.randn(2, 3, 8, 8))
+    wrapped = Wrapped(script)
+    insert_adapters(wrapped, ["before"], run=lambda n: wrapped(torch.randn(n, 3, 8, 8)))
+    save_adapters(wrapped, tmp_path / "script")
+    attached = plain_adapters.attach(script, tmp_path / "script")
+    with pytest.raises(ValueError, match="has adapters already"):
+        plain_adapters.attach(attached, tmp_path / "script")
+
+
+@pytest.mark.parametrize(("name", "value"), [("kind", "x"), ("gate", 1)])
+def test_our_own_loader_refuses_the_same_settings(tmp_path, name, value):
+    model, file = saved(tmp_path, gate=True), tmp_path / plain_adapters.SETTINGS
+    settings = json.loads(file.read_text())
+    settings["adapters"]["blocks.0"][name] = value
+    file.write_text(json.dumps(settings))
+    for load in (plain_adapters.attach, load_adapters):
+        with pytest.raises(ValueError, match="damaged"):
+            load(model, tmp_path)
 
 
 @pytest.mark.parametrize("cut", [4, 40, -8])

@@ -11,6 +11,7 @@ from mitigate.encoders.probe import (
     LinearProbe,
     Resamples,
     Score,
+    average,
     average_precision,
     cosine,
     retrieval,
@@ -44,6 +45,18 @@ def test_intervals_are_over_scenes_not_frames():
     assert np.isclose(score.value, values.mean())
     wanted = values[::20].std() / np.sqrt(10)
     assert np.isclose(score.samples.std(), wanted, rtol=0.15)
+
+
+def test_one_scene_gives_no_interval():
+    values = np.random.default_rng(0).standard_normal(80)
+    resamples = Resamples(np.zeros(80, int))
+    score = resamples.mean(values)
+    assert np.isclose(score.estimate.value, values.mean())
+    for found in (score.estimate, score.minus(score), average([score, score]).estimate):
+        assert np.isnan([found.low, found.high]).all()
+    x, labels = values[:, None], values[:, None] > 0
+    found = LinearProbe(x, labels, np.arange(80) % 4).score(x, labels, resamples).estimate
+    assert found.value == 1 and np.isnan(found.low)
 
 
 def test_the_probe_finds_a_linear_label_and_not_a_random_one():

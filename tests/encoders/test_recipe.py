@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import shutil
+
 import numpy as np
 import pytest
 import torch
@@ -16,11 +19,12 @@ from mitigate.corruptions import Schedule
 from mitigate.encoders import folder as folders
 from mitigate.encoders import plain_adapters
 from mitigate.encoders.model import Encoder
+from mitigate.encoders.report import before_after
 from mitigate.encoders.sources import FolderFrames
 from mitigate.recipes.encoder import HardenEncoder, variance
 from mitigate.training import train
 from mitigate.training.trainer import Trainer
-from tests.encoders.shapes import tiny
+from tests.encoders.shapes import TinyNet, tiny
 
 TINY = ["agent=encoder", "agent.model=tests.encoders.shapes:tiny", "agent.output=pool"]
 
@@ -122,6 +126,73 @@ def test_a_torchscript_file(tmp_path, pictures):
     attached = plain_adapters.attach(script, out / "agent")
     with torch.no_grad():
         assert torch.equal(attached(again.transform(frames)), again.eval()(frames))
+
+
+def saved_network(kind: str, path) -> str:
+    """A file of the tiny network: "ts" traced, "pt2" exported for any number of frames."""
+    file, frames = str(path / f"net.{kind}"), torch.randn(2, 3, 32, 32)
+    if kind == "ts":
+        torch.jit.trace(tiny().eval(), frames).save(file)
+        return file
+    shapes = ({0: torch.export.Dim("n")},)
+    torch.export.save(torch.export.export(tiny().eval(), (frames,), dynamic_shapes=shapes), file)
+    return file
+
+
+@pytest.mark.parametrize(("kind", "tune"), [("ts", "all"), ("pt2", "all"), ("pt2", "adapters")])
+def test_a_network_in_a_file_trains(tmp_path, pictures, kind, tune):
+    adapters = {"targets": [r"blocks\.\d"]} if tune == "adapters" else None
+    net = saved_network(kind, tmp_path)
+    encoder = made(model=net, tune=tune, adapters=adapters, output=None)
+    before = {name: value.clone() for name, value in encoder.state_dict().items()}
+    recipe = recipe_of(encoder, pictures)
+    Trainer(recipe, steps=1, folder=tmp_path, lr=1e-2, precision="fp32").fit()
+    assert any(not torch.equal(v, before[k]) for k, v in encoder.state_dict().items())
+    frames = torch.randint(0, 256, (3, 32, 32, 3), dtype=torch.uint8)
+    assert torch.equal(recipe.teacher(frames), made(model=net, tune="all", output=None)(frames))
+
+
+def test_before_is_the_encoder_that_the_training_began_with(tmp_path, pictures):
+    own = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
+    own += ["agent.tune=all", "trainer.lr=1e-9"]  # weights drawn anew, and hardly trained
+    out = train.run(config(tmp_path, pictures, *own))
+    rows = [json.loads(line) for line in (out / "features.jsonl").read_text().splitlines()]
+    clean = next(row for row in rows if (row["measure"], row["condition"]) == ("cosine", "clean"))
+    assert clean["before"][0] == pytest.approx(1) and clean["after"][0] == pytest.approx(
+        1, abs=0.01
+    )
+    assert clean["before"][1:] == [None, None]  # of six folders one is unseen
+    assert "[n/a] |" in (out / "features.md").read_text()
+
+
+def test_there_is_no_before_of_an_encoder_that_changed(tmp_path, pictures, monkeypatch):
+    cfg = config(tmp_path, pictures, *TINY, "agent.tune=all", "evaluation.enabled=false")
+    out, trained = train.run(cfg), build(cfg.agent)
+    monkeypatch.setattr("tests.encoders.shapes.tiny", lambda **_: TinyNet())
+    with pytest.raises(ValueError, match="has other weights than when the training began"):
+        before_after(cfg, None, trained, out)
+
+
+def test_a_run_goes_on_with_the_same_frames_alone(tmp_path, pictures):
+    own = tmp_path / "own"
+    shutil.copytree(pictures, own)
+    cfg = config(tmp_path, own, *TINY, "evaluation.enabled=false")
+    train.run(cfg)
+    train.run(cfg)
+    for file in own.glob("*/0.png"):
+        Image.fromarray(np.zeros((32, 32, 3), np.uint8)).save(file)
+    with pytest.raises(ValueError, match="other settings .*frames_sha256"):
+        train.run(cfg)
+
+
+def test_a_broken_unseen_frame_shows_before_the_training(tmp_path, pictures):
+    own = tmp_path / "own"
+    shutil.copytree(pictures, own)
+    last = own / "s5" / "0.png"
+    last.write_bytes(last.read_bytes()[:200])
+    with pytest.raises(ValueError, match=rf"{last} cannot be decoded.*take it out of the folder"):
+        train.run(config(tmp_path, own, *TINY))
+    assert not list(tmp_path.glob("*/encoder/step-*.pt"))
 
 
 def test_all_weights_can_be_tuned(tmp_path, pictures):
