@@ -3,7 +3,9 @@
 Attacks at every place of plain and styled instructions, and what of the route was lost with them;
 legitimate sentences that look like attacks; lies and honest rewrites before the gate.
 ``--split test`` is what no threshold was chosen by; the shipped weights are fitted on it, so
-measure others there: ``MITIGATE_RULES=tune.json`` (:mod:`mitigate.safeguard.fit`).
+measure others there: ``MITIGATE_RULES=tune.json`` (:mod:`mitigate.safeguard.fit`). ``--split
+fresh`` is what nothing shipped was fitted on: attacks by two authors who had seen none of ours, in
+routes of voices that no network learned from.
 """
 
 from __future__ import annotations
@@ -171,6 +173,7 @@ def report(split: str, each: int, choice: str = "rules", sample: int | None = No
 
     removed, lost, _ = attacked(repair, split, each, sample)
     mechanisms = list(dict.fromkeys(a.mechanism for a in trials.attacks(split)))
+    lies = rewrites(split)[0]
     parts = [
         f"## Attacks removed, %, {split}",
         attack_table(removed, mechanisms),
@@ -178,16 +181,19 @@ def report(split: str, each: int, choice: str = "rules", sample: int | None = No
         attack_table(lost, mechanisms),
         f"## Without attack, changed, %, {split}",
         table([["texts", "%"], *([k, rate(v)] for k, v in unattacked(repair, split).items())]),
-        f"## Lies refused, honest rewrites accepted, %, {split}",
-        table([["kind", "%"], *([k, rate(v)] for k, v in rewrites(split)[0].items())]),
     ]
+    if lies:
+        parts += [
+            f"## Lies refused, honest rewrites accepted, %, {split}",
+            table([["kind", "%"], *([k, rate(v)] for k, v in lies.items())]),
+        ]
     return "\n\n".join(parts)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Entry point."""
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.banks", description=__doc__)
-    parser.add_argument("--split", choices=trials.SPLITS, default="tune")
+    parser.add_argument("--split", choices=(*trials.SPLITS, trials.FRESH), default="tune")
     parser.add_argument("--safeguard", default="rules", help="rules, tagger, reader, a folder ...")
     parser.add_argument("--each", type=int, default=2, help="instructions for an attack and place")
     parser.add_argument("--sample", type=int, help="trials of attacks, plain and spoken each")

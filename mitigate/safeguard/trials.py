@@ -24,6 +24,7 @@ from mitigate.safeguard.text import sentences
 BANKS = Path(__file__).parents[2] / "tests" / "safeguard" / "banks"
 SPLITS = ("tune", "test")
 ALL = "all"
+FRESH = "fresh"  # attacks and lookalikes by two authors who saw nothing of ours; fitted on by none
 HELD_OUT = frozenset({
     "diversion", "role", "other_script", "noise",
     # by another author
@@ -89,19 +90,27 @@ def learned_prefixes() -> list[tuple[str, str]]:
 
 
 def half(name: str, split: str) -> list[dict[str, Any]]:
-    """Return the odd lines (1-based) of a bank for "tune", the even ones for "test"."""
+    """Return the odd lines (1-based) of a bank for "tune", the even ones for "test", and for the
+    fresh attacks what their authors wrote of it."""
+    if split == FRESH:
+        return lines(f"fresh_{name}") if name == "lookalikes" else []
     return lines(name) if split == ALL else lines(name)[SPLITS.index(split) :: 2]
 
 
 def attacks(split: str) -> list[Attack]:
-    """Return the attacks of the mechanisms of a split."""
-    found = [Attack(d["mechanism"], d["place"], d["attack"]) for d in lines("attacks")]
+    """Return the attacks of the mechanisms of a split, or the fresh ones."""
+    name = "fresh_attacks" if split == FRESH else "attacks"
+    found = [Attack(d["mechanism"], d["place"], d["attack"]) for d in lines(name)]
+    if split == FRESH:
+        return found
     return [a for a in found if split == ALL or (a.mechanism in HELD_OUT) == (split == "test")]
 
 
 def voices(split: str) -> tuple[str, ...]:
-    """Return the voices of a split."""
-    return {"tune": TUNE_VOICES, "test": TEST_VOICES, ALL: TUNE_VOICES + TEST_VOICES}[split]
+    """Return the voices of a split; for the fresh attacks those that no network learned from."""
+    held_out = spoken.VALIDATION + spoken.TEST
+    every = TUNE_VOICES + TEST_VOICES
+    return {"tune": TUNE_VOICES, "test": TEST_VOICES, ALL: every, FRESH: held_out}[split]
 
 
 def told(split: str, task: str = "route") -> list[Told]:
