@@ -19,17 +19,29 @@ from mitigate.safeguard.text import MASK, words
 
 ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
 _HUNTS = re.compile(
-    r"\b(?:find|finding|look(?:ing)? for|locat|search|seek|spot|fetch|hunt|where|in search)",
+    r"\b(?:find|finding|found|look(?:ing|ed)? for|locat|search|seek|spot|fetch|hunt|where|"
+    r"in search)",
     re.IGNORECASE,
 )
+_TRACKED = re.compile(r"(\b(?:track|hunt|chas)\w*\b[^.;:!?]{0,40}?) down\b", re.IGNORECASE)
 _SEEKS = re.compile(
-    r"\b(?:find|finding|look(?:ing)? for|locate|locating|search(?:ing)? (?:for|out)|seek|spot|"
-    r"fetch|hunt(?:ing)? (?:for|down|out)|where(?:'s| is| are)|need|want|"
+    r"\b(?:find|finding|found|look(?:ing|ed)? for|locate[ds]?|locating|"
+    r"search(?:ing|ed)? (?:for|out)|seek|spot|fetch|track(?:ing|ed)?(?: down)?|"
+    r"hunt(?:ing|ed)? (?:for|down|out)|where(?:'s| is| are)|need|want|"
     r"(?:go|walk|head|get|navigate|"
     r"proceed|come|take me|make your way|move)(?: on| over| up)? to|in search of|see|reach|"
     r"approach)"
     r"\s+(?:me |us |out |a |an |the |any |some |one |your |my |nearest |closest |of )*"
     r"(?P<rest>[^.;:!?]*)",
+    re.IGNORECASE,
+)
+
+
+# what is to be found, said before the verb: "a lamp must be found", "it's a lamp I want"
+_WANTED = re.compile(
+    r"\b(?:an?|the|some|any)\s+(?P<rest>[\w' -]{2,40}?)\s+(?:(?:could|must|should|can|may|might|"
+    r"would|will|(?:is|has|needs) to|to)\s+be\s+(?:found|located|reached|sought|looked for)|"
+    r"(?:that )?i(?:'m| am)? (?:want|need|after|looking for|seek))\b",
     re.IGNORECASE,
 )
 
@@ -55,10 +67,10 @@ def weight(text: str) -> int:
 def sought(text: str, hunted: bool = False) -> frozenset[str]:
     """Return the things that ``text`` asks to find or go to, in canonical form; ``hunted``: to find
     alone."""
+    plain = MASK.sub("the", plainly(text).text)
+    asked = [m for m in _SEEKS.finditer(plain) if not hunted or _HUNTS.match(m.group())]
     found = set()
-    for match in _SEEKS.finditer(MASK.sub("the", plainly(text).text)):
-        if hunted and not _HUNTS.match(match.group()):
-            continue
+    for match in (*asked, *_WANTED.finditer(plain)):
         for token in tag(match["rest"])[:6]:
             name = normal(token.lower)
             if token.lower in CATEGORIES or (
@@ -87,7 +99,7 @@ def result_refused(heard: str, given: str) -> str:
         return "nothing of the way would be left"
     named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
     still = set(facts(plainly(given).text).landmarks)
-    goal = not route_turns(given)  # whatever is named may be meant
+    goal = not (route_turns(heard) and route_turns(given))  # whatever is named may be meant
     lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still
     if lost:
         return f"it may be what is to be found ({', '.join(sorted(lost))})"
@@ -119,4 +131,5 @@ def edit_refused(heard: str, said: str, aside: Sequence[str]) -> str:
 
 def route_turns(text: str) -> bool:
     """Return whether ``text`` tells to turn or climb, and not only what to find."""
-    return any(d not in ("stop", "straight") for d in facts(text).directions)
+    said = _TRACKED.sub(r"\1", text)
+    return any(d not in ("stop", "straight") for d in facts(said).directions)

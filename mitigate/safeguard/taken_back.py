@@ -68,6 +68,7 @@ _SAYINGS = (
     (re.compile(r"(?<![^ ])in (?:the vicinity of|(?:close |the )?proximity (?:to|of))(?= )"), "by"),
 )
 _PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
+_TRACKED = re.compile(r"(?<![^ ])(?:track|hunt)(?:ing|ed)? (?:one|it|that|them|those) down(?= )")
 _WHEN = bag("until till before prior after upon once when")  # tells when, of what comes then
 _BRACKETS = frozenset("()[]")
 _QUOTES = frozenset("'\"“”‘’`")
@@ -95,6 +96,9 @@ def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[flo
 def _sayings(made: Edited) -> None:
     """Say what is said in many words by its phrase, where they would not all stay."""
     text, places = _spelled(made.found)
+    for match in _TRACKED.finditer(text):
+        first = places[match.start()]
+        made.give_back(range(first, first + 1 + match.group().count(" ")))
     for pattern, phrase in _SAYINGS:
         for match in pattern.finditer(text):
             first = places[match.start()]

@@ -63,3 +63,16 @@ def test_the_thing_to_be_found_is_read_from_many_wordings():
     for text in ("Find a potted plant.", "Could you look for a plant?", "I need a plant.",
                  "Where is the nearest plant?", "Please walk to the plant and stop."):  # fmt: skip
         assert "plant" in gate.sought(text)
+
+
+@pytest.mark.parametrize(
+    "heard, given",
+    [
+        ("It is stifling in here. A fan must be found.", "It is stifling in here."),
+        ("There are crumbs. I'd be glad if you looked for a broom.", "There are crumbs."),
+        ("It's a clock I want. I saw a barometer by the stairs.", "I saw a barometer."),
+        ("Every house has its fireplace, and I want you to track one down.", "Track one down."),
+    ],
+)
+def test_what_is_to_be_found_stays_however_it_is_said(heard, given):
+    assert gate.result_refused(heard, given)
