@@ -17,6 +17,7 @@ from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.plain_words import PHRASES, plain_form
 
 KEEP, DROP, PLAIN = range(3)
+CLAUSE_ENDS = frozenset(".,;:!?()–—")
 ENDS, PAUSES = frozenset(".!?;:"), frozenset(",;:-–—(")
 NUMBER = {phrase: number for number, phrase in enumerate(PHRASES, 1)}  # 0: no phrase
 # worth of a pair of words in an alignment: equal, both of one word, a small word, marks (ours)
@@ -83,13 +84,13 @@ class Edited:
     def clause(self, place: int) -> tuple[int, int]:
         """Return the first place of the words between marks around ``place``, and the mark's."""
         first = place
-        while first and self.found[first - 1].is_word:
+        while first and self.found[first - 1].text not in CLAUSE_ENDS:
             first -= 1
         return first, self.end_of_clause(place)
 
     def end_of_clause(self, place: int) -> int:
         """Return the place of the next mark from ``place`` on, or the sentence's end."""
-        while place < len(self.found) and self.found[place].is_word:
+        while place < len(self.found) and self.found[place].text not in CLAUSE_ENDS:
             place += 1
         return place
 

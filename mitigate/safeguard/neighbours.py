@@ -61,14 +61,14 @@ def parted(made: Edited) -> bool:
 
 
 def _twice(made: Edited, said: Sequence[Said]) -> bool:
-    """Take out "turn" behind a side that one turns to, and "to" before "stop" and "at"."""
+    """Take out "turn" behind a side that one turns to, and "to" where nothing asks for it any
+    more; return whether there was such."""
     for one, other, third in zip(said, said[1:], [*said[2:], Said("", 0, False)], strict=False):
         turned = (one.word, third.word) == ("turn", "turn") and other.word in ("left", "right")
         if turned and not third.phrase and third.place > one.place + 2 - one.phrase:
             made.acts[third.place] = DROP
             return True
-        stops = other.word in STOPS and other.place > one.place + 1
-        if one.word == "to" and not one.phrase and (stops or (other.phrase and other.word == "at")):
+        if one.word == "to" and not one.phrase and _idle(made, one, other):
             made.acts[one.place] = DROP
             return True
     return False
@@ -112,7 +112,7 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
     return (
         (plain in _BARE and noun and after not in _SIDES)
         or (word in _SIDES and noun)
-        or (kind == "NOUN" and after in DETERMINERS and other.place - one.place <= 3)
+        or (kind == "NOUN" and after in DETERMINERS and other.place - one.place <= 5)
         or (kind == "ADJ" and word not in _SIDES and (ends or after in _OF or after in WAY))
         or (word in _HALVES and (ends or after in FUNCTION))
         or (word in _OF and (plain_form(after) in _BARE or after in STEP or after == "straight"))
@@ -123,6 +123,15 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
         or (ends and (word in _DANGLING or (word in MOVES and word != "turn")))
         or (word == "to" and after in ("and", "or"))
     )
+
+
+def _idle(made: Edited, to: Said, behind: Said) -> bool:
+    """Return whether a "to" is left of more words ("you are asked to turn", "close to the")."""
+    if behind.phrase:
+        return behind.word == "at"
+    alone = to.place == 0 or not made.kept(to.place - 1)
+    verb = alone and plain_form(behind.word) in _VERBS
+    return behind.word == "to" or verb or (behind.word in STOPS and behind.place > to.place + 1)
 
 
 def _begins(made: Edited, said: Sequence[Said]) -> bool:

@@ -83,6 +83,7 @@ _REMOVED = tuple(
         (rf"{_NO_TURN}\bright (?=(?:after|before|at|by|next|there|here|now|away|up|beside|in front|"
          r"under|behind|outside|inside|past|beyond|against|between|near|round|around|through|along|"
          r"down|over|on|to the end)\b)", ""),
+        (r"\bright (?=with (?:you|me)\b|back\b)", ""),
         # what somebody left is no side
         (r"\b(?:i|he|she|they|we|who|somebody|someone|nobody|people|'ve|has|had|have|been|was|were|"
          r"is|are|gets?|being)(?:'ve|'d|'s)? left (?!side|hand|of|turn|at|and|then|into|past|"

@@ -14,7 +14,7 @@ from mitigate.safeguard.lexicon import FUNCTION
 # verbs by which one goes by a thing -> the way; then the words for it behind any verb of motion
 _STEPS = {
     "through": "traverse traversing",
-    "past": "pass passes passing passed bypass bypassing bypassed",
+    "past": "pass passes passing passed bypass bypassing bypassed clear clearing",
     "into": "enter enters entering entered access accessing ingress",
     "out": "exit exits exiting exited leave leaves leaving quit quitting depart departing "
     "departure vacate vacating evacuate egress",
@@ -73,6 +73,8 @@ _ROOMS = DOORS | bag("room rooms bedroom bathroom floor level one stairs landing
 _PLACES = bag("on at to it's is")
 _MANNER = bag("direction order front manner line way parallel")  # "in this manner" leads nowhere
 _EXITS = bag("exit egress entrance entry end")
+_BY_IT = bag("past through around into along beyond across")
+_INSIDE = bag("inside outside through past")
 _NO_STEPS = {("followed", "by"), ("hang", "out"), ("hang", "around")}
 _FAR = 5  # words behind a verb of motion in which its way is told
 
@@ -85,10 +87,23 @@ class Step(NamedTuple):
     way: str
 
 
-def steps(found: Sequence[Token]) -> Iterator[Step]:
-    """Yield each step that a sentence tells the agent, in whatever words."""
+def steps(found: Sequence[Token]) -> list[Step]:
+    """Return the steps that a sentence tells the agent, in whatever words."""
+    told = list(_told(found))
+    return [
+        step
+        for step in told
+        if not any(o != step and o.first <= step.first and step.last <= o.last for o in told)
+    ]
+
+
+def _told(found: Sequence[Token]) -> Iterator[Step]:
     for place, token in enumerate(found):
         behind = _words(found, place + 1)
+        if token.lower in _BY_IT and behind[:1] and behind[0] in PRONOUNS:
+            yield Step(place, place + 1, WAY[token.lower])
+        if token.lower in ("once", "when") and (inside := _inside(behind)):
+            yield Step(place, place + inside, WAY[found[place + inside].lower])
         if _of_others(found, place) or (token.lower, *behind[:1]) in _NO_STEPS:
             continue
         if token.lower == "following" and behind and behind[0] in MARKS | PRONOUNS:
@@ -117,8 +132,21 @@ def _way(found: Sequence[Token], verb: int) -> Step | None:
         if word in _TO and pronoun:
             return Step(verb, at + 1, THERE)
         if word in WAY and word != "from" and not (word == "in" and _MANNER & {*behind}):
+            if behind[:1] and behind[0] in WAY:  # "out into"
+                return Step(verb, at + 1, WAY[behind[0]])
             return Step(verb, at + pronoun, WAY[word])
     return None
+
+
+def _inside(behind: Sequence[str]) -> int:
+    """Return how many words behind "once" one is inside, outside or through ("once you are
+    outside"), 0 if that is not said."""
+    for count, word in enumerate(behind, 1):
+        if word in _INSIDE:
+            return count
+        if word not in ("you", "you're", "you've", "are", "have", "safely"):
+            break
+    return 0
 
 
 def which(found: Sequence[Token]) -> Iterator[Step]:

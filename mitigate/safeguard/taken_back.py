@@ -68,7 +68,22 @@ _SAYINGS = (
     (re.compile(r"(?<![^ ])in (?:the vicinity of|(?:close |the )?proximity (?:to|of))(?= )"), "by"),
 )
 _PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
-_TRACKED = re.compile(r"(?<![^ ])(?:track|hunt)(?:ing|ed)? (?:one|it|that|them|those) down(?= )")
+# what is said of the speaker alone
+_NOTHING = re.compile(
+    r"(?<![^ ])(?:i'll|i will|we'll) be right (?:with you|back|there|behind you|along)(?= )"
+)
+_AT_THAT = bag("upon once when after")
+# by which one stops, whether or not it is said so
+_RESTS = STOPS | bag(
+    "remains rests done end ends ending destination goal there here position place finished final "
+    "still tight"
+)
+# words that are told together or not at all
+_WHOLE = re.compile(
+    r"(?<![^ ])(?:(?:track|hunt)(?:ing|ed)? (?:one|it|that|them|those) down|as far as|in front of|"
+    r"next to|close to|on top of|out of|away from|instead of|one more|once more|"
+    r"at the (?:end|top|bottom|foot|head|center|centre) of|to the (?:left|right) of)(?= )"
+)
 _WHEN = bag("until till before prior after upon once when")  # tells when, of what comes then
 _BRACKETS = frozenset("()[]")
 _QUOTES = frozenset("'\"“”‘’`")
@@ -86,7 +101,14 @@ def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[flo
         return list(edits)  # the gate decides on whole sentences
     _sayings(made)
     for _ in range(_ROUNDS):
-        mended = [_denials(made), _words(made, drop), _phrases(made), _times(made), _steps(made)]
+        mended = [
+            _wholes(made),
+            _denials(made),
+            _words(made, drop),
+            _phrases(made),
+            _times(made),
+            _steps(made),
+        ]
         if not any([*mended, _stops(made), parted(made)]):
             break
     _marks(made)
@@ -96,9 +118,10 @@ def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[flo
 def _sayings(made: Edited) -> None:
     """Say what is said in many words by its phrase, where they would not all stay."""
     text, places = _spelled(made.found)
-    for match in _TRACKED.finditer(text):
+    for match in _NOTHING.finditer(text):
         first = places[match.start()]
-        made.give_back(range(first, first + 1 + match.group().count(" ")))
+        for place in range(first, first + 1 + match.group().count(" ")):
+            made.acts[place], made.before[place] = DROP, 0
     for pattern, phrase in _SAYINGS:
         for match in pattern.finditer(text):
             first = places[match.start()]
@@ -112,19 +135,34 @@ def _sayings(made: Edited) -> None:
                     made.acts[behind] = KEEP
 
 
+def _wholes(made: Edited) -> bool:
+    """Give back words that are told together, of which a part is left before a thing that stays;
+    return whether there were such."""
+    text, places = _spelled(made.found)
+    changed = False
+    for match in _WHOLE.finditer(text):
+        first = places[match.start()]
+        span = range(first, first + 1 + match.group().count(" "))
+        if any(made.kept(p) for p in span):
+            changed |= not all(made.kept(p) for p in span) and made.give_back(span)
+    return changed
+
+
 def _times(made: Edited) -> bool:
     """Give back words that say when a thing is done that is still told; return whether there were
     such."""
     changed = False
     for place, token in enumerate(made.found):
         behind = range(place + 1, min(place + 6, made.end_of_clause(place)))
-        if token.lower in _WHEN and not made.kept(place) and not any(
-            made.before[p] for p in (place, *behind)
-        ):  # fmt: skip
-            told = [p for p in behind if made.kept(p)]
+        if token.lower not in _WHEN or made.kept(place):
+            continue
+        told = [p for p in behind if made.kept(p)]
+        if token.lower in _AT_THAT:  # may be told by a phrase, or by the order of what is told
+            by_phrase = any(made.before[p] for p in (place, *behind))
             before = any(made.kept(p) for p in range(place) if made.found[p].is_word)
-            if told and before:
-                changed |= made.give_back(range(place, told[0]))
+            told = told if before and not by_phrase else []
+        if told:
+            changed |= made.give_back(range(place, told[0] + 1))
     return changed
 
 
@@ -176,6 +214,8 @@ def _backed(
         emphasis = following[:1] == ["right"] and following[1:2] and following[1] in _PLACED
         if not turning or emphasis or not ("around" in phrase or side_first(following)):
             return False
+    if "stop" in phrase and not (_RESTS & {*clause} or STOP.search(" ".join(clause))):
+        return False
     for word in phrase:
         way = WAY.get(word)
         doors = way in ("through", "into", "out") and DOORS & {*following[:4]}
