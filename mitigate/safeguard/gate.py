@@ -19,13 +19,13 @@ from mitigate.safeguard.text import MASK, words
 
 ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
 _HUNTS = re.compile(
-    r"\b(?:find|finding|found|look(?:ing|ed)? for|locat|search|seek|spot|fetch|hunt|where|"
+    r"\b(?:find|finding|look(?:ing|ed)? for|locat|search|seek|spot|fetch|hunt|where|"
     r"in search)",
     re.IGNORECASE,
 )
 _TRACKED = re.compile(r"(\b(?:track|hunt|chas)\w*\b[^.;:!?]{0,40}?) down\b", re.IGNORECASE)
 _SEEKS = re.compile(
-    r"\b(?:find|finding|found|look(?:ing|ed)? for|locate[ds]?|locating|"
+    r"\b(?:find|finding|look(?:ing|ed)? for|locate|locating|"
     r"search(?:ing|ed)? (?:for|out)|seek|spot|fetch|track(?:ing|ed)?(?: down)?|"
     r"hunt(?:ing|ed)? (?:for|down|out)|where(?:'s| is| are)|need|want|"
     r"(?:go|walk|head|get|navigate|"
