@@ -65,8 +65,8 @@ _SAME = frozenset(
         "across through", "along through",
     )
 )  # fmt: skip
-_OTHERS = bag("i he she they people somebody someone who which that anybody everyone it")
 _PEOPLE = bag("i he she they people somebody someone anybody everyone")
+_OTHERS = _PEOPLE | bag("who which that it")
 _TO = bag("to towards toward for")
 _TURN_OF = bag("next second third fourth last other opposite first")
 _ROOMS = DOORS | bag("room rooms bedroom bathroom floor level one stairs landing")

@@ -119,17 +119,15 @@ def _sayings(made: Edited) -> None:
     """Say what is said in many words by its phrase, where they would not all stay."""
     text, places = _spelled(made.found)
     for match in _NOTHING.finditer(text):
-        first = places[match.start()]
-        for place in range(first, first + 1 + match.group().count(" ")):
+        for place in _span(match, places):
             made.acts[place], made.before[place] = DROP, 0
     for pattern, phrase in _SAYINGS:
         for match in pattern.finditer(text):
-            first = places[match.start()]
-            behind = first + 1 + match.group().count(" ")
+            first, behind = (span := _span(match, places)).start, span.stop
             thing = any(made.kept(p) for p in range(behind, made.end_of_clause(behind)))
-            if thing and not all(made.kept(p) for p in range(first, behind)):
-                count = behind - first
-                made.acts[first:behind], made.before[first:behind] = [DROP] * count, [0] * count
+            if thing and not all(made.kept(p) for p in span):
+                made.acts[first:behind] = [DROP] * len(span)
+                made.before[first:behind] = [0] * len(span)
                 made.before[behind] = NUMBER[phrase]
                 if made.found[behind].lower == "the":
                     made.acts[behind] = KEEP
@@ -141,8 +139,7 @@ def _wholes(made: Edited) -> bool:
     text, places = _spelled(made.found)
     changed = False
     for match in _WHOLE.finditer(text):
-        first = places[match.start()]
-        span = range(first, first + 1 + match.group().count(" "))
+        span = _span(match, places)
         if any(made.kept(p) for p in span):
             changed |= not all(made.kept(p) for p in span) and made.give_back(span)
     return changed
@@ -170,11 +167,11 @@ def _words(made: Edited, drop: Sequence[float]) -> bool:
     """Give back words of a clause that may tell of the way: of one of which a part stays, all but
     what people say beside it; of others all, unless each such word surely goes. Return whether
     there were such."""
-    changed, start = False, 0
+    changed, start, aside = False, 0, speech_words() | SEEKS
     while start < len(made.found):
         end = made.end_of_clause(start)
         content = [p for p in range(start, end) if made.found[p].lower not in FUNCTION]
-        told = [p for p in content if made.found[p].lower not in speech_words() | SEEKS]
+        told = [p for p in content if made.found[p].lower not in aside]
         if any(made.kept(p) for p in content):
             for place in told:
                 if not made.kept(place):
@@ -284,13 +281,12 @@ def _stops(made: Edited) -> bool:
     for match in STOP.finditer(text):
         if match.start() not in places:
             continue
-        first = places[match.start()]
-        last = first + match.group().strip().count(" ")
-        if last + 1 >= len(made.found):
-            return made.give_back(range(first, last + 1))
-        for place in range(first, last + 1):
+        span = _span(match, places)
+        if span.stop >= len(made.found):
+            return made.give_back(span)
+        for place in span:
             made.acts[place], made.before[place] = DROP, 0
-        made.before[last + 1] = NUMBER["stop"]
+        made.before[span.stop] = NUMBER["stop"]
         return True
     return False
 
@@ -307,6 +303,12 @@ def _marks(made: Edited) -> None:
         if mark.text == "-" and one.end == mark.start and mark.end == other.start:
             whole = made.kept(place - 1) and made.kept(place + 1)
             made.acts[place], made.before[place] = KEEP if whole else DROP, 0
+
+
+def _span(match: re.Match[str], places: dict[int, int]) -> range:
+    """Return the places of the tokens that a match of what is spelled holds."""
+    first = places[match.start()]
+    return range(first, first + 1 + match.group().count(" "))
 
 
 def _spelled(found: Sequence[Token]) -> tuple[str, dict[int, int]]:
