@@ -45,7 +45,7 @@ table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --ou
 report: $(VENV)/.stamp ## the same as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
 	$(BIN)/python -m mitigate.report $(ARGS)
 
-table1: $(VENV)/.stamp ## all kinds of agent under everything, the paper's Table I: ARGS="split=val_unseen_ogn"
+table1: $(VENV)/.stamp ## all kinds of agent under everything, the paper's Table I: ARGS="table=objects"
 	$(BIN)/python -m mitigate.table1 $(ARGS)
 
 table2: $(VENV)/.stamp ## train and evaluate the paper's Table II: ARGS="seeds=[0] jobs=2"

@@ -53,7 +53,7 @@ COMMANDS = {
     "table1": Command(
         "mitigate.training.table1",
         "evaluate all kinds of agent, plain and hardened, under everything: the paper's Table I",
-        "split=val_unseen_ogn jobs=2",
+        "table=objects jobs=2",
     ),
     "table2": Command(
         "mitigate.training.table2",

@@ -1,4 +1,9 @@
-"""The paper's Table I: ``python -m mitigate.table1 jobs=2``; ``table2.py`` makes both."""
+"""Kinds of agent side by side: ``python -m mitigate.table1 table=objects jobs=2``.
+
+``table=routes`` and ``table=objects`` are the paper's Table I: plain and hardened agents under
+everything. ``routes_ablations`` and ``objects_ablations`` blank their senses one by one. The same
+command again goes on where the last one stopped (``table2.py`` makes these tables, too).
+"""
 
 from __future__ import annotations
 

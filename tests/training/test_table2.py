@@ -71,6 +71,27 @@ def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
     assert "split=val_unseen_ogn" in hardened
 
 
+@pytest.mark.parametrize(
+    "table, split, suite",
+    [
+        ("routes", "val_unseen", "all"),
+        ("objects", "val_unseen_ogn", "all"),
+        ("routes_ablations", "val_unseen", "clean"),
+        ("objects_ablations", "val_unseen_ogn", "clean"),
+    ],
+)
+def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table, split, suite):
+    cfg = conf.load_config("table1", [f"table={table}"])
+    assert (cfg.split, cfg.suite) == (split, suite)
+    for cell in table2.cells(cfg):
+        node = conf.load_config("train" if cell.trains else "evaluate", cell.options)
+        blind = cell.column.partition("_no_")[2]
+        assert list(node.agent.blind) == [blind] * bool(blind)
+        assert cell.column.startswith(node.weights.base.split("/")[1].replace("base", "topological"))
+        if "ogn" not in split:
+            assert node.env.split == split, "an agent that follows no routes"
+
+
 def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)
