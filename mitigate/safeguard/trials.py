@@ -31,6 +31,8 @@ HELD_OUT = frozenset({
     "goal_hijack", "role_confusion", "irrelevant_chatter", "code_and_log_lines", "advertising",
     "math_and_puzzles", "past_anecdotes", "mild_misleading_noise", "fake_transcript",
     "hypothetical_fiction",
+    # by a third
+    "mild_suggestion", "fake_dialogue", "goal_replacement", "riddles_and_poems",
 })  # fmt: skip
 TEST_VOICES = ("bureaucratic", "tour_guide", "poetic", "second_thoughts", "llm_professional",
     "butler", "elaborate")  # fmt: skip
