@@ -166,7 +166,8 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
         kind = _first(r"(?:converted to|is not a valid) (\w+)", text) or ""
         return f"{key}={value} has the wrong type: {key} must be {KINDS.get(kind, kind)}."
     if override is not None:
-        return _misfit(*override.split("=", 1), _chosen_by(options, primary))
+        key, _, value = override.partition("=")
+        return _misfit(key, value, _chosen_by(options, primary))
     return " ".join(str(error).split())
 
 
@@ -215,12 +216,13 @@ def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
     return [word for word in words if word not in options], options
 
 
-def composed(primary: str, options: Sequence[str]) -> DictConfig:
+def composed(primary: str, options: Sequence[str] = (), further: Path | None = None) -> DictConfig:
     """:func:`load_config`, which raises ValueError, in one paragraph, for what is wrong."""
     try:
-        return load_config(primary, options)
+        return load_config(primary, options, further)
     except (HydraException, OmegaConfBaseException) as error:
-        raise ValueError(explain(error, primary, options)) from error
+        own = [f"--config-dir={further}"] if further else []
+        raise ValueError(explain(error, primary, [*options, *own])) from error
 
 
 def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
