@@ -217,6 +217,21 @@ def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
         evaluate.run(cfg)
 
 
+def test_what_a_recipe_sets_counts_and_the_command_line_counts_more():
+    encoder = ["recipe=encoder", "agent=encoder"]
+    assert conf.load_config("train", encoder).workers == 0
+    assert conf.load_config("train", [*encoder, "workers=2"]).workers == 2
+    assert conf.load_config("train", ["recipe=harden"]).workers is None
+
+
+def test_an_ablation_blanks_something():
+    for agent in ("topological", "recurrent_rgb", "frontier"):
+        cfg = conf.load_config("train", ["recipe=ablation", f"agent={agent}"])
+        assert cfg.agent.blind == ["rgb"] and cfg.suite.conditions == ["clean"]
+    blind = conf.load_config("train", ["recipe=ablation", "agent.blind=[depth]"]).agent.blind
+    assert blind == ["depth"]
+
+
 @pytest.mark.parametrize("count", [0, -1])
 def test_no_episodes_are_refused_before_a_training(count):
     cfg = conf.load_config("train", ["recipe=da_per_episode", f"evaluation.episodes={count}"])
