@@ -51,6 +51,13 @@ _NO_FURTHER = (
     r"(?:further|farther|past (?:it|this|that|there))(?: than (?:this|that))?"
 )
 _ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_NO_FURTHER})")
+_GOES_ON = re.compile(
+    rf"{_ALSO}(?:keep|continue)(?: on)? (?:walking|going|moving|straight|forward)"
+    r"(?: (?:straight|forward|ahead|on))*"
+)
+_ALL_THE_WAY = re.compile(
+    r"(?:but )?(?:not )?all the way(?: (?:up|down|in|out|through|across|around))*"
+)
 _AROUND = re.compile(
     rf"{_ALSO}revers(?:e|ing) (?:your )?(?:current )?(?:direction|course|heading|orientation)"
     r"(?: of (?:travel|movement|motion))?\b(?! of\b)(?P<rest>.*)"
@@ -73,6 +80,8 @@ def belongs(sentence: str, first: bool, last: bool) -> str:
         return "it tells to turn around"
     if not first and (shows_place(sentence) or _KEEPS.fullmatch(said) and not _attacks(said)):
         return "it tells what a place is"
+    if not (first or last) and _GOES_ON.fullmatch(said):
+        return "it tells to go on"
     if last and not first and _ENDS.fullmatch(said):
         return "it tells to stay at the end"
     return ""
@@ -86,7 +95,7 @@ def belongs_inside(part: str) -> bool:
         return True
     kept = bool(_KEEPS.fullmatch(said)) and not _attacks(said)
     awaits = bool(_ENDS.fullmatch(said)) and ("await" in said or "further" in said)
-    return kept or _around(said) or awaits
+    return kept or _around(said) or awaits or bool(_ALL_THE_WAY.fullmatch(said))
 
 
 def shows_place(sentence: str) -> bool:

@@ -187,5 +187,6 @@ def _closed(text: str) -> str:
         else text
     )
     text = re.sub(r"\s*[,;:–—-]+\s*(?=[.!?]|$)", "", text)
+    text = re.sub(r",(?:\s*,)+", ",", text)
     text = re.sub(r"\s+(?=[,.!?;])", "", text)
     return " ".join(text.split()).lstrip(".,;:!?- ")

@@ -21,7 +21,7 @@ from mitigate.safeguard.evidence import (
     tells_where,
 )
 from mitigate.safeguard.front import in_front
-from mitigate.safeguard.honest import belongs_inside
+from mitigate.safeguard.honest import belongs_inside, shows_place
 from mitigate.safeguard.judgement import (
     PLAIN,
     SURE,
@@ -38,7 +38,7 @@ from mitigate.safeguard.pieces import Piece, parts, without
 from mitigate.safeguard.plainly_said import Tagged, Tags, judging
 from mitigate.safeguard.text import words
 from mitigate.safeguard.weights import PART, STYLE
-from mitigate.safeguard.written import TITLE, with_bearer, written
+from mitigate.safeguard.written import TITLE, quoted, with_bearer, written
 
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)
@@ -114,7 +114,7 @@ def framing(sentence: str) -> bool:
     """Return whether a sentence greets or thanks and tells nothing about the way."""
     found = words(sentence)
     told = gate.route_facts(sentence) or any(w in VERBS for w in found) or tells_where(sentence)
-    return not told and any(word in STYLE for word in found)
+    return not (told or shows_place(sentence)) and any(word in STYLE for word in found)
 
 
 def style_marks(text: str) -> int:
@@ -148,7 +148,7 @@ def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piec
         if part.start in read:
             continue
         said = part.of(text)
-        title = said[:1] in "\"'“«" and len(words(said)) <= TITLE
+        title = quoted(said) and len(words(said)) <= TITLE
         long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
         if long and not title:
             values = {"whole": logit(one.own), **features(said)}
@@ -160,7 +160,7 @@ def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piec
         for p in found
         if not any(first <= p.start and p.end <= last for first, last in stands)
         and not belongs_inside(p.of(text))
-        and not (leads(p.of(text)) and gate.route_facts(p.of(text)))
+        and not (leads(p.of(text)) and gate.route_facts(p.of(text)) and not quoted(p.of(text)))
     ]
     return sorted(gone, key=lambda part: part.start)
 

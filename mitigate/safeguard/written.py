@@ -7,7 +7,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
+from mitigate.corruptions.language.directions import MOTION, STOPS
+from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.lexicon import GROUPS
 from mitigate.safeguard.text import words
@@ -35,7 +36,7 @@ _BORNE = re.compile(
 )
 _ONE = re.compile(r"\b(?:(?:the|an?)\s+)?ones?\s+$", re.IGNORECASE)
 _ORDERS = (
-    MOTION | STOPS | TURN_VERBS | bag("ignore stay keep do don't don’t not back")
+    MOTION - bag("take make come pass follow") | STOPS | bag("ignore stay keep do don't not back")
     | GROUPS["orders"] | GROUPS["annul"] | GROUPS["invert"] | GROUPS["machine"]
 )  # fmt: skip
 
@@ -65,7 +66,13 @@ def written(text: str) -> list[tuple[int, int]]:
 def tells_to_do(quoted: str) -> bool:
     """Return whether words in quotes are too many for a sign, and tell one what to do."""
     said = words(quoted)
-    return len(said) > TITLE and any(word in _ORDERS for word in said)
+    told = any(word in _ORDERS for word in said) or bool(facts(quoted).directions)
+    return len(said) > TITLE and told
+
+
+def quoted(part: str) -> bool:
+    """Return whether a part of a sentence stands in quotes."""
+    return part[:1] in "\"'“«‘"
 
 
 def with_bearer(text: str, start: int, end: int) -> int:
