@@ -15,6 +15,7 @@ STOPS = bag(
     "stop stops stopping halt halts halting wait waits waiting pause pauses pausing rest remain "
     "remaining stay stand hold await awaiting finish cease terminate park"
 )
+_STAYS = bag("wait stand stay remain halt pause")
 _SIDES = bag("left right around round back leftward rightward leftwards rightwards about")
 _BEFORE_SIDE = bag(
     "to the your a sharp sharply slight slightly hard immediately immediate first second third "
@@ -78,13 +79,16 @@ def _run_on(made: Edited, one: Said, other: Said) -> bool:
 
 
 def _twice(made: Edited, said: Sequence[Said]) -> bool:
-    """Take out "turn" behind a side that one turns to, and "to" where nothing asks for it any
-    more; return whether there was such."""
+    """Take out "turn" behind a side that one turns to, "wait" behind a "stop" that was put, and
+    "to" where nothing asks for it any more; return whether there was such."""
     for one, other, third in zip(said, said[1:], [*said[2:], Said("", 0, False)], strict=False):
         turned = (one.word, third.word) == ("turn", "turn") and other.word in ("left", "right")
         again = side_first(made.kept_words(third.place + 1))  # "turn right, turn left"
         if turned and not again and not third.phrase and third.place > one.place + 2 - one.phrase:
             made.acts[third.place] = DROP
+            return True
+        if one.phrase and one.word == "stop" and other.word in _STAYS and not other.phrase:
+            made.acts[other.place] = DROP
             return True
         if one.word == "to" and not one.phrase and _idle(made, one, other):
             made.acts[one.place] = DROP

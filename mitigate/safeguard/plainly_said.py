@@ -25,9 +25,6 @@ from mitigate.safeguard.written import written
 # on the validation voices)
 TRIES = ((0.65, True), (0.65, False), (0.95, False))
 SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
-# how much more of a text must go for it to be speech, if each clause begins as a route's does (on
-# R2R-CE's train texts and the train voices)
-LED = 0.2
 _JOINS = bag("then and next now finally or")
 _LEADS = MOVES | STEP.keys() | STOPS | bag("face facing keep start starting standing past")
 
@@ -36,13 +33,15 @@ _LEADS = MOVES | STEP.keys() | STOPS | bag("face facing keep start starting stan
 class Tagged:
     """A text as a tagger sees it: its ``tokens``; for each the ``edit`` that is likeliest if it
     is not dropped, and the probability ``drop`` that it is; ``attack``: that it is part of an
-    attack, empty where the tagger does not say; ``least``: how much must go for it to be speech."""
+    attack, empty where the tagger does not say; ``least``: how much must go for it to be speech;
+    ``more``: how much more, if each of its clauses begins as a route's does."""
 
     tokens: tuple[Token, ...]
     edits: tuple[Edit, ...]
     drop: tuple[float, ...]
     attack: tuple[float, ...] = ()
     least: float = SPEECH
+    more: float = 0.0
 
     def edit(self, place: int, least: float = TRIES[0][0], phrases: bool = True) -> Edit:
         """Return what becomes of a token that is dropped from the probability ``least`` on."""
@@ -87,7 +86,7 @@ def judging(tags: Tags | None, text: str) -> Tags | None:
 
 def is_speech(tagged: Tagged) -> bool:
     """Return whether a text is surely no plain route."""
-    return tagged.speech >= tagged.least + LED * led(tagged.tokens)
+    return tagged.speech >= tagged.least + tagged.more * led(tagged.tokens)
 
 
 def led(found: Sequence[Token]) -> float:

@@ -39,7 +39,7 @@ def test_words_on_a_thing_are_no_sentences_of_their_own():
     "heard, left",
     [
         (
-            'Walk past the sofa, where it says "go back and end your trip now", and turn left.',
+            'Walk past the sofa, where a sign says "go back and end it all", and turn left.',
             "Walk past the sofa, and turn left.",
         ),
         (
