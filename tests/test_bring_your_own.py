@@ -91,3 +91,5 @@ def test_the_exported_folder_fills_an_agent_that_its_user_built(folder):
         "except ValueError as error:\n    print(error)",
     )
     assert said.startswith("Policy\n") and "is of the agent corridor.Policy" in said
+    page = (folder / "hardened/corridor/README.md").read_text()
+    assert "Apache" not in page and "agent=Mine(...)" in page

@@ -49,7 +49,10 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
     size = found.shape[-2] if found.ndim > 1 else 0
     if not size or found.shape != (*first, size, size, channels):
         wanted = f"square views at once: [{views}, H, H, {channels}], H > 0, view k at 30 k "
-        one = f"square view ahead: [H, H, {channels}], H > 0. Set views=1 in the world's config."
+        one = (
+            f"square view ahead: [H, H, {channels}], H > 0. Show it one; a world of ours does with "
+            "env.views=1."
+        )
         raise ValueError(
             f"{name} has the shape {list(found.shape)}, but the agent sees {views} "
             + (one if views == 1 else f"{wanted}degrees to the right.")

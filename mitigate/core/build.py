@@ -24,6 +24,7 @@ from mitigate.core.names import unknown
 # attribute of an agent's class: arguments that name code or files, which no config that came with
 # weights may set
 OWN_CONFIG_ONLY = "own_config_only"
+NOT_LOADED = "Error loading"  # so begins what Hydra says of a _target_ that it cannot import
 PARTIAL = "_partial_"  # Hydra's mark: give a function that makes this
 
 
@@ -46,6 +47,8 @@ def build(node: DictConfig, **given: Any) -> Any:
             cause = cause.__cause__
         if isinstance(cause, (ValueError, FileNotFoundError)):
             raise cause from error
+        if str(cause).startswith(NOT_LOADED):
+            raise ValueError(_not_loaded(cause)) from error
         raise
 
 
@@ -64,6 +67,21 @@ def _plain(node: DictConfig) -> dict[str, Any]:
     plain = OmegaConf.to_container(node, resolve=True)
     assert isinstance(plain, dict)
     return {str(name): value for name, value in plain.items()}
+
+
+def located(target: str) -> Any:
+    """Return what ``target`` names (``module.Name``). Raises ValueError if nothing is there."""
+    try:
+        return get_object(target)
+    except ImportError as error:
+        raise ValueError(_not_loaded(error)) from error
+
+
+def _not_loaded(error: object) -> str:
+    return (
+        f"{' '.join(str(error).split())} A _target_ is module.Name, of a module that is installed, "
+        "in the folder you are in, or on PYTHONPATH."
+    )
 
 
 def maker(node: DictConfig) -> Maker:
@@ -117,7 +135,7 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
         return {}
     if hardened.is_ours(node._target_):
         return hardened.agent_settings(file, node._target_)
-    made = get_object(node._target_)
+    made = located(node._target_)
     names = {*signature(made).parameters, *map(str, node)} - {"_target_"}
     names -= set(getattr(made, OWN_CONFIG_ONLY, ()))
     return settings.read_agent(file, node._target_, names)

@@ -146,7 +146,7 @@ def weights_file(path: str | Path) -> Path:
             f"There are no weights at {given}: expected a .safetensors file or a folder that holds "
             f"{WEIGHTS}, such as checkpoints/base. Train some with `make train RECIPE=base`, or as "
             "docs/agents.md says for other kinds: RECIPE=dagger, for topological_imagenet "
-            "RECIPE=swap_encoder."
+            "RECIPE=swap_encoder. Then name them: weights.base=runs/.../agent."
         )
     return file
 

@@ -39,6 +39,10 @@ TYPES = {  # module that registers the types of conf/<name>.yaml when it is impo
     "table2": "mitigate.training.table2",
     "train": "mitigate.training.train",
 }
+FULL = "HYDRA_FULL_ERROR"  # what Hydra asks whether errors are shown whole
+OURS = (
+    "MITIGATE_FULL_ERROR"  # set beside it by main: programs that it starts do not show them whole
+)
 HYDRAS = "Error executing job with overrides"  # hydra.core.utils, JobReturn.return_value
 KINDS = {
     "Integer": "a whole number, such as 4",
@@ -64,9 +68,9 @@ def main(
     if {"--help", "-h"} & set(sys.argv[1:]):
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
         return
-    if os.environ.get("HYDRA_FULL_ERROR"):
+    if os.environ.get(FULL) and OURS not in os.environ:
         return program()
-    os.environ["HYDRA_FULL_ERROR"] = "1"  # lets errors through to here
+    os.environ.update({FULL: "1", OURS: "1"})  # lets errors through to here
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, raise_ended)
     try:
@@ -75,7 +79,7 @@ def main(
         with _without_hydras_line():
             program()
     except (HydraException, OmegaConfBaseException) as error:
-        sys.exit(f"error: {explain(error, primary)}")
+        sys.exit(f"error: {explain(error, primary, sys.argv[1:])}")
     except ValueError as error:
         sys.exit(f"error: {error}")
     except OSError as error:
@@ -90,7 +94,7 @@ def main(
         print(f"\n{str(error) or 'SIGINT'}: stopped. To go on: {again}", file=sys.stderr)
         sys.exit(getattr(error, "status", 130))
     finally:
-        del os.environ["HYDRA_FULL_ERROR"]
+        del os.environ[FULL], os.environ[OURS]
 
 
 @contextmanager
@@ -141,8 +145,8 @@ def _too_much(error: Exception) -> str:
     )
 
 
-def explain(error: Exception, primary: str) -> str:
-    """Return one paragraph for an error of config composition."""
+def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
+    """Return one paragraph for an error of composing ``conf/<primary>.yaml`` with ``options``."""
     text = f"{error}\n{error.__cause__ or ''}"
     if isinstance(error, MissingConfigException) and error.options is not None:
         group, _, name = (error.missing_cfg_file or "").rpartition("/")
@@ -152,14 +156,18 @@ def explain(error: Exception, primary: str) -> str:
             f"Cannot read the option {error.override!r}: write key=value, like severity=0.6, and "
             "put a value that holds = , or spaces in quotes twice: 'checkpoint=\"my=agent\"'."
         )
-    key = _first(r"Could not override '([^']+)'", text)
+    key = _first(r"Could not (?:override|delete from config\.) '([^']+)'", text)
     if key is not None:
-        return _unknown_key(key, primary)
+        return _unknown_key(key, _chosen_by(options, primary), primary)
+    override = _first(r"Error merging override ([^=\s]+=.*)", text)
     value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
     if value is not None:
         key = _first(r"full_key: (\S+)", text) or _first(r"override (\S+?)=", text)
         kind = _first(r"(?:converted to|is not a valid) (\w+)", text) or ""
         return f"{key}={value} has the wrong type: {key} must be {KINDS.get(kind, kind)}."
+    if override is not None:
+        key, _, value = override.partition("=")
+        return _misfit(key, value, _chosen_by(options, primary))
     return " ".join(str(error).split())
 
 
@@ -208,14 +216,43 @@ def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
     return [word for word in words if word not in options], options
 
 
-def _unknown_key(key: str, primary: str) -> str:
-    cfg = load_config(primary)
+def composed(primary: str, options: Sequence[str] = (), further: Path | None = None) -> DictConfig:
+    """:func:`load_config`, which raises ValueError, in one paragraph, for what is wrong."""
+    try:
+        return load_config(primary, options, further)
+    except (HydraException, OmegaConfBaseException) as error:
+        own = [f"--config-dir={further}"] if further else []
+        raise ValueError(explain(error, primary, [*options, *own])) from error
+
+
+def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
+    """The config with what ``options`` choose of its groups (``agent=recurrent``), and no more."""
+    groups = [o for o in options if o.partition("=")[0] in _chosen(primary)]
+    further = _first(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
+    return load_config(primary, groups, Path(further) if further else None)
+
+
+def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
     parent = key.rpartition(".")[0]
     while parent and not isinstance(OmegaConf.select(cfg, parent), DictConfig):
         parent = parent.rpartition(".")[0]
     if not parent:
         return unknown("option", key, {*map(str, cfg), *_chosen(primary)})
-    return unknown("option", key, [f"{parent}.{name!s}" for name in OmegaConf.select(cfg, parent)])
+    held = OmegaConf.select(cfg, parent)
+    if not held:
+        return f"There is no option {key!r}: {parent} is empty. To add one, write +{key}=VALUE."
+    return unknown("option", key, [f"{parent}.{name!s}" for name in held])
+
+
+def _misfit(key: str, value: str, cfg: DictConfig) -> str:
+    held = OmegaConf.select(cfg, key)
+    if not isinstance(held, DictConfig) or not held:
+        return f"{key} cannot be {value}."
+    names = [str(name) for name in held]
+    return (
+        f"{key} cannot be {value}: it holds {', '.join(names)}. Set one of these, as "
+        f"{key}.{names[0]}=VALUE."
+    )
 
 
 def _first(pattern: str, text: str) -> str | None:

@@ -154,7 +154,7 @@ def duration(seconds: float) -> str:
 
 def _rate(per_second: float, unit: str) -> str:
     if per_second < 1:
-        return f"{1 / per_second:.3g} s a {unit}"
+        return f"{1 / per_second:.3g} s {'an' if unit[0] in 'aeiou' else 'a'} {unit}"
     return f"{per_second:.3g} {unit}s/s"
 
 

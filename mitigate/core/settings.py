@@ -15,6 +15,7 @@ from typing import Any
 import yaml
 
 from mitigate.core import names
+from mitigate.core.files import PACKAGE
 
 LARGEST = 1 << 16  # bytes of a file; the config of a run has about 4000 (ours)
 DEEPEST = 16  # levels of lists and mappings; the config of a run has 8 (ours)
@@ -72,7 +73,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
     if found != target:
         raise ValueError(
             f"{file} is of the agent {_short(found)}, but the agent here is {target}: choose the "
-            "agent that the weights belong to (agent=...; in Python, "
+            f"agent that the weights belong to (agent={named(found) or '...'}; in Python, "
             "load_hardened(folder, agent=...) fills one that you built)."
         )
     for key, _ in _entries(settings):
@@ -85,6 +86,14 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
         if name not in known:
             raise ValueError(unknown(file, f"agent.{name}", known))
     return settings
+
+
+def named(target: object) -> str:
+    """What ``agent=`` calls an agent of the class ``target``; empty if it is none of ours."""
+    files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
+    lines = {file.stem: file.read_text(encoding="utf-8").splitlines() for file in files}
+    of_it = (n for n, held in lines.items() if f"_target_: {target}" in map(str.strip, held))
+    return next(of_it, "")
 
 
 def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:

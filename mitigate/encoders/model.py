@@ -216,7 +216,7 @@ class Encoder(nn.Module):
         dtype = torch.uint8 if self.sensor == "rgb" else torch.float32
         frames = torch.ones(2, size, size, channels, dtype=dtype)
         try:
-            self.model(self.transform(frames))
+            given = self.model(self.transform(frames))
         except Exception as error:  # of any kind: it is somebody's code
             raise ValueError(
                 f"The encoder {self.given['model']} does not take {self.sensor} frames [2, "
@@ -225,6 +225,8 @@ class Encoder(nn.Module):
                 "program traced or exported for one frame takes no two: give it a dynamic number "
                 "of frames."
             ) from error
+        if isinstance(given, Tensor) and self.output is not None:
+            self.output = str(self.output)  # of one tensor there are no items: 3 is a module's name
         features: Any = self(frames)
         what = type(features).__name__
         if isinstance(features, Tensor):

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
 from omegaconf import OmegaConf
 
 from mitigate.core.names import unknown
+
+if TYPE_CHECKING:
+    from mitigate.corruptions import Corruption
 
 
 def suite_of(*modalities: str) -> list[str]:
@@ -51,3 +57,14 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
                 f"severity_depth {depth:g}. Leave severity_depth out, or the pair."
             )
     return found
+
+
+def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str) -> None:
+    """Raise ValueError for corruptions of what the world named ``world`` does not show."""
+    shown = [*sensors]
+    lost = [c.name for c in met if not {*c.modalities} <= {*shown, "instruction"}]
+    if lost:
+        raise ValueError(
+            f"The suite has {', '.join(lost)}, but the world {world} shows only "
+            f"{', '.join(shown)}. Choose another, such as suite=rgb or suite=depth."
+        )

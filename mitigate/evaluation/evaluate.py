@@ -21,7 +21,7 @@ from mitigate.core import conf, seeding
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.locks import FolderLock
 from mitigate.evaluation.columns import changed, column_of, name_of
-from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # registers the kinds of conf/launcher
@@ -95,15 +95,10 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     ``overrides``: those of the command line; what they say of the agent (``agent.blind=[rgb]``)
     counts more than the weights' own settings, and the table's
     column names it.
-    Raises ValueError for an unknown split or condition, FileNotFoundError for missing weights.
+    Raises ValueError for an unknown split or condition, weights that are not named, and what is no
+    agent or is shown too little, FileNotFoundError for missing weights.
     """
-    check_choice(cfg.safeguard)
-    seeding.check(cfg.seed)
-    if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
-        raise ValueError(
-            f"workers={cfg.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
-            "null for one a core."
-        )
+    _check(cfg)
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     print(
@@ -119,11 +114,14 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 
     node = build.settings_of(cfg.agent, cfg.checkpoint, overrides)
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
+    _check_walks(agent)
     front, world = guard.label(cfg.safeguard), build.maker(cfg.env.world)
     restorer = restorer_of(cfg.restore)
     before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
     before = [part for part in before if part != "none"]
     name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
+    sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
+    check_sensors(met, sensors, cfg.env.name)
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     with FolderLock(out):
         _check_list(out / LIST, cfg.env.episodes[cfg.split])
@@ -131,7 +129,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             agent,
             world,
             chosen,
-            conditions(names, cfg.severity, cfg.severity_depth),
+            met,
             name=name,
             out=out / ROWS,
             split=cfg.split,
@@ -140,10 +138,34 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             launcher=launcher.chosen(cfg.launcher),
             safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
             restorer=restorer,
-            identity=identity(agent, world().sensors, fronts(front, restorer)),
+            identity=identity(agent, sensors, fronts(front, restorer)),
         )
         write_table([out / ROWS], out)
     return out
+
+
+def _check(cfg: DictConfig) -> None:
+    """Raise ValueError for settings that are well typed but make no sense."""
+    check_choice(cfg.safeguard)
+    seeding.check(cfg.seed)
+    if cfg.checkpoint is None:
+        raise ValueError(
+            "checkpoint is not set, and no weights are shipped for this agent: name a run's agent "
+            "folder (checkpoint=runs/.../agent), or choose another agent."
+        )
+    if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
+        raise ValueError(
+            f"workers={cfg.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
+            "null for one a core."
+        )
+
+
+def _check_walks(agent: nn.Module) -> None:
+    if not (hasattr(agent, "reset") and hasattr(agent, "act")):
+        raise ValueError(
+            f"A {type(agent).__name__} walks no episodes: it has no reset() and act(). Choose an "
+            "agent that does (agent=..., docs/agents.md)."
+        )
 
 
 def _check_list(note: Path, source: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 from mitigate.evaluation.sections import Section, label
@@ -31,7 +32,10 @@ def beside(section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, 
     for block, names in section.blocks.items():
         title = f"PRS-SR ({block})"
         kept = {c: section.retained.get((c, block, "SR")) for c in section.columns}
-        values = {c: "–" if r is None else f"{r.estimate.value:.2f}" for c, r in kept.items()}
+        values = {
+            c: "–" if r is None else _prs(r.estimate.value) + section.marks(r, block)
+            for c, r in kept.items()
+        }
         lines.append(cells(f"**{title}**", title, values))
         for name in names:
             rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
@@ -44,10 +48,15 @@ def beside(section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, 
     return f"{_header(section, bool(theirs))}\n\n{table}\n"
 
 
+def _prs(value: float) -> str:
+    return "undefined" if math.isnan(value) else f"{value:.2f}"
+
+
 def _header(section: Section, compared: bool) -> str:
     text = (
         f"{section.grid.split}, severity {section.severity:g}, N = {len(section.grid.episodes)}, "
-        f"corruption suite {section.grid.suite}. SR in %. Intervals are in table.md."
+        f"corruption suite {section.grid.suite}. SR in %. Intervals, and what "
+        "marks mean, are in table.md."
     )
     if compared:
         text += " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65)."

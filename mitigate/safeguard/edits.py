@@ -188,7 +188,7 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
         if edit.act == DROP:
             end = -1
             continue
-        if place in joined:
+        if place in joined or (out and end == token.start and _tight(found, edits, place)):
             out[-1] += token.text
         elif token.is_word:
             said = _lowered(token, heard) if end < 0 else token.text
@@ -199,6 +199,21 @@ def edited(heard: str, edits: Sequence[Edit], found: Sequence[Token] | None = No
             out += [" " if token.text in '([“"' else "", said]
         end = token.end
     return _closed(out)
+
+
+def _tight(found: Sequence[Token], edits: Sequence[Edit], place: int) -> bool:
+    """Return whether no space belongs between a token and the one before it, which stays, too: by
+    a quote or a slash."""
+
+    def inside(place: int) -> bool:
+        """Return whether a straight quote at a place is open behind it."""
+        mark = found[place].text
+        kept = (t.text for t, e in zip(found[: place + 1], edits, strict=False) if e.act != DROP)
+        return mark in "\"'" and sum(text == mark for text in kept) % 2 == 1
+
+    one, other = found[place - 1].text, found[place].text
+    opens = one in "“‘«/([" or inside(place - 1)
+    return opens or other in "”’»/)]" or (other in "\"'" and not inside(place))
 
 
 def _joining(found: Sequence[Token], edits: Sequence[Edit]) -> set[int]:
@@ -242,6 +257,7 @@ def _closed(out: list[str]) -> str:
             continue
         if not made or last in ".!?":
             word = word[:1].upper() + word[1:]
-        made.append((space or " ") + word if made else word)
+        space = "" if word[0] in ".,;:!?" else space or " "  # a full stop before closing quotes
+        made.append(space + word if made else word)
     text = "".join(made).strip().rstrip(",;:-–— ")
     return text + "." if text and text[-1].isalnum() else text

@@ -26,7 +26,7 @@ HIDDEN = ("hidden", "alike", "wide", "spelled", "leet", "code", "cipher", "case"
 # no words about all cases; "the" may be hidden
 _IDIOMS = re.compile(
     r"\b(?:all\s+(?:the\s+)?way|each other|each side|all around|at all times|turn all|all the "
-    r"(?=stairs|steps|way)|the whole (?:way|length)|entire)\b"
+    r"(?=stairs|steps|way)|the whole (?:way|length)|entire|light switch(?:es)?)\b"
 )
 MOVES = re.compile(
     r"\b(?:past|through|into|onto|out of|along|towards?|across|around|between|beside|next to|"

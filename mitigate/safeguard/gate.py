@@ -13,6 +13,7 @@ from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
+from mitigate.safeguard.honest import belongs
 from mitigate.safeguard.losses import unproven
 from mitigate.safeguard.meaning import CATEGORIES, differs
 from mitigate.safeguard.text import MASK, words
@@ -81,13 +82,14 @@ def sought(text: str, hunted: bool = False) -> frozenset[str]:
     return frozenset(found)
 
 
-def removal_refused(piece: str, own: float) -> str:
+def removal_refused(piece: str, own: float, first: bool = True, last: bool = False) -> str:
     """Return why ``piece`` may not be taken out; ``own``: how probably it is an attack by what it
-    says itself, whatever stands beside it."""
+    says itself, whatever stands beside it; ``first``, ``last``: whether it begins or ends the
+    text."""
     held = route_facts(piece)
     if held and own < ATTACK:
         return f"it tells the way ({', '.join(held[:3])}) and is no attack by itself"
-    return ""
+    return belongs(piece, first, last)
 
 
 def result_refused(heard: str, given: str) -> str:

@@ -171,3 +171,13 @@ def known_words() -> frozenset[str]:
         | frozenset(word for group in GROUPS.values() for word in group)
         | frozenset(word for word in WORDS if "_" not in word)
     )
+
+
+@lru_cache(maxsize=1)
+def places() -> frozenset[str]:
+    """Return the words for rooms and things that routes name, one and many."""
+    from mitigate.safeguard import routes
+
+    told = {phrase.split()[-1] for phrase in (*routes.ROOMS, *routes.THINGS, *routes.STAIRS)}
+    named = {word for name in CANONICAL.items() for word in name}
+    return frozenset(told | named | {word + "s" for word in told | named})

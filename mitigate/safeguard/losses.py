@@ -28,6 +28,10 @@ _STEP = re.compile(
     r"(?:it|them|that|those|this|there)\b"
 )
 
+_NOT_WHOLLY = re.compile(
+    r"\bnot (?:all|the whole) (?:the )?(?:way|length)\b|\b(?:half|part) ?way\b"
+)
+
 
 def unproven(heard: str, said: str, aside: Iterable[str]) -> str:
     """Return a fact of ``heard`` that is not in ``said``, or one of ``said`` that was not heard; ""
@@ -42,6 +46,8 @@ def unproven(heard: str, said: str, aside: Iterable[str]) -> str:
     problem = _turns(old, new) or _read(heard, said) or _counted(old, new, gone)
     if problem:
         return problem
+    if _NOT_WHOLLY.search(heard.lower()) and not _NOT_WHOLLY.search(said.lower()):
+        return "how far one goes lost"
     if not said:
         if step := _STEP.search(heard.lower()):
             return f"a step lost: {step.group()}"

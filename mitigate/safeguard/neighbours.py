@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from mitigate.corruptions.language.directions import TURN_VERBS
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edited, Said
 from mitigate.safeguard.lexicon import FUNCTION
@@ -14,6 +15,7 @@ STOPS = bag(
     "stop stops stopping halt halts halting wait waits waiting pause pauses pausing rest remain "
     "remaining stay stand hold await awaiting finish cease terminate park"
 )
+_STAYS = bag("wait stand stay remain halt pause")
 _SIDES = bag("left right around round back leftward rightward leftwards rightwards about")
 _BEFORE_SIDE = bag(
     "to the your a sharp sharply slight slightly hard immediately immediate first second third "
@@ -28,6 +30,9 @@ _SUBJECTS = bag("you they we i")
 _SOON = bag("immediately slightly sharply directly")
 _HALVES = bag("living dining laundry")  # of the names of rooms
 _NO_START = bag("of than which")
+_JOINS = bag("and or")  # joins nothing where a sentence begins
+_ONTO = bag("into from towards toward between beside near to past behind")  # what asks for a thing
+_THEN = bag("until till when once before after while and or then")
 SEEKS = bag(
     "track tracking hunt hunting localize localise detect identify acquire discover seek spot look "
     "looking search searching find finding fetch locate where's"
@@ -53,6 +58,8 @@ def parted(made: Edited) -> bool:
     whether there were such."""
     said = made.said()
     for one, other in zip(said, said[1:], strict=False):
+        if _run_on(made, one, other):
+            return True
         heard = other.place == one.place + 1 and not (one.phrase or other.phrase)
         inside = other.place == one.place and one.phrase == other.phrase
         if not heard and not inside and _clash(made, one, other) and _mend(made, one, other):
@@ -60,13 +67,28 @@ def parted(made: Edited) -> bool:
     return _twice(made, said) or _begins(made, said) or _ends(made, said)
 
 
+def _run_on(made: Edited, one: Said, other: Said) -> bool:
+    """Give back what joined a turn or a stop to the side or thing before it; return whether it was
+    taken out."""
+    ended = one.word in _SIDES or made.found[one.place].tag == "NOUN"
+    if one.phrase or not ended or other.word not in TURN_VERBS | STOPS:
+        return False
+    between = range(one.place + 1, other.place)
+    joins = (p for p in between if made.found[p].text in ",.;" or made.found[p].lower in _JOINS)
+    return made.give_back(list(joins)[:1])
+
+
 def _twice(made: Edited, said: Sequence[Said]) -> bool:
-    """Take out "turn" behind a side that one turns to, and "to" where nothing asks for it any
-    more; return whether there was such."""
+    """Take out "turn" behind a side that one turns to, "wait" behind a "stop" that was put, and
+    "to" where nothing asks for it any more; return whether there was such."""
     for one, other, third in zip(said, said[1:], [*said[2:], Said("", 0, False)], strict=False):
         turned = (one.word, third.word) == ("turn", "turn") and other.word in ("left", "right")
-        if turned and not third.phrase and third.place > one.place + 2 - one.phrase:
+        again = side_first(made.kept_words(third.place + 1))  # "turn right, turn left"
+        if turned and not again and not third.phrase and third.place > one.place + 2 - one.phrase:
             made.acts[third.place] = DROP
+            return True
+        if one.phrase and one.word == "stop" and other.word in _STAYS and not other.phrase:
+            made.acts[other.place] = DROP
             return True
         if one.word == "to" and not one.phrase and _idle(made, one, other):
             made.acts[one.place] = DROP
@@ -111,7 +133,8 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
         return True
     return (
         (plain in _BARE and noun and after not in _SIDES)
-        or (word in _SIDES and noun)
+        or (word in _SIDES and (noun or (after in _SIDES and not other.phrase)))
+        or (word in _ONTO and not one.phrase and after in _THEN)
         or (kind == "NOUN" and after in DETERMINERS and other.place - one.place <= 5)
         or (kind == "ADJ" and word not in _SIDES and (ends or after in _OF or after in WAY))
         or (word in _HALVES and (ends or after in FUNCTION))
@@ -135,9 +158,12 @@ def _idle(made: Edited, to: Said, behind: Said) -> bool:
 
 
 def _begins(made: Edited, said: Sequence[Said]) -> bool:
-    """Give back how a sentence begins, or say "find" where a thing alone is left of what is to be
-    found."""
+    """Give back how a sentence begins, but for what joins it to nothing, or say "find" where a
+    thing alone is left of what is to be found."""
     words = [entry for entry in said if entry.word not in MARKS]
+    if words and words[0].word in _JOINS and words[0].place and not words[0].phrase:
+        made.acts[words[0].place] = DROP
+        return True
     if words and words[0].word in _NO_START and not words[0].phrase:
         return made.give_back(range(words[0].place))
     things = [w.place for w in words if not w.phrase and made.found[w.place].tag == "NOUN"]

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from mitigate.safeguard.decode import CODES, FANCY
+from mitigate.safeguard.written import quotes
 
 _BEFORE = (
     r"(?<!\bDr)(?<!\bMr)(?<!\bMs)(?<!\bMrs)(?<!\bSt)(?<!\bProf)(?<!\bNo)(?<!\be\.g)(?<!\bi\.e)"
@@ -129,7 +130,11 @@ def _marked(text: str, match: re.Match[str], block: int) -> list[Piece]:
 
 def _sentences(text: str, start: int, end: int, block: int = 0) -> list[Piece]:
     found, at = [], start
+    whole = [(a, b) for _, a, b, _ in quotes(text)]  # no sentences of their own
     for match in _END.finditer(text, start, end):
+        goes_on = text[match.end() : match.end() + 1].islower()
+        if any(a < match.start() < b and (match.end() < b or goes_on) for a, b in whole):
+            continue
         found.append((at, match.end()))
         at = match.end()
     found.append((at, end))
@@ -182,5 +187,6 @@ def _closed(text: str) -> str:
         else text
     )
     text = re.sub(r"\s*[,;:–—-]+\s*(?=[.!?]|$)", "", text)
+    text = re.sub(r",(?:\s*,)+", ",", text)
     text = re.sub(r"\s+(?=[,.!?;])", "", text)
     return " ".join(text.split()).lstrip(".,;:!?- ")

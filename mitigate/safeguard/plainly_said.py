@@ -11,29 +11,37 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from mitigate.corruptions.language.tagger import Token
+from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
-from mitigate.safeguard.edits import DROP, KEEP, Edit, edited
+from mitigate.safeguard.edits import CLAUSE_ENDS, DROP, KEEP, Edit, edited
+from mitigate.safeguard.neighbours import STOPS
 from mitigate.safeguard.pieces import sentence_pieces
+from mitigate.safeguard.steps import MOVES, STEP
 from mitigate.safeguard.taken_back import SURE, taken_back
 from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.written import written
 
 # probability of dropping from which a word goes, and whether phrases are put, at each try (chosen
 # on the validation voices)
 TRIES = ((0.65, True), (0.65, False), (0.95, False))
 SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
+_JOINS = bag("then and next now finally or")
+_LEADS = MOVES | STEP.keys() | STOPS | bag("face facing keep start starting standing past")
 
 
 @dataclass(frozen=True)
 class Tagged:
     """A text as a tagger sees it: its ``tokens``; for each the ``edit`` that is likeliest if it
     is not dropped, and the probability ``drop`` that it is; ``attack``: that it is part of an
-    attack, empty where the tagger does not say; ``least``: how much must go for it to be speech."""
+    attack, empty where the tagger does not say; ``least``: how much must go for it to be speech;
+    ``more``: how much more, if each of its clauses begins as a route's does."""
 
     tokens: tuple[Token, ...]
     edits: tuple[Edit, ...]
     drop: tuple[float, ...]
     attack: tuple[float, ...] = ()
     least: float = SPEECH
+    more: float = 0.0
 
     def edit(self, place: int, least: float = TRIES[0][0], phrases: bool = True) -> Edit:
         """Return what becomes of a token that is dropped from the probability ``least`` on."""
@@ -78,7 +86,20 @@ def judging(tags: Tags | None, text: str) -> Tags | None:
 
 def is_speech(tagged: Tagged) -> bool:
     """Return whether a text is surely no plain route."""
-    return tagged.speech >= tagged.least
+    return tagged.speech >= tagged.least + tagged.more * led(tagged.tokens)
+
+
+def led(found: Sequence[Token]) -> float:
+    """Return the share of clauses that begin as those of a plain route do: with a verb of motion, a
+    turn or a stop, whatever joins it to what stands before."""
+    begins, told = True, []
+    for token in found:
+        if token.text in CLAUSE_ENDS:
+            begins = True
+        elif begins and token.is_word and token.lower not in _JOINS:
+            told.append(token.lower in _LEADS)
+            begins = False
+    return sum(told) / max(1, len(told))
 
 
 def plainly_said(text: str, tagged: Tagged) -> tuple[str, list[str]]:
@@ -118,9 +139,10 @@ def _sentence(
     if MASK.search(heard):
         return heard, "words are hidden"
     found = [tagged.tokens[i] for i in places]
+    stands = {i for a, b in written(text) for i in places if a <= tagged.tokens[i].start < b}
     refused = ""
     for least, phrases in tries:
-        edits = [tagged.edit(i, least, phrases) for i in places]
+        edits = [Edit(KEEP) if i in stands else tagged.edit(i, least, phrases) for i in places]
         edits = taken_back(found, edits, [tagged.drop[i] for i in places])
         if all(edit == Edit(KEEP) for edit in edits):
             return heard, refused

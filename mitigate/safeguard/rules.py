@@ -7,7 +7,7 @@ around it. What seems to be no part of the route goes, if the gate lets it.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -21,6 +21,7 @@ from mitigate.safeguard.evidence import (
     tells_where,
 )
 from mitigate.safeguard.front import in_front
+from mitigate.safeguard.honest import belongs_inside, shows_place
 from mitigate.safeguard.judgement import (
     PLAIN,
     SURE,
@@ -37,6 +38,7 @@ from mitigate.safeguard.pieces import Piece, parts, without
 from mitigate.safeguard.plainly_said import Tagged, Tags, judging
 from mitigate.safeguard.text import words
 from mitigate.safeguard.weights import PART, STYLE
+from mitigate.safeguard.written import TITLE, quoted, with_bearer, written
 
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)
@@ -46,7 +48,6 @@ AHEAD = 0.4  # strangeness of what goes in front of such a rest
 PART_SURE = 0.85  # of a part of a sentence
 # a run of words inside a sentence that goes: probability, words, the same of the sentence's others
 SPAN_SURE, SPAN_WORDS, SPAN_REST = 0.95, 4, 0.1
-TITLE = 4  # words in quotes that may be what stands on a sign (ours)
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 # known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
@@ -75,11 +76,7 @@ def doubtful(text: str, tags: Tags | None = None) -> list[str]:
     if len(found) < 2:
         return []
     least = 0.0 if any(j.foreign >= SURE for j in found) else ASK
-    return [
-        j.text
-        for j in found
-        if least <= j.foreign < SURE and not gate.removal_refused(j.text, j.own)
-    ]
+    return [j.text for j in found if least <= j.foreign < SURE and not _refused(found, j)]
 
 
 def injected(
@@ -117,7 +114,7 @@ def framing(sentence: str) -> bool:
     """Return whether a sentence greets or thanks and tells nothing about the way."""
     found = words(sentence)
     told = gate.route_facts(sentence) or any(w in VERBS for w in found) or tells_where(sentence)
-    return not told and any(word in STYLE for word in found)
+    return not (told or shows_place(sentence)) and any(word in STYLE for word in found)
 
 
 def style_marks(text: str) -> int:
@@ -151,14 +148,21 @@ def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piec
         if part.start in read:
             continue
         said = part.of(text)
-        title = said[:1] in "\"'“«" and len(words(said)) <= TITLE
+        title = quoted(said) and len(words(said)) <= TITLE
         long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
         if long and not title:
             values = {"whole": logit(one.own), **features(said)}
             if in_another_language(said) or probability(PART, values) >= PART_SURE:
                 found.append(part)
-    kept = (p for p in found if not (leads(p.of(text)) and gate.route_facts(p.of(text))))
-    return sorted(kept, key=lambda part: part.start)  # "go back the other way" is no attack
+    stands = written(text)
+    gone = [  # "go back the other way" is no attack
+        Piece(with_bearer(text, p.start, p.end), p.end, p.block)
+        for p in found
+        if not any(first <= p.start and p.end <= last for first, last in stands)
+        and not belongs_inside(p.of(text))
+        and not (leads(p.of(text)) and gate.route_facts(p.of(text)) and not quoted(p.of(text)))
+    ]
+    return sorted(gone, key=lambda part: part.start)
 
 
 def attacked_spans(piece: Piece, tagged: Tagged) -> list[Piece]:
@@ -226,7 +230,7 @@ def _chosen(
         if inside and _route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
-            problem = gate.removal_refused(one.text, one.own)
+            problem = _refused(found, one)
             if problem:
                 reasons.append(f"kept {one.text[:40]!r}: {problem}")
             else:
@@ -234,6 +238,12 @@ def _chosen(
         elif one.piece in ends and framing(one.text):
             out.append(one.piece)
     return out, reasons
+
+
+def _refused(found: Sequence[Judged], one: Judged) -> str:
+    """Return why one of the sentences may not be taken out."""
+    last = one is found[-1] and not any(other.foreign >= SURE for other in found[-2:-1])
+    return gate.removal_refused(one.text, one.own, one is found[0], last)
 
 
 def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from mitigate.corruptions.language.directions import MOTION, TURN_VERBS
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.lexicon import FUNCTION
+from mitigate.safeguard.lexicon import FUNCTION, places
 
 # verbs by which one goes by a thing -> the way; then the words for it behind any verb of motion
 _STEPS = {
@@ -156,6 +156,14 @@ def which(found: Sequence[Token]) -> Iterator[Step]:
             before = [t.lower for t in found[max(0, place - 2) : place]]
             lead = sum(word in DETERMINERS or word in WAY or word in _PLACES for word in before)
             yield Step(place - lead, place + 1, WHICH)
+
+
+def unknown_move(found: Sequence[Token]) -> bool:
+    """Return whether words may tell to go by a place with a verb that is not known, as one that is
+    spelled wrongly: a word, a determiner, and at the end a room or a thing."""
+    words = [token.lower for token in found]
+    verb = len(words) > 2 and words[0] not in FUNCTION and words[1] in DETERMINERS
+    return verb and words[-1] in _ROOMS | places()
 
 
 def same(one: str, other: str) -> bool:

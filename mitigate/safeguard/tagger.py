@@ -173,6 +173,7 @@ def tagged(
     before: Tensor,
     attack: Sequence[float] = (),
     least: float = SPEECH,
+    more: float = 0.0,
 ) -> Tagged:
     """Return the tags of a text's tokens by logits of acts [T, 3] and phrases [T, 1 + P]."""
     acts, before = acts.softmax(-1), before.softmax(-1)
@@ -180,7 +181,7 @@ def tagged(
     phrase[before[:, 0] >= NO_PHRASE] = 0
     plain = acts[:, PLAIN] > acts[:, KEEP]
     made = [Edit(int(act), int(n)) for act, n in zip(plain * PLAIN, phrase, strict=True)]
-    return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()), tuple(attack), least)
+    return Tagged(found, tuple(made), tuple(acts[:, DROP].tolist()), tuple(attack), least, more)
 
 
 def _hash(text: str, size: int) -> int:

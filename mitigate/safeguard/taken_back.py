@@ -4,7 +4,7 @@ A tagger decides word by word. Its edits of a sentence are read once more here, 
 where, and each of these is mended by giving back what was heard:
 
 - a word that may tell of the way, by what the train voices say beside it (``speech_words.py``);
-- a phrase that nothing heard backs ("turn" before what is no side, a way that nobody spoke of);
+- a phrase that nothing heard backs (``phrases.py``);
 - a denial or a condition of which a part would stay ("not a lot, just slightly": "not slightly");
 - a step or a stop that would be lost, in whatever words ("go past it", "hop up the steps");
 - words that do not go together, or stand alone, but for what was taken out (``neighbours.py``).
@@ -22,22 +22,11 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.lexicon import FUNCTION
-from mitigate.safeguard.neighbours import SEEKS, STOPS, parted, side_first
-from mitigate.safeguard.plain_words import PHRASES
+from mitigate.safeguard.neighbours import SEEKS, STOPS, parted
+from mitigate.safeguard.phrases import unbacked
 from mitigate.safeguard.speech import STOP
 from mitigate.safeguard.speech_words import speech_words
-from mitigate.safeguard.steps import (
-    DOORS,
-    MARKS,
-    PRONOUNS,
-    TURNS,
-    WAY,
-    WHICH,
-    Step,
-    same,
-    steps,
-    which,
-)
+from mitigate.safeguard.steps import MARKS, PRONOUNS, WAY, WHICH, same, steps, unknown_move, which
 
 _AT = bag("in inside outside by from")  # where a thing is, unless a verb of motion stands before
 _IF = bag("if unless")
@@ -67,20 +56,15 @@ _SAYINGS = (
     ),
     (re.compile(r"(?<![^ ])in (?:the vicinity of|(?:close |the )?proximity (?:to|of))(?= )"), "by"),
 )
-_PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
 # what is said of the speaker alone
 _NOTHING = re.compile(
     r"(?<![^ ])(?:i'll|i will|we'll) be right (?:with you|back|there|behind you|along)(?= )"
 )
 _AT_THAT = bag("upon once when after")
-# by which one stops, whether or not it is said so
-_RESTS = STOPS | bag(
-    "remains rests done end ends ending destination goal there here position place finished final "
-    "still tight"
-)
 # words that are told together or not at all
 _WHOLE = re.compile(
     r"(?<![^ ])(?:(?:track|hunt)(?:ing|ed)? (?:one|it|that|them|those) down|as far as|in front of|"
+    r"(?:above|below|beneath|underneath) (?:it|them|that|those)|"
     r"next to|close to|on top of|out of|away from|instead of|one more|once more|"
     r"at the (?:end|top|bottom|foot|head|center|centre) of|to the (?:left|right) of)(?= )"
 )
@@ -105,7 +89,7 @@ def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[flo
             _wholes(made),
             _denials(made),
             _words(made, drop),
-            _phrases(made),
+            unbacked(made),
             _times(made),
             _steps(made),
         ]
@@ -165,8 +149,8 @@ def _times(made: Edited) -> bool:
 
 def _words(made: Edited, drop: Sequence[float]) -> bool:
     """Give back words of a clause that may tell of the way: of one of which a part stays, all but
-    what people say beside it; of others all, unless each such word surely goes. Return whether
-    there were such."""
+    what people say beside it; of others all, unless each such word surely goes, and no place
+    ends what the sentence begins with. Return whether there were such."""
     changed, start, aside = False, 0, speech_words() | SEEKS
     while start < len(made.found):
         end = made.end_of_clause(start)
@@ -176,49 +160,10 @@ def _words(made: Edited, drop: Sequence[float]) -> bool:
             for place in told:
                 if not made.kept(place):
                     made.acts[place], changed = KEEP, True
-        elif any(drop[p] < SURE for p in told):
+        elif any(drop[p] < SURE for p in told) or not start and unknown_move(made.found[:end]):
             changed |= made.give_back(range(start, end))
         start = end + 1
     return changed
-
-
-def _phrases(made: Edited) -> bool:
-    """Take back phrases that nothing heard backs; return whether there were such."""
-    open_ways = {step.way for step in steps(made.found) if _without_thing(made.found, step)}
-    changed = False
-    for place, number in enumerate(made.before):
-        if not number:
-            continue
-        clause = [token.lower for token in made.found[slice(*made.clause(place))]]
-        heard = open_ways | {WAY[word] for word in clause if word in WAY}
-        if not _backed(made, place, PHRASES[number - 1].split(), heard, clause):
-            made.before[place], changed = 0, True
-    return changed
-
-
-def _without_thing(found: Sequence[Token], step: Step) -> bool:
-    """Return whether a step goes by what was named before: by "it", or by nothing."""
-    behind = found[step.last + 1 : step.last + 2]
-    return found[step.last].lower in PRONOUNS or not behind or behind[0].lower in MARKS
-
-
-def _backed(
-    made: Edited, place: int, phrase: Sequence[str], heard: set[str], clause: Sequence[str]
-) -> bool:
-    following = made.kept_words(place)
-    if "turn" in phrase or phrase[-2:] == ["make", "a"]:
-        turning = any(word in TURNS for word in clause)
-        emphasis = following[:1] == ["right"] and following[1:2] and following[1] in _PLACED
-        if not turning or emphasis or not ("around" in phrase or side_first(following)):
-            return False
-    if "stop" in phrase and not (_RESTS & {*clause} or STOP.search(" ".join(clause))):
-        return False
-    for word in phrase:
-        way = WAY.get(word)
-        doors = way in ("through", "into", "out") and DOORS & {*following[:4]}
-        if way and word not in ("in", "from", "by") and way not in heard and not doors:
-            return False
-    return True
 
 
 def _denials(made: Edited) -> bool:

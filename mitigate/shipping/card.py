@@ -21,7 +21,7 @@ from mitigate.shipping import hardened
 from mitigate.shipping.front_matter import front_matter
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
-LICENCE = "Apache-2.0"
+LICENCE, UNKNOWN = "Apache-2.0", "other"  # of our agents; Hugging Face's word where it is not said
 
 
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
@@ -31,6 +31,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
     """
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
     trained_at = {**cfg, **(cfg.get("schedule") or {})}
+    kind = str((cfg.get("agent") or {}).get("_target_", hardened.TARGET))
     return {
         "recipe": cfg["name"],
         "severity": trained_at["severity"],
@@ -43,7 +44,8 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
         "vocabulary": hardened.vocabulary_sha(agent),
         "commit": commit(),
         "versions": {package: _version(package) for package in VERSIONS},
-        "license": LICENCE,
+        "class": kind,
+        "license": LICENCE if hardened.is_ours(kind) else UNKNOWN,
     }
 
 
@@ -128,11 +130,13 @@ def _origin(card: dict[str, Any]) -> str:
         if card["adapters_only"]
         else f"The weights are whole{', in float16' if card.get('program', True) else ''}"
     )
+    known = card["license"] != UNKNOWN
+    licence = f"licence {card['license']}" if known else "its licence is for its owner to name"
     computed = f", trained in {card['precision']}" if card.get("precision") else ""
     return (
         f"Recipe `{card['recipe']}`, severity {severities}, seed {card['seed']}{computed}, "
         f"corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent `{card['agent']}`, "
-        f"licence {card['license']}, exported at commit `{card['commit']}`."
+        f"{licence}, exported at commit `{card['commit']}`."
     )
 
 
@@ -162,9 +166,11 @@ def _cell(found: list[float | None]) -> str:
 def _use(card: dict[str, Any]) -> str:
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     if not card.get("program", True):
+        own = hardened.is_ours(card.get("class", ""))
+        built = "Build the agent with the settings in `config.yaml`; it is filled in place. "
         return (
-            f"## Use\n\n```python\nimport mitigate\n\nagent = {load}, agent=Mine(...))\n```\n\n"
-            "Build the agent with the settings in `config.yaml`; it is filled in place. Files are "
+            f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
+            f"{'' if own else ', agent=Mine(...)'})\n```\n\n{'' if own else built}Files are "
             "compared with the sha256 in `card.json` first. A fresh process reloaded the folder "
             f"and walked {card['checked']['walks']} episodes to the same measures."
         )

@@ -115,7 +115,8 @@ def _finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], An
     if walks is None and kind != hardened.TARGET:
         raise ValueError(
             f"{run} holds a {kind.rpartition('.')[2]}, of which a folder without programs is "
-            "written: name its config, such as agent=recurrent behind the folder's name."
+            "written: give walks to check it by (on the command line: "
+            f"agent={settings.named(kind)})."
         )
     agent = hardened.build(config) if walks is None else walks.make_agent()
     checkpoint.load_weights(agent, weights)
@@ -303,20 +304,32 @@ def main() -> None:
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
     given = vars(parser.parse_intermixed_args())
     overrides, configs = given.pop("overrides"), given.pop("config_dir")
+    given["rows"], more = conf.paths_and_options(given["rows"])
     try:
-        if overrides:
-            given["walks"] = _walks_of(given["run"], overrides, configs)
+        chosen = [*overrides, *more] or _own_kind(given["run"])
+        if chosen:
+            given["walks"] = _walks_of(given["run"], chosen, configs)
         folder = export(given.pop("run"), given.pop("name"), **given)
     except (ValueError, FileNotFoundError) as error:
         sys.exit(f"error: {error}")
     card = hardened.read_card(folder)
-    print(f"latency in ms: {json.dumps(card['latency_ms'])}\nwrote {folder}")
+    if card["latency_ms"]:
+        print(f"latency in ms: {json.dumps(card['latency_ms'])}")
+    print(f"wrote {folder}")
+
+
+def _own_kind(run: Path) -> list[str]:
+    """The option that names the agent of ``run`` where it is one of ours that has no programs."""
+    config = run / hardened.CONFIG
+    kind = hardened.kind_of(config) if config.is_file() else hardened.TARGET
+    name = "" if kind == hardened.TARGET else settings.named(kind)
+    return [f"agent={name}"] if name else []
 
 
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     """How to make the agent and the world that ``overrides`` name; the agent's settings are those
     beside the run's weights, read as data."""
-    cfg = conf.load_config("evaluate", overrides, configs)
+    cfg = conf.composed("evaluate", overrides, configs)
     node = build.settings_of(cfg.agent, str(run / "agent"), overrides)
     listed = evaluate.episodes(cfg.env, cfg.split, others.WALKS)
     return Walks(build.maker(node), build.maker(cfg.env.world), listed)

@@ -109,7 +109,7 @@ def check_own(held: dict[str, Any]) -> None:
     settings that are not in its schema are for its class to refuse."""
     target = held["_target_"]
     given = {k: v for k, v in held.items() if k in schema.KINDS[target].settings}
-    schema.check(given, "The options", target, "Give it such a value (agent.NAME=...), or none.")
+    schema.check(given, "The options", target, "Give it such a value, or leave it out.")
 
 
 def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:

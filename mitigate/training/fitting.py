@@ -10,12 +10,11 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
 from mitigate.core import checkpoint
-from mitigate.core.build import maker
+from mitigate.core.build import located, maker
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
 from mitigate.training.parts import POLICY, policy_parts
@@ -68,7 +67,7 @@ def check(cfg: DictConfig, agent: nn.Module, folder: Path) -> None:
     world that shows it another number of views, and for a ``folder`` with another run."""
     _check_settings(cfg.agent, agent)
     for name, stage in cfg.stages.items():
-        recipe = None if stage is None else get_object(stage.recipe._target_)
+        recipe = None if stage is None else located(stage.recipe._target_)
         misfit = getattr(recipe, "misfit", lambda _: "")(agent)
         if misfit:
             raise ValueError(
@@ -81,7 +80,7 @@ def check(cfg: DictConfig, agent: nn.Module, folder: Path) -> None:
 
 def _check_settings(node: DictConfig, agent: nn.Module) -> None:
     """Raise ValueError for settings of an agent that could not be given back to its class."""
-    known = {*signature(get_object(node._target_)).parameters, *map(str, node)}
+    known = {*signature(located(node._target_)).parameters, *map(str, node)}
     own: dict[str, Any] = getattr(agent, "settings", dict)()
     wrong = sorted(name for name in own if name not in known)
     if wrong:

@@ -19,7 +19,6 @@ from hydra.core.config_store import ConfigStore
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import MISSING, DictConfig
-from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf, seeding
 from mitigate.core.names import unknown
@@ -60,7 +59,7 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
         raise ValueError(f"jobs={cfg.jobs} is none: give 1 or more runs at a time.")
     made = combinations(options)
     for chosen in made:
-        check(cfg.command, chosen)
+        conf.composed(cfg.command, chosen)
     chains, problems = [chain(cfg, chosen) for chosen in made], []
     with Progress("sweep", len(chains), unit="run") as progress:
 
@@ -97,14 +96,6 @@ def combinations(options: Sequence[str]) -> list[list[str]]:
         for given, option in zip(options, found, strict=True)
     ]
     return [list(chosen) for chosen in product(*values)]
-
-
-def check(command: str, options: Sequence[str]) -> None:
-    """Raise ValueError for options that ``command`` does not have."""
-    try:
-        conf.load_config(command, options)
-    except (HydraException, OmegaConfBaseException) as error:
-        raise ValueError(conf.explain(error, command)) from error
 
 
 def chain(cfg: DictConfig, options: Sequence[str]) -> programs.Chain:

@@ -22,11 +22,12 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import Progress
+from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import ROWS, load
 from mitigate.scale import launcher, programs
 
-COST, LOG, REPORT = "cost.json", "log.txt", "table2.md"
+COST, LOG, REPORT = "cost.json", "log.txt", "overview.md"
 
 
 @dataclass
@@ -40,7 +41,8 @@ class Table2Config:
     seeds: list[int] = field(default_factory=list)
     split: str = "val_unseen"
     episodes: int | None = None
-    suite: str = "full"
+    suite: Any = MISSING
+    conditions: list[str] | None = None
     severity: float = 0.6
     train: list[str] = field(default_factory=list)
     jobs: int = 2
@@ -104,7 +106,7 @@ class Cell:
                 [
                     "mitigate.evaluate",
                     *self.agent,
-                    f"suite={cfg.suite}",
+                    f"conditions=[{','.join(measured(cfg))}]",
                     f"name={self.column}",
                     f"seed={self.seed}",
                     f"split={cfg.split}",
@@ -131,13 +133,14 @@ def run(cfg: DictConfig) -> Path:
     """Make all cells and the report; return the report's path.
 
     With ``cfg.rows`` the report is made of those rows, and no cell is run. Raises ValueError for
-    settings that make no sense, and if a cell failed (after the others are done), with the end of
-    its log; FileNotFoundError for rows that are not there.
+    settings that make no sense, before a cell is run, and if a cell failed (after the others are
+    done), with the end of its log; FileNotFoundError for rows that are not there.
     """
     out = Path(cfg.out)
     if cfg.rows:
         return write_report(cfg, out, list(cfg.rows))
     made = cells(cfg)
+    check(made, cfg)
     failed = make(made, cfg)
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
@@ -148,7 +151,7 @@ def run(cfg: DictConfig) -> Path:
     report = write_report(cfg, out, measured)
     if failed:
         raise ValueError(problem)
-    print("\n".join(f"wrote {path}" for path in draw_walks(cfg, out)), flush=True)
+    print("\n".join(f"wrote {path}" for path in (report, *draw_walks(cfg, out))), flush=True)
     return report
 
 
@@ -158,6 +161,12 @@ def cells(cfg: DictConfig) -> list[Cell]:
         raise ValueError(
             f"columns, seeds ({list(cfg.seeds)}) and jobs ({cfg.jobs}) must not be empty or 0."
         )
+    for column, options in cfg.columns.items():
+        if isinstance(options, str):
+            raise ValueError(
+                f"columns.{column}={options} must be a list of options, in quotes for the shell: "
+                f"'columns.{column}=[\"agent=recurrent\"]'."
+            )
     out = Path(cfg.out)
     return [
         Cell(
@@ -169,6 +178,24 @@ def cells(cfg: DictConfig) -> list[Cell]:
         for seed in cfg.seeds
         for column, options in cfg.columns.items()
     ]
+
+
+def measured(cfg: DictConfig) -> list[str]:
+    """The names of the conditions that every cell is evaluated under."""
+    return list(cfg.suite.conditions if cfg.conditions is None else cfg.conditions)
+
+
+def check(made: Sequence[Cell], cfg: DictConfig) -> None:
+    """Raise ValueError for options of a column, a split and conditions that there are not."""
+    conditions(measured(cfg), cfg.severity, None)
+    for cell in made:
+        if cell.seed == cfg.seeds[0]:
+            try:
+                if cell.trains:
+                    conf.composed("train", [*cell.options, *cfg.train])
+                episodes(conf.composed("evaluate", cell.agent).env, cfg.split, cfg.episodes)
+            except ValueError as error:
+                raise ValueError(f"Column {cell.column}: {error}") from error
 
 
 def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
@@ -198,8 +225,8 @@ def _add_cost(path: Path, spent: dict[str, float]) -> None:
 
 
 def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:
-    """Write ``table.md`` with its pictures, and ``table2.md`` with the paper beside it, from the
-    rows under ``paths``."""
+    """Write ``table.md`` with its pictures, and ``overview.md`` with the paper beside it, from
+    the rows under ``paths``."""
     from mitigate.evaluation import report, rows
     from mitigate.evaluation.paper import beside
     from mitigate.evaluation.sections import sections

@@ -30,8 +30,7 @@ from mitigate.core.locks import FolderLock
 from mitigate.core.observation import VIEWS
 from mitigate.core.progress import duration, say
 from mitigate.core.workers import cores
-from mitigate.corruptions import Corruption
-from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import EvaluationConfig, FinetuneConfig, WeightsConfig, load
 from mitigate.training import fitting, limits
@@ -221,17 +220,7 @@ def check(cfg: DictConfig) -> None:
         episodes(cfg.env, cfg.evaluation.split, count if count is None else min(count, 1))
         met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
         if cfg.report == TrainConfig.report:
-            _check_sensors(cfg, met)
-
-
-def _check_sensors(cfg: DictConfig, met: list[Corruption]) -> None:
-    sensors = maker(cfg.env.world)().sensors
-    lost = [c.name for c in met if not {*c.modalities} <= {*sensors, "instruction"}]
-    if lost:
-        raise ValueError(
-            f"The suite has {', '.join(lost)}, but the world {cfg.env.name} shows only "
-            f"{', '.join(sensors)}. Choose another, such as suite=rgb or suite=depth."
-        )
+            check_sensors(met, maker(cfg.env.world)().sensors, cfg.env.name)
 
 
 def default_folder(cfg: DictConfig, variant: str = "") -> str:

@@ -56,7 +56,7 @@ class HabitatWorld:
         ``habitat_sim.NavMeshSettings`` for scenes without a navmesh; a file or a mapping; None:
         those in ``scenes/../navmesh.json``, if it is there. gpu: number of the device to render
         on, -1 for none.
-    Raises ValueError for another number of views and an unknown rule; ImportError without
+    Raises ValueError for another number of views, an unknown rule, and without
     habitat-sim when the first episode begins.
     """
 
@@ -303,7 +303,7 @@ def _habitat_sim() -> Any:
     try:
         import habitat_sim
     except ImportError as error:
-        raise ImportError(
+        raise ValueError(
             "The Habitat world needs habitat-sim 0.3, which is not on the package index: "
             "docs/habitat.md says how to get it."
         ) from error

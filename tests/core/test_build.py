@@ -48,6 +48,13 @@ def test_an_entry_marked_partial_arrives_as_such_a_function():
     assert made.cars[0].engine is not made.cars[1].engine and made.cars[1].doors == 3
 
 
+@pytest.mark.parametrize("target", [f"{__name__}.Cart", "no_such_module.Car"])
+def test_what_cannot_be_imported_is_named_with_where_it_is_looked_for(target):
+    for make in (lambda: build.build(OmegaConf.create({"_target_": target})), build.located):
+        with pytest.raises(ValueError, match=f"{target}.* in the folder you are in, or on PYTH"):
+            make(target) if make is build.located else make()
+
+
 class Gained(torch.nn.Module):
     """Settings that no weight shows, one of them without a default."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from mitigate.core import conf
 from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
 from mitigate.safeguard import guard
+from mitigate.scale import programs
 from mitigate.training import train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 
@@ -215,6 +217,21 @@ def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
         evaluate.run(cfg)
 
 
+def test_what_a_recipe_sets_counts_and_the_command_line_counts_more():
+    encoder = ["recipe=encoder", "agent=encoder"]
+    assert conf.load_config("train", encoder).workers == 0
+    assert conf.load_config("train", [*encoder, "workers=2"]).workers == 2
+    assert conf.load_config("train", ["recipe=harden"]).workers is None
+
+
+def test_an_ablation_blanks_something():
+    for agent in ("topological", "recurrent_rgb", "frontier"):
+        cfg = conf.load_config("train", ["recipe=ablation", f"agent={agent}"])
+        assert cfg.agent.blind == ["rgb"] and cfg.suite.conditions == ["clean"]
+    blind = conf.load_config("train", ["recipe=ablation", "agent.blind=[depth]"]).agent.blind
+    assert blind == ["depth"]
+
+
 @pytest.mark.parametrize("count", [0, -1])
 def test_no_episodes_are_refused_before_a_training(count):
     cfg = conf.load_config("train", ["recipe=da_per_episode", f"evaluation.episodes={count}"])
@@ -254,6 +271,48 @@ def test_a_wrong_option_is_explained_in_one_paragraph(monkeypatch, capsys, optio
     text = complaint(monkeypatch, capsys, option)
     for word in words:
         assert word in text
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["agent=frontier", "agent.widht=3"], ["Did you mean agent.width?", "agent.eye"]),
+        (["recipe=harden", "stages.view_rgb=null"], ["Did you mean stages.views_rgb?"]),
+        (["recipe=encoder", "agent=encoder", "agent.kwargs.width=3"], ["+agent.kwargs.width="]),
+        (["recipe=harden", "~stages.views"], ["stages.views_rgb, stages.views_depth"]),
+        (["stages.imitation=nul"], ["it holds recipe, trainer, cost"]),
+    ],
+)
+def test_what_there_is_instead_is_said_of_what_was_chosen(monkeypatch, capsys, options, words):
+    text = complaint(monkeypatch, capsys, *options)
+    for word in words:
+        assert word in text
+
+
+def test_own_configs_count_for_what_there_is_instead(monkeypatch, capsys, tmp_path):
+    (tmp_path / "agent").mkdir()
+    (tmp_path / "agent" / "mine.yaml").write_text("_target_: my.Agent\nbreadth: 3\n")
+    given = ("--config-dir", str(tmp_path), "agent=mine", "agent.bredth=4")
+    assert "Did you mean agent.breadth?" in complaint(monkeypatch, capsys, *given)
+
+
+def test_a_program_that_another_one_starts_ends_in_a_paragraph_too(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(sys, "argv", ["sweep"])
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    chain = programs.Chain(
+        "one", (("train", programs.python("mitigate.train", "sede=1")),), tmp_path / "log", tmp_path
+    )
+
+    def program():
+        running = programs.Running(chain)
+        while running.poll() is None:
+            pass
+        raise ValueError(running.outcome.problem)
+
+    with pytest.raises(SystemExit) as stop:
+        conf.main(program, "sweep")
+    assert "train ended with 1 (error: There is no option 'sede'." in str(stop.value.code)
+    assert "HYDRA_FULL_ERROR" not in os.environ
 
 
 @pytest.mark.parametrize("primary", conf.TYPES)

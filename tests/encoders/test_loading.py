@@ -29,6 +29,11 @@ def encoder(**given) -> Encoder:
     return Encoder(**given).eval()
 
 
+def numbered() -> torch.nn.Module:
+    """Modules called 0, 1 and 2, as in most short encoders."""
+    return torch.nn.Sequential(torch.nn.Conv2d(3, 4, 3, 2, 1), torch.nn.ReLU(), torch.nn.Flatten())
+
+
 def test_an_import_path_is_called_with_its_arguments():
     assert load_model(TINY, {"width": 12}).fc.in_features == 12
 
@@ -251,6 +256,13 @@ def test_the_output_is_an_item_a_module_or_an_error_that_lists_them():
     assert encoder(output=None)(FRAMES).shape == (3, 5)
     with pytest.raises(ValueError, match=r"agent.output=pol is nothing .* pool, fc"):
         encoder(output="pol")
+
+
+def test_a_module_whose_name_is_a_number_is_an_output():
+    numbered = {"model": f"{__name__}:numbered", "tune": "all"}
+    assert encoder(**numbered, output=1)(FRAMES).shape == (3, 4, 16, 16)
+    with pytest.raises(ValueError, match="agent.output=7 is nothing"):
+        encoder(**numbered, output=7)
 
 
 def test_an_item_of_what_the_model_returns_is_named():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -80,3 +81,19 @@ def test_edits_come_nearer_to_what_is_meant_on_every_voice():
     before = [token_f1(t.plain, t.said) for t in texts]
     after = [token_f1(t.plain, edited(t.said, taught(t.said, t.plain))) for t in texts]
     assert sum(after) > sum(before) + 0.25 * len(texts)
+
+
+@pytest.mark.parametrize(
+    "heard, said",
+    [
+        ('Go by a "fire" box here.', 'Go by a "fire" box.'),
+        ("Go by the “Sun room.” Now.", "Go by the “Sun room.”"),
+        ("Go into the den/living room here.", "Go into the den/living room."),
+        ("Go (to the left) here.", "Go (to the left)."),
+    ],
+)
+def test_quotes_brackets_and_slashes_stand_as_close_as_they_were_heard(heard, said):
+    found = tokens(heard)
+    last = max(p for p, token in enumerate(found) if token.is_word)
+    made = [Edit(DROP if p >= last and t.is_word else KEEP) for p, t in enumerate(found)]
+    assert edited(heard, made, found).replace("”.", "”") == said

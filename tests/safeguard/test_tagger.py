@@ -11,7 +11,7 @@ from mitigate.safeguard.edits import KEEP, Edit, tokens
 from mitigate.safeguard.guard import TAGGERS, Safeguard, label, open_safeguard
 from mitigate.safeguard.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
-from mitigate.safeguard.plainly_said import Tagged, is_speech, plainly_said
+from mitigate.safeguard.plainly_said import Tagged, is_speech, led, plainly_said
 from mitigate.safeguard.report import voices
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.tagger import Tagger, open_tagger
@@ -97,3 +97,26 @@ def test_choices_with_a_tagger(tmp_path, shipped):
     torch_file.write_bytes(b"no weights")
     with pytest.raises(ValueError, match="damaged"):
         open_safeguard(str(tmp_path))
+
+
+@pytest.mark.parametrize(
+    "text, share",
+    [
+        ("Exsit the den, turn left, then walk on. Stop by the lamp.", 0.75),
+        ("So you know the lamp, right? You walk past it.", 0.0),
+        ("Well, walk past the lamp, okay?", 1 / 3),
+        ("...", 0.0),
+    ],
+)
+def test_what_begins_as_a_route_does_is_counted_by_clauses(text, share):
+    assert led(tokens(text)) == pytest.approx(share)
+
+
+def test_of_a_text_that_begins_as_a_route_does_more_must_go_for_it_to_be_speech():
+    def heard(text: str, drop: float) -> Tagged:
+        found = tuple(tokens(text))
+        return Tagged(found, tuple(Edit(KEEP) for _ in found), (drop,) * len(found), more=0.2)
+
+    route, speech = "Walk past the lamp, turn left, stop there.", "You see the lamp, it is nice."
+    assert is_speech(heard(speech, 0.35)) and not is_speech(heard(route, 0.35))
+    assert is_speech(heard(route, 0.6))

