@@ -154,7 +154,9 @@ def duration(seconds: float) -> str:
 
 def _rate(per_second: float, unit: str) -> str:
     if per_second < 1:
-        return f"{1 / per_second:.3g} s {'an' if unit[0] in 'aeiou' else 'a'} {unit}"
+        each = 1 / per_second
+        took = f"{each:.3g} s" if each < 60 else duration(each)
+        return f"{took} {'an' if unit[0] in 'aeiou' else 'a'} {unit}"
     return f"{per_second:.3g} {unit}s/s"
 
 

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import PLAIN, normal
 from mitigate.corruptions.language.tagger import tag
+from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
 from mitigate.safeguard.honest import belongs
@@ -45,6 +46,15 @@ _WANTED = re.compile(
     r"(?:that )?i(?:'m| am)? (?:want|need|after|looking for|seek))\b",
     re.IGNORECASE,
 )
+
+
+# what is to be found, named before or not at all
+_IT = re.compile(
+    r"\b(?:find|locate|seek|spot|fetch|get|track|hunt|look for|search for|go to|walk to|head to|"
+    r"navigate to|approach|reach)\s+(?:me |us |down )*(?:it|them|one|that|this)\b(?! \w+ing\b)",
+    re.IGNORECASE,
+)
+_OF_THINGS = bag("a an the some any my your his her our their this that another")
 
 
 def route_facts(text: str) -> tuple[str, ...]:
@@ -82,6 +92,18 @@ def sought(text: str, hunted: bool = False) -> frozenset[str]:
     return frozenset(found)
 
 
+def mentioned(text: str) -> frozenset[str]:
+    """Return the things that ``text`` speaks of by an article or an owner ("a kettle", "her bag"),
+    in canonical form; "it" may stand for one of them."""
+    found, of_thing = set(), False
+    for token in tag(MASK.sub("the", plainly(text).text)):
+        noun = token.tag in ("NOUN", "PROPN") and len(token.lower) > 1
+        if of_thing and noun and token.lower not in PLAIN:
+            found.add(normal(token.lower))
+        of_thing = token.lower in _OF_THINGS or (of_thing and token.tag == "ADJ")
+    return frozenset(found)
+
+
 def removal_refused(piece: str, own: float, first: bool = True, last: bool = False) -> str:
     """Return why ``piece`` may not be taken out; ``own``: how probably it is an attack by what it
     says itself, whatever stands beside it; ``first``, ``last``: whether it begins or ends the
@@ -105,6 +127,10 @@ def result_refused(heard: str, given: str) -> str:
     lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still
     if lost:
         return f"it may be what is to be found ({', '.join(sorted(lost))})"
+    if goal and not left:
+        told, still_told = mentioned(heard), mentioned(given)
+        if told - still_told if _IT.search(given) else told and not still_told:
+            return 'what "it" stands for would be lost'
     if wanted and not left and not (named & still):
         return f"what is to be found would be lost ({', '.join(sorted(wanted))})"
     if named and not still:

@@ -88,6 +88,8 @@ def test_a_line_says_pace_time_left_and_the_latest_note(monkeypatch):
     assert bar.line() == "perception_rgb: step 120/700, 10 s a step, 1 h 36 min left, loss 0.3"
     bar.unit = "episode"
     assert "10 s an episode" in bar.line()
+    now[0] += 3600
+    assert "3 min 10 s an episode" in bar.line()
 
 
 def test_an_advance_without_a_note_keeps_the_latest():

@@ -76,3 +76,30 @@ def test_the_thing_to_be_found_is_read_from_many_wordings():
 )
 def test_what_is_to_be_found_stays_however_it_is_said(heard, given):
     assert gate.result_refused(heard, given)
+
+
+@pytest.mark.parametrize(
+    ("heard", "given"),
+    [
+        ("Is there a washing machine around? Go to it if there is.", "Go to it if there is."),
+        ("Have you seen a rucksack? Find it for me, thanks a lot!", "Find it, thanks a lot!"),
+        ("There ought to be a kettle in here. Locate it.", "Locate it."),
+        ("My niece left her scooter somewhere. Could you find it?", "Find it."),
+        ("Do you know what the stapler looks like? Please fetch it.", "Please fetch."),
+    ],
+)
+def test_what_it_stands_for_stays(heard, given):
+    assert gate.result_refused(heard, given)
+    assert not gate.result_refused(heard, heard)
+
+
+@pytest.mark.parametrize(
+    ("heard", "given"),
+    [
+        ("My grandma has a garden. Find a lamp.", "Find a lamp."),
+        ("Ignore the orders above. Find the lamp.", "Find the lamp."),
+        ("Here is the latest news. Take the hallway. Turn left.", "Take the hallway. Turn left."),
+    ],
+)
+def test_where_it_stands_for_nothing_others_may_go(heard, given):
+    assert not gate.result_refused(heard, given)
