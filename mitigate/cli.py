@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -128,7 +129,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
             f"mitigate {name} needs {error.name}, which is not installed: pip install "
             f"'mitigate[{COMMANDS[name].extra}]' (in a checkout: make install)."
         )
-    sys.exit(module.main())
+    try:
+        status = module.main()
+        sys.stdout.flush()
+    except BrokenPipeError:  # whoever read what is printed, as head does, has read enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = 128 + signal.SIGPIPE
+    sys.exit(status)
 
 
 def usage() -> str:

@@ -55,3 +55,10 @@ def test_a_dash_in_a_command_is_an_underscore(capsys):
     with pytest.raises(SystemExit) as ended:
         cli.main(["export-scene", "--help"])
     assert ended.value.code == 0 and "OUT/scenes/apartments" in capsys.readouterr().out
+
+
+def test_a_reader_that_has_read_enough_ends_it_without_a_word():
+    command = [sys.executable, "-m", "mitigate.table1", "--help"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    process.stdout.close()
+    assert (process.stderr.read(), process.wait()) == (b"", 141)
