@@ -43,6 +43,8 @@ STOP = re.compile(
     r"conclude)(?:d|ped|ed)?|"
     r"(?:hang|sit|hold) tight|stay put|stand still|stand ?by|call it a day|"
     r"(?:plant|rest) your feet|(?:park|plant|station) yourself|"
+    r"(?:hang|hold) on(?= (?:right |just )?(?:there|here|by|at|in|next|near|beside|outside|inside|"
+    r"under|until))|sit (?:down|still)|wait (?:up|around)(?= (?:by|at|in|near|here|there))|"
     r"hang (?:out|around)(?= (?:right |just )?(?:there|here|by|at|in|next|near|beside))|"
     r"chill(?: out)?(?= (?:there|here|by|at|in|next|right|beside|near))|"
     r"(?:tarry|loiter|linger|idle)(?= (?:there|here|by|at|in|next|beside|near|outside|under|for))|"
