@@ -18,14 +18,15 @@ _WHOLE = re.compile(
     r"(?<![^ ])(?:"
     rf"(?:the|a|an|those|these|that|your|my|some) (?:[\w-]+ ){{1,4}}?(?:is|are|should be|will be|"
     rf"would be|must be) {_SKIPPED}(?:behind|in front of|ahead of) you|"
+    r"(?:when|once) (?:you're|you are) out|"
     r"there (?:should|will|may|might|would|must|could) be|"
-    r"(?:(?:so )?(?:that )?you(?:'ll| will)? know (?:that )?)?(?:it's|that's|it is|that is|this is|you're(?: in| at| on)?|you are(?: in| at| on)?) the "
+    r"(?:(?:so )?(?:that )?you(?:'ll| will)? know (?:that )?)?(?:it's|that's|it is|that is|"
+    r"this is|you're(?: in| at| on)?|you are(?: in| at| on)?) the "
     r"right (?:one|place|way|track|door|room|spot|path|hallway|direction|area)|"
     r"(?:through|of|in|on|from|by|behind|under|over|at|to|near|beside) which "
     r"(?:(?!and |then )[\w'-]+ )*[\w'-]+|"
     r"(?:identifiable|recogni[sz]able|distinguishable|identified|marked|characteri[sz]ed) by "
-    r"(?:(?!and |then )[\w'-]+ )*[\w'-]+|"
-    r"all the way"
+    r"(?:(?!and |then )[\w'-]+ )*[\w'-]+"
     r")(?= )"
 )
 # what stays with the thing before it, if that stays
@@ -33,11 +34,14 @@ _OF_THING = re.compile(
     r"(?<![^ ])(?:straight ahead|(?:which|that) (?:leads?|goes|go|runs?|leading) "
     r"(?:up|down|upwards?|downwards?|upstairs|downstairs|out|outside))(?= [.,;!?]|$)"
 )
+_ALL = re.compile(r"(?<![^ ])all the way(?= )")
 _OF_SIDE = re.compile(r"(?<![^ ])(?:to|on) (?:the|your|its|their) (?:left|right)(?= )")
 _SEEN = re.compile(
-    r"(?<![^ ])(?:there's|there is|there are|you'll see|you will see|you see|you should see)(?= )"
+    r"(?<![^ ])(?:there's|there is|there are|you'll see|you will see|you see|you should see|"
+    r"which is|which are)(?= )"
 )
 _WHEN = bag("after before until till when once as if while where")
+_AS_LONG = bag("until till while")
 _KEEPS = bag("keep keeps continue start begin")
 _MOVES = MOVES | STEP.keys() | TURNS
 _RELATIVE = bag("that which who")
@@ -45,6 +49,7 @@ _OF_WHAT = bag("of to with past through into behind beside at near") | WAY.keys(
 _DENIES = bag("don't dont not never")
 _BUT = bag("just only but instead rather go simply")
 _JOINS = bag("and then or") | frozenset(",;")
+_ON = bag("carry go keep head move walk continue come")
 _AGAIN = bag("again left right")
 _TOWARDS = bag("to towards toward")
 
@@ -67,6 +72,8 @@ def _wholes(made: Edited) -> bool:
             changed |= made.give_back(span)
             if match.group().endswith("you"):
                 _no_phrase(made, span.start - 1)
+    for match in _ALL.finditer(text):
+        changed |= bool(made.kept_words(0)) and made.give_back(span_of(match, places))
     for match in _OF_SIDE.finditer(text):
         span = span_of(match, places)
         if made.kept(span[0]) and made.kept(span[-1]):
@@ -115,6 +122,8 @@ def _named(made: Edited, place: int) -> int:
 def _subject(made: Edited, place: int) -> bool:
     """Give back "you" of "after you get in", and what it does at the end ("until you are called");
     return whether there was such."""
+    if made.found[place - 1].lower in _AS_LONG and made.kept(place - 1) and made.before[place]:
+        return made.give_back(range(place, min(place + 2, len(made.found))))
     if made.found[place].lower != "you" or not place or place + 1 >= len(made.found):
         return False
     when = made.found[place - 1].lower in _WHEN and made.kept(place - 1)
@@ -226,17 +235,21 @@ def _pronoun(made: Edited, place: int) -> bool:
 def _verb(made: Edited, place: int) -> bool:
     """Give back a verb between "and" and where it leads ("turn left and head towards the hall")."""
     words = [t.lower for t in made.found]
-    if made.kept(place) or words[place] not in MOVES or place + 1 >= len(words):
+    if place + 1 >= len(words):
+        return False
+    on = words[place] == "on" and place and words[place - 1] in _ON
+    verb = place - 1 if on else place
+    if made.kept(verb) or made.before[verb] or not (on or words[verb] in MOVES):
         return False
     leads = words[place + 1] in _TOWARDS or words[place + 1] in WAY
     if not leads or not made.kept(place + 1) or made.before[place] or made.before[place + 1]:
         return False
-    ahead = [one for one in made.said() if one.place < place]
+    ahead = [one for one in made.said() if one.place < verb]
     if not ahead:
         return False
-    joins = [p for p in range(ahead[-1].place + 1, place) if words[p] in _JOINS]
+    joins = [p for p in range(ahead[-1].place + 1, verb) if words[p] in _JOINS]
     if joins or ahead[-1].word in ("and", "or", "first"):
-        return made.give_back([*joins[-1:], place])
+        return made.give_back([*joins[-1:], *range(verb, place + 1)])
     return False
 
 

@@ -129,7 +129,9 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
     ends, rest = after in MARKS, made.kept_words(other.place + 1)
     plain = plain_form(word)
     if plain in DETERMINERS:
-        return ends or (after in FUNCTION and after not in ("other", "same", "next"))
+        return (
+            ends or after == "to" or (after in FUNCTION and after not in ("other", "same", "next"))
+        )
     if plain in _BARE and (plain_form(after) in _BARE or after in DETERMINERS):
         return True
     return (

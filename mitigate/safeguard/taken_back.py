@@ -26,7 +26,7 @@ from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.neighbours import SEEKS, STOPS, parted
 from mitigate.safeguard.phrases import unbacked
-from mitigate.safeguard.speech import STOP
+from mitigate.safeguard.speech import SIDE_BACK, STOP
 from mitigate.safeguard.speech_words import speech_words
 from mitigate.safeguard.steps import MARKS, PRONOUNS, WAY, WHICH, same, steps, unknown_move, which
 from mitigate.safeguard.turns_told import turns_told
@@ -83,9 +83,29 @@ _ROUNDS = 24  # each gives something back, so there is an end anyway
 def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[float]) -> list[Edit]:
     """Return the ``edits`` of a sentence's tokens less those that would harm what it says;
     ``drop``: how probably each token goes."""
-    made = Edited(found, [edit.act for edit in edits], [edit.before for edit in edits])
+    wrong = _corrected(found)
+    rest = [place for place in range(len(found)) if place not in wrong]
+    made = Edited(
+        [found[p] for p in rest], [edits[p].act for p in rest], [edits[p].before for p in rest]
+    )
     if not any(made.before) and not made.kept_words(0):
         return list(edits)  # the gate decides on whole sentences
+    for side in (at for at, p in enumerate(rest) if p - 1 in wrong):
+        made.give_back([side])
+    _mended(made, [drop[p] for p in rest])
+    out = [Edit(DROP)] * len(found)
+    for place, act, phrase in zip(rest, made.acts, made.before, strict=True):
+        out[place] = Edit(act, phrase)
+    return out
+
+
+def _corrected(found: Sequence[Token]) -> set[int]:
+    """Return the places of sides that are taken back, and of how ("left, no wait,")."""
+    text, places = spelled(found)
+    return {p for match in SIDE_BACK.finditer(text) for p in span_of(match, places)[:-1]}
+
+
+def _mended(made: Edited, drop: Sequence[float]) -> None:
     _sayings(made)
     for _ in range(_ROUNDS):
         mended = [
@@ -100,7 +120,6 @@ def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[flo
         if not any([*mended, *more]):
             break
     _marks(made)
-    return [Edit(act, phrase) for act, phrase in zip(made.acts, made.before, strict=True)]
 
 
 def _sayings(made: Edited) -> None:

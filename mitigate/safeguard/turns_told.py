@@ -69,13 +69,15 @@ def _told(made: Edited, side: int) -> bool:
 
 def _it_is(made: Edited, lead: int, side: int) -> bool:
     """Say "take the first left" for "it's the first left", and what joined it."""
-    first = lead + 1
-    if made.found[first].lower not in DETERMINERS | {"another"}:
+    first, word = lead + 1, made.found[lead].lower
+    named = made.found[first].lower in DETERMINERS | {"another"}
+    if not named and (first < side or word != "it's"):
         changed = made.give_back(range(lead, side + 1))
         return _joined(made, lead) or changed
     old = (list(made.acts), list(made.before))
     made.give_back(range(first, side + 1))
-    made.acts[lead], made.before[lead], made.before[first] = DROP, 0, NUMBER["take"]
+    made.acts[lead], made.before[lead] = DROP, 0
+    made.before[first] = NUMBER["take" if named else "turn"]
     joined = _joined(made, lead)
     return joined or old != (made.acts, made.before)
 
