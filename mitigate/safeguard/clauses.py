@@ -10,7 +10,8 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import CLAUSE_ENDS, DROP, KEEP, PLAIN, Edited
 from mitigate.safeguard.plain_words import plain_form
-from mitigate.safeguard.steps import MOVES, PRONOUNS, STEP, TURNS, WAY
+from mitigate.safeguard.speech import STOP
+from mitigate.safeguard.steps import MARKS, MOVES, PRONOUNS, STEP, TURNS, WAY
 
 _SKIPPED = r"(?:right |now |just |directly |straight |somewhere )*"
 # what is told whole, if a part of it stays
@@ -41,6 +42,7 @@ _SEEN = re.compile(
     r"which is|which are)(?= )"
 )
 _WHEN = bag("after before until till when once as if while where")
+_ORDINALS = bag("first second third fourth last next 1st 2nd 3rd final")
 _AS_LONG = bag("until till while")
 _KEEPS = bag("keep keeps continue start begin")
 _MOVES = MOVES | STEP.keys() | TURNS
@@ -49,6 +51,7 @@ _OF_WHAT = bag("of to with past through into behind beside at near") | WAY.keys(
 _DENIES = bag("don't dont not never")
 _BUT = bag("just only but instead rather go simply")
 _JOINS = bag("and then or") | frozenset(",;")
+_ENDS = MARKS | {"and"}
 _ON = bag("carry go keep head move walk continue come")
 _AGAIN = bag("again left right")
 _TOWARDS = bag("to towards toward")
@@ -60,6 +63,7 @@ def clauses_told(made: Edited) -> bool:
     for place in range(len(made.found)):
         changed |= _kept_up(made, place) | _asked(made, place) | _relative(made, place)
         changed |= _pronoun(made, place) | _verb(made, place) | _subject(made, place)
+        changed |= _it_is(made, place)
     return changed
 
 
@@ -71,7 +75,12 @@ def _wholes(made: Edited) -> bool:
         if any(made.kept(p) for p in span):
             changed |= made.give_back(span)
             if match.group().endswith("you"):
+                ends = span.stop < len(made.found) and made.found[span.stop].text in CLAUSE_ENDS
+                changed |= ends and made.give_back([span.stop])
                 _no_phrase(made, span.start - 1)
+    for match in STOP.finditer(text):
+        if made.kept((span := span_of(match, places))[0]):  # "come to rest"
+            changed |= made.give_back(span)
     for match in _ALL.finditer(text):
         changed |= bool(made.kept_words(0)) and made.give_back(span_of(match, places))
     for match in _OF_SIDE.finditer(text):
@@ -117,6 +126,20 @@ def _named(made: Edited, place: int) -> int:
         place += 1
     noun = place < len(made.found) and made.found[place].tag in ("NOUN", "PROPN")
     return place if noun else len(made.found) + 9
+
+
+def _it_is(made: Edited, place: int) -> bool:
+    """Give back "it's" of "and it's the second door"; return whether it was taken out."""
+    words = [t.lower for t in made.found[place : place + 3]]
+    if words[:2] != ["it's", "the"] or words[-1] not in _ORDINALS or made.kept(place):
+        return False
+    thing = _named(made, place + 3)
+    if thing >= len(made.found) or made.found[thing].lower in ("left", "right"):
+        return False
+    ahead = [one for one in made.said() if one.place < place]
+    alone = not ahead or ahead[-1].word in _ENDS
+    between = any(made.before[place : place + 3])
+    return alone and made.kept(thing) and not between and made.give_back([place, place + 1])
 
 
 def _subject(made: Edited, place: int) -> bool:
@@ -237,6 +260,11 @@ def _verb(made: Edited, place: int) -> bool:
     words = [t.lower for t in made.found]
     if place + 1 >= len(words):
         return False
+    if made.kept(place + 1) and words[place] in MOVES and not made.kept(place):
+        alone = not (said := [o.word for o in made.said() if o.place < place]) or said[-1] in _ENDS
+        if words[place + 1] in _AS_LONG or (words[place + 1] == "straight" and alone):
+            keep = place and words[place - 1] in _KEEPS
+            return made.give_back([place - 1, place] if keep else [place])
     on = words[place] == "on" and place and words[place - 1] in _ON
     verb = place - 1 if on else place
     if made.kept(verb) or made.before[verb] or not (on or words[verb] in MOVES):

@@ -59,7 +59,8 @@ STOP = re.compile(
 )
 # a side taken back, up to the one that is meant
 SIDE_BACK = re.compile(
-    rf"\b(?:{_SIDES})\b[,.;:!? –—-]+(?:{_BACK}[,.;:!? –—-]+)+(?:(?:it's|it is|the|a|to the|"
+    rf"\b(?:{_SIDES})\b[,.;:!? –—-]+(?:(?:er|erm|um|uh|hmm|oh|ah|well)[,.;:!? –—-]+)*"
+    rf"(?:{_BACK}[,.;:!? –—-]+)+(?:(?:it's|it is|the|a|to the|"
     rf"turn|go|on the|your) )*(?=(?:{_SIDES})\b)"
 )
 _REMOVED = tuple(

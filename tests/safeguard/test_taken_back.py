@@ -222,6 +222,10 @@ def test_a_turn_that_stays_keeps_its_verb_and_what_joined_it(marked, said):
          "Go to the left of them and into the hall."),
         ("Climb the steps {that} are on the left.", "Climb the steps that are on the left."),
         ("Wait there until you {are fetched}.", "Wait there until you are fetched."),
+        ("The bed {is behind} you{, so} walk on.", "The bed is behind you, walk on."),
+        ("Leave the hall and {it's} the third door.", "Leave the hall and it's the third door."),
+        ("Turn left{, keep going} till the wall.", "Turn left, keep going till the wall."),
+        ("{Please} come to {a rest} by the bed.", "Come to a rest by the bed."),
     ],
 )  # fmt: skip
 def test_what_is_told_of_things_stays_whole(marked, said):
