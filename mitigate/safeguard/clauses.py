@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.edits import CLAUSE_ENDS, DROP, KEEP, PLAIN, Edited
+from mitigate.safeguard.edits import CLAUSE_ENDS, DROP, KEEP, NUMBER, PLAIN, Edited
 from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.speech import STOP
 from mitigate.safeguard.steps import MARKS, MOVES, PRONOUNS, STEP, TURNS, WAY
@@ -80,7 +80,8 @@ def _wholes(made: Edited) -> bool:
                 _no_phrase(made, span.start - 1)
     for match in STOP.finditer(text):
         if made.kept((span := span_of(match, places))[0]):  # "come to rest"
-            changed |= made.give_back(span)
+            again = made.before[span.stop : span.stop + 1] == [NUMBER["stop"]]
+            changed |= made.give_back([*span, span.stop] if again else span)
     for match in _ALL.finditer(text):
         changed |= bool(made.kept_words(0)) and made.give_back(span_of(match, places))
     for match in _OF_SIDE.finditer(text):
@@ -261,10 +262,13 @@ def _verb(made: Edited, place: int) -> bool:
     if place + 1 >= len(words):
         return False
     if made.kept(place + 1) and words[place] in MOVES and not made.kept(place):
-        alone = not (said := [o.word for o in made.said() if o.place < place]) or said[-1] in _ENDS
-        if words[place + 1] in _AS_LONG or (words[place + 1] == "straight" and alone):
-            keep = place and words[place - 1] in _KEEPS
-            return made.give_back([place - 1, place] if keep else [place])
+        said = [o for o in made.said() if o.place < place]
+        if words[place + 1] in _AS_LONG or (
+            words[place + 1] == "straight" and (not said or said[-1].word in _ENDS)
+        ):
+            first = place - bool(place and words[place - 1] in _KEEPS)
+            joins = [p for p in range(said[-1].place + 1 if said else 0, first) if words[p] == ","]
+            return made.give_back([*joins[-1:], *range(first, place + 1)])
     on = words[place] == "on" and place and words[place - 1] in _ON
     verb = place - 1 if on else place
     if made.kept(verb) or made.before[verb] or not (on or words[verb] in MOVES):

@@ -43,7 +43,7 @@ def turns_told(made: Edited) -> bool:
 
 def _place_name(made: Edited, side: int) -> bool:
     behind = [t.lower for t in made.found[side + 1 : side + 2]]
-    return behind != [] and (behind[0] == "of" or made.found[side + 1].tag == "NOUN")
+    return behind != [] and (behind[0] in ("of", "one") or made.found[side + 1].tag == "NOUN")
 
 
 def _told(made: Edited, side: int) -> bool:

@@ -225,7 +225,8 @@ def test_a_turn_that_stays_keeps_its_verb_and_what_joined_it(marked, said):
         ("The bed {is behind} you{, so} walk on.", "The bed is behind you, walk on."),
         ("Leave the hall and {it's} the third door.", "Leave the hall and it's the third door."),
         ("Turn left{, keep going} till the wall.", "Turn left, keep going till the wall."),
-        ("{Please} come to {a rest} by the bed.", "Come to a rest by the bed."),
+        ("Pass the bed and come to <stop>{rest} by the door.",
+         "Pass the bed and come to rest by the door."),
     ],
 )  # fmt: skip
 def test_what_is_told_of_things_stays_whole(marked, said):
