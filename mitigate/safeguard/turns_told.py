@@ -24,6 +24,7 @@ _JOINS = bag("and or then") | frozenset(",.;")
 _DOES = bag("turns bends curves veers forks swings")  # what a thing does where one turns
 _SOON = bag("then slightly sharply gently just suddenly")
 _IT = bag("it that which")
+_THING = ("NOUN", "PROPN", "ADJ")  # a thing may be tagged as what comes before one
 _WHERE = bag("when once until till where if as")
 # who is told to turn
 _AGENTS = bag(
@@ -103,7 +104,7 @@ def _of_things(made: Edited, verb: int) -> bool:
         subject -= 1
     one, last = found[subject], _last(made, verb)
     by_it = one.lower in _IT and subject > 0
-    if last < 0 or one.lower in _AGENTS or not (by_it or one.tag in ("NOUN", "PROPN")):
+    if last < 0 or one.lower in _AGENTS or not (by_it or one.tag in _THING):
         return False
     if not any(made.kept(p) for p in range(verb, last)):
         return False

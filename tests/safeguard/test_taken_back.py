@@ -206,6 +206,7 @@ def test_a_turn_that_stays_keeps_its_verb_and_what_joined_it(marked, said):
     "marked, said",
     [
         ("Stop when the {blue} carpet {turns} left.", "Stop when the blue carpet turns left."),
+        ("Stop {when} <at>the gray tile turns right.", "Stop when the gray tile turns right."),
         ("Go on{, it} turns into {this narrow} corridor.",
          "Go on, it turns into this narrow corridor."),
         ("Enter the hall{, there's a} lamp on the wall {so you know it's the} right {one}.",
