@@ -70,8 +70,9 @@ def parted(made: Edited) -> bool:
 def _run_on(made: Edited, one: Said, other: Said) -> bool:
     """Give back what joined a turn or a stop to the side or thing before it; return whether it was
     taken out."""
-    ended = one.word in _SIDES or made.found[one.place].tag == "NOUN"
-    if one.phrase or not ended or other.word not in TURN_VERBS | STOPS:
+    ended = one.word in _SIDES | {"first", "again"} or made.found[one.place].tag == "NOUN"
+    leads = other.word in TURN_VERBS | STOPS | MOVES | STEP.keys()
+    if one.phrase or not ended or not leads or made.found[other.place].tag == "NOUN":
         return False
     between = range(one.place + 1, other.place)
     joins = (p for p in between if made.found[p].text in ",.;" or made.found[p].lower in _JOINS)
@@ -128,7 +129,9 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
     ends, rest = after in MARKS, made.kept_words(other.place + 1)
     plain = plain_form(word)
     if plain in DETERMINERS:
-        return ends or (after in FUNCTION and after not in ("other", "same", "next"))
+        return (
+            ends or after == "to" or (after in FUNCTION and after not in ("other", "same", "next"))
+        )
     if plain in _BARE and (plain_form(after) in _BARE or after in DETERMINERS):
         return True
     return (
@@ -142,6 +145,7 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
         or (kind == "NOUN" and after in _SUBJECTS and rest[:1] in ([], ["."]))
         or (word in _SUBJECTS and made.found[other.place].tag in ("ADP", "DET", "NOUN", "ADJ"))
         or (word in STOPS and after == "to")
+        or (word in _STAYS and noun and not one.phrase)
         or (word in _SOON and after in DETERMINERS and side_first([after, *rest]))
         or (ends and (word in _DANGLING or (word in MOVES and word != "turn")))
         or (word == "to" and after in ("and", "or"))

@@ -14,6 +14,7 @@ from mitigate.safeguard.speech import STOP
 from mitigate.safeguard.steps import DOORS, MARKS, PRONOUNS, TURNS, WAY, Step, steps
 
 _PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
+_IT_IS = bag("it's it'll")  # a left
 # by which one stops, whether or not it is said so
 _RESTS = STOPS | bag(
     "remains rests done end ends ending destination goal there here position place finished final "
@@ -46,7 +47,7 @@ def _backed(
 ) -> bool:
     following = made.kept_words(place)
     if "turn" in phrase or phrase[-2:] == ["make", "a"]:
-        turning = any(word in TURNS for word in clause)
+        turning = any(word in TURNS or word in _IT_IS for word in clause)
         emphasis = following[:1] == ["right"] and following[1:2] and following[1] in _PLACED
         if not turning or emphasis or not ("around" in phrase or side_first(following)):
             return False

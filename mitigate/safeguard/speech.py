@@ -12,7 +12,7 @@ _SIDES = "left|right"
 # said to take back what was said last
 _BACK = (
     r"(?:no,? (?:wait|sorry|not that|hang on|hold on|rather)|no|sorry|pardon(?: me)?|excuse me|"
-    r"i mean|(?:or )?rather|correction|make that|make it|scratch that|hang on|hold on|wait|oops|"
+    r"i meant?|(?:or )?rather|correction|make that|make it|scratch that|hang on|hold on|wait|oops|"
     r"whoops|that is(?: to say)?|my mistake|i tell a lie|strike that|actually)"
 )
 _SOUNDS = r"(?:,? (?:er|erm|um|uh|hmm|oh|ah|well|like)\b,?)"
@@ -43,6 +43,8 @@ STOP = re.compile(
     r"conclude)(?:d|ped|ed)?|"
     r"(?:hang|sit|hold) tight|stay put|stand still|stand ?by|call it a day|"
     r"(?:plant|rest) your feet|(?:park|plant|station) yourself|"
+    r"(?:hang|hold) on(?= (?:right |just )?(?:there|here|by|at|in|next|near|beside|outside|inside|"
+    r"under|until))|sit (?:down|still)|wait (?:up|around)(?= (?:by|at|in|near|here|there))|"
     r"hang (?:out|around)(?= (?:right |just )?(?:there|here|by|at|in|next|near|beside))|"
     r"chill(?: out)?(?= (?:there|here|by|at|in|next|right|beside|near))|"
     r"(?:tarry|loiter|linger|idle)(?= (?:there|here|by|at|in|next|beside|near|outside|under|for))|"
@@ -54,6 +56,12 @@ STOP = re.compile(
     r"(?:terminate|cease)(?= (?:there|here|at|by|in|on|within|beside|near|upon|once|when|"
     r"adjacent))"
     r")\b"
+)
+# a side taken back, up to the one that is meant
+SIDE_BACK = re.compile(
+    rf"\b(?:{_SIDES})\b[,.;:!? –—-]+(?:(?:er|erm|um|uh|hmm|oh|ah|well)[,.;:!? –—-]+)*"
+    rf"(?:{_BACK}[,.;:!? –—-]+)+(?:(?:it's|it is|the|a|to the|"
+    rf"turn|go|on the|your) )*(?=(?:{_SIDES})\b)"
 )
 _REMOVED = tuple(
     (re.compile(pattern), said)
@@ -67,8 +75,7 @@ _REMOVED = tuple(
         ),
         (r"\b(?:first|last) (?:of all|thing)\b|\bto (?:begin|start) with\b", " "),
         # a side taken back, a side that is not meant
-        (rf"\b(?:{_SIDES})\b[,.;:!? –—-]+(?:{_BACK}[,.;:!? –—-]+)+(?:(?:it's|it is|the|a|to the|"
-         rf"turn|go|on the|your) )*(?={_SIDES})", ""),
+        (SIDE_BACK.pattern, ""),
         (rf",? ?\b(?:and |but )?(?:not|never)(?: to| at| on| in| the| your| towards)* (?:{_SIDES})"
          r"(?:[- ]hand)?(?: one| side)?\b", " "),
         # a number taken back

@@ -7,7 +7,8 @@ where, and each of these is mended by giving back what was heard:
 - a phrase that nothing heard backs (``phrases.py``);
 - a denial or a condition of which a part would stay ("not a lot, just slightly": "not slightly");
 - a step or a stop that would be lost, in whatever words ("go past it", "hop up the steps");
-- words that do not go together, or stand alone, but for what was taken out (``neighbours.py``).
+- words that do not go together, or stand alone, but for what was taken out (``neighbours.py``);
+- a turn without its verb (``turns_told.py``), half a statement (``clauses.py``).
 
 Nothing is put that was neither heard nor chosen by the tagger, but for "stop", "find",
 "at" and "towards" where that was said in other words.
@@ -20,13 +21,15 @@ from collections.abc import Sequence
 
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.clauses import clauses_told, span_of, spelled
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.neighbours import SEEKS, STOPS, parted
 from mitigate.safeguard.phrases import unbacked
-from mitigate.safeguard.speech import STOP
+from mitigate.safeguard.speech import SIDE_BACK, STOP
 from mitigate.safeguard.speech_words import speech_words
 from mitigate.safeguard.steps import MARKS, PRONOUNS, WAY, WHICH, same, steps, unknown_move, which
+from mitigate.safeguard.turns_told import turns_told
 
 _AT = bag("in inside outside by from")  # where a thing is, unless a verb of motion stands before
 _IF = bag("if unless")
@@ -80,9 +83,29 @@ _ROUNDS = 24  # each gives something back, so there is an end anyway
 def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[float]) -> list[Edit]:
     """Return the ``edits`` of a sentence's tokens less those that would harm what it says;
     ``drop``: how probably each token goes."""
-    made = Edited(found, [edit.act for edit in edits], [edit.before for edit in edits])
+    wrong = _corrected(found)
+    rest = [place for place in range(len(found)) if place not in wrong]
+    made = Edited(
+        [found[p] for p in rest], [edits[p].act for p in rest], [edits[p].before for p in rest]
+    )
     if not any(made.before) and not made.kept_words(0):
         return list(edits)  # the gate decides on whole sentences
+    for side in (at for at, p in enumerate(rest) if p - 1 in wrong):
+        made.give_back([side])
+    _mended(made, [drop[p] for p in rest])
+    out = [Edit(DROP)] * len(found)
+    for place, act, phrase in zip(rest, made.acts, made.before, strict=True):
+        out[place] = Edit(act, phrase)
+    return out
+
+
+def _corrected(found: Sequence[Token]) -> set[int]:
+    """Return the places of sides that are taken back, and of how ("left, no wait,")."""
+    text, places = spelled(found)
+    return {p for match in SIDE_BACK.finditer(text) for p in span_of(match, places)[:-1]}
+
+
+def _mended(made: Edited, drop: Sequence[float]) -> None:
     _sayings(made)
     for _ in range(_ROUNDS):
         mended = [
@@ -93,21 +116,21 @@ def taken_back(found: Sequence[Token], edits: Sequence[Edit], drop: Sequence[flo
             _times(made),
             _steps(made),
         ]
-        if not any([*mended, _stops(made), parted(made)]):
+        more = [_stops(made), parted(made), turns_told(made), clauses_told(made)]
+        if not any([*mended, *more]):
             break
     _marks(made)
-    return [Edit(act, phrase) for act, phrase in zip(made.acts, made.before, strict=True)]
 
 
 def _sayings(made: Edited) -> None:
     """Say what is said in many words by its phrase, where they would not all stay."""
-    text, places = _spelled(made.found)
+    text, places = spelled(made.found)
     for match in _NOTHING.finditer(text):
-        for place in _span(match, places):
+        for place in span_of(match, places):
             made.acts[place], made.before[place] = DROP, 0
     for pattern, phrase in _SAYINGS:
         for match in pattern.finditer(text):
-            first, behind = (span := _span(match, places)).start, span.stop
+            first, behind = (span := span_of(match, places)).start, span.stop
             thing = any(made.kept(p) for p in range(behind, made.end_of_clause(behind)))
             if thing and not all(made.kept(p) for p in span):
                 made.acts[first:behind] = [DROP] * len(span)
@@ -120,10 +143,10 @@ def _sayings(made: Edited) -> None:
 def _wholes(made: Edited) -> bool:
     """Give back words that are told together, of which a part is left before a thing that stays;
     return whether there were such."""
-    text, places = _spelled(made.found)
+    text, places = spelled(made.found)
     changed = False
     for match in _WHOLE.finditer(text):
-        span = _span(match, places)
+        span = span_of(match, places)
         if any(made.kept(p) for p in span):
             changed |= not all(made.kept(p) for p in span) and made.give_back(span)
     return changed
@@ -168,7 +191,7 @@ def _words(made: Edited, drop: Sequence[float]) -> bool:
 
 def _denials(made: Edited) -> bool:
     """Give back denials and conditions of which a part is left; return whether there were such."""
-    text, places = _spelled(made.found)
+    text, places = spelled(made.found)
     excused = {places[m.start()] for m in _NO_DENIAL.finditer(text) if m.start() in places}
     changed = False
     for place, token in enumerate(made.found):
@@ -222,11 +245,11 @@ def _stops(made: Edited) -> bool:
     """Say "stop" where that is said in other words and would be lost; return whether it was."""
     if any(one.word in STOPS for one in made.said()) or not made.kept_words(0):
         return False
-    text, places = _spelled(made.found)
+    text, places = spelled(made.found)
     for match in STOP.finditer(text):
         if match.start() not in places:
             continue
-        span = _span(match, places)
+        span = span_of(match, places)
         if span.stop >= len(made.found):
             return made.give_back(span)
         for place in span:
@@ -248,18 +271,3 @@ def _marks(made: Edited) -> None:
         if mark.text == "-" and one.end == mark.start and mark.end == other.start:
             whole = made.kept(place - 1) and made.kept(place + 1)
             made.acts[place], made.before[place] = KEEP if whole else DROP, 0
-
-
-def _span(match: re.Match[str], places: dict[int, int]) -> range:
-    """Return the places of the tokens that a match of what is spelled holds."""
-    first = places[match.start()]
-    return range(first, first + 1 + match.group().count(" "))
-
-
-def _spelled(found: Sequence[Token]) -> tuple[str, dict[int, int]]:
-    """Return the tokens in lower case with a space between them, and where each begins."""
-    text, places = "", {}
-    for place, token in enumerate(found):
-        places[len(text)] = place
-        text += token.lower + " "
-    return text, places

@@ -179,3 +179,83 @@ def test_edits_that_harm_nothing_stay_as_they_are():
 
 def test_the_words_of_speech_are_those_of_the_train_voices():
     assert speech_words.speech_words() == speech_words.counted()
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("Pass the stove{, and then it's a} right.", "Pass the stove, take a right."),
+        ("Go past {the} vases{, and then I think it's} the second right.",
+         "Go past vases, take the second right."),
+        ("Walk past the lamp{, and take} the first left.",
+         "Walk past the lamp, and take the first left."),
+        ("Exit the office and {take} a right at the desk.",
+         "Exit the office and take a right at the desk."),
+        ("Go past the bench{, veering} to {the} right.",
+         "Go past the bench, veering to the right."),
+        ("{Then it's} left, {no} wait, {sorry,} right, {and you} go on.", "Turn right, go on."),
+        ("Take a right, {sorry, I meant a} left at the bed.", "Take a left at the bed."),
+        ("Take a, {hmm,} a left at the bed.", "Take a left at the bed."),
+    ],
+)  # fmt: skip
+def test_a_turn_that_stays_keeps_its_verb_and_what_joined_it(marked, said):
+    assert given(marked) == said
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("Stop when the {blue} carpet {turns} left.", "Stop when the blue carpet turns left."),
+        ("Stop {when} <at>the gray tile turns right.", "Stop when the gray tile turns right."),
+        ("Go on{, it} turns into {this narrow} corridor.",
+         "Go on, it turns into this narrow corridor."),
+        ("Enter the hall{, there's a} lamp on the wall {so you know it's the} right {one}.",
+         "Enter the hall, there's a lamp on the wall so you know it's the right one."),
+        ("{So} the piano {is behind} you.", "The piano is behind you."),
+        ("Stop at the door {straight} ahead.", "Stop at the door straight ahead."),
+        ("Go straight {all the way} to the bench.", "Go straight all the way to the bench."),
+        ("Go to the gate, through which trees {may be seen}.",
+         "Go to the gate, through which trees may be seen."),
+        ("Stop by the stairs {which lead up}.", "Stop by the stairs which lead up."),
+        ("Stop in the doorway, the {one} to the porch.",
+         "Stop in the doorway, the one to the porch."),
+        ("Go to the left of {them} and into the hall.",
+         "Go to the left of them and into the hall."),
+        ("Climb the steps {that} are on the left.", "Climb the steps that are on the left."),
+        ("Wait there until you {are fetched}.", "Wait there until you are fetched."),
+        ("The bed {is behind} you{, so} walk on.", "The bed is behind you, walk on."),
+        ("Leave the hall and {it's} the third door.", "Leave the hall and it's the third door."),
+        ("Turn left{, keep going} till the wall.", "Turn left, keep going till the wall."),
+        ("Pass the bed and come to <stop>{rest} by the door.",
+         "Pass the bed and come to rest by the door."),
+    ],
+)  # fmt: skip
+def test_what_is_told_of_things_stays_whole(marked, said):
+    assert given(marked) == said
+
+
+def test_the_robot_that_turns_is_told_to_turn():
+    assert "the robot" not in given("{The robot} turns left at the bed.").lower()
+
+
+def test_a_stop_in_two_words_with_a_place_is_said():
+    assert given("{Hang on} near the shelf.") == "Stop near the shelf."
+    assert given("{Hold on} by the shelf and {don't fret}.").startswith("Stop by the shelf")
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("But don't go {all} the way{, just} two steps.",
+         "But don't go all the way, just two steps."),
+        ("Stop at the top{,} don't go down it.", "Stop at the top, don't go down it."),
+        ("{You are requested to} leave the hall and to go straight.",
+         "Leave the hall and go straight."),
+        ("{You} are {then to} leave the hall.", "Leave the hall."),
+        ("{Just keep} moving forward past the lamp.", "Keep moving forward past the lamp."),
+        ("{Please keep} going straight.", "Go straight."),
+        ("Turn around and {head} towards the hall.", "Turn around and head towards the hall."),
+    ],
+)  # fmt: skip
+def test_a_denial_keeps_its_marks_and_a_request_leaves_nothing_behind(marked, said):
+    assert given(marked) == said
