@@ -12,6 +12,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from mitigate.core.files import atomic_text
+from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.safeguard.edits import DROP, taught, tokens
 from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.spoken import spoken
@@ -27,7 +28,7 @@ def speech_words() -> frozenset[str]:
 
 
 def counted() -> frozenset[str]:
-    """Return the words by the train voices, content words alone."""
+    """Return the words by the train voices, content words that name no landmark alone."""
     heard: Counter[str] = Counter()
     left_out: Counter[str] = Counter()
     for said, plain in (part for text in spoken("train") for part in text.parts if part[1]):
@@ -40,6 +41,7 @@ def counted() -> frozenset[str]:
         if times >= LEAST
         and left_out[word] >= SHARE * times
         and word not in FUNCTION
+        and word not in CANONICAL
         and any(c.isalnum() for c in word)
     )
 
