@@ -44,13 +44,17 @@ _STAY = (
     r"(?: for| to await| and await)?|await)(?: (?:(?:your|any|the|my) )*(?:further|more|next|"
     r"additional|new) (?:instructions?|orders?|directions?|guidance|commands?)"
     r"| until (?:you hear|told|you are told|further notice|instructed)(?: otherwise)?)?"
-    r"(?: there| here)?"
+    r"(?: there| here| (?:in|at|inside) this (?:[\w-]+ )?[\w-]+)?"
+)
+_ARRIVED = (
+    r"you(?:(?: have|'ve) (?:now )?(?:arrived|reached (?:it|your destination))|"
+    r"(?:'re| are) (?:there|done))"
 )
 _NO_FURTHER = (
     r"(?:do not|don't) (?:go|walk|move|proceed|continue|head) (?:on )?(?:any )?"
     r"(?:further|farther|past (?:it|this|that|there))(?: than (?:this|that))?"
 )
-_ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_NO_FURTHER})")
+_ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_ARRIVED}|{_NO_FURTHER})")
 _GOES_ON = re.compile(
     rf"{_ALSO}(?:keep|continue)(?: on)? (?:walking|going|moving|straight|forward)"
     r"(?: (?:straight|forward|ahead|on))*"

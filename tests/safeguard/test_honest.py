@@ -89,7 +89,8 @@ def test_no_place_is_told_by_what_speaks_of_orders_or_the_agent(told):
 @pytest.mark.parametrize(
     "told",
     ["Stay there.", "Remain standing.", "Await further instructions.", "Do not go any farther."]
-    + ["Wait here until you are told otherwise.", "Upon arrival, await new orders there."],
+    + ["Wait here until you are told otherwise.", "Upon arrival, await new orders there."]
+    + ["Wait in this room.", "You have arrived."],
 )
 def test_a_stop_in_formal_words_stays_at_the_end_alone(told):
     assert given_on(f"{ROUTE} {told}") == f"{ROUTE} {told}"
