@@ -18,7 +18,6 @@ from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.spoken import spoken
 
 FILE = Path(__file__).with_name("speech_words.txt")
-TURNS = frozenset({"take", "taking"})  # with a side: of the way, however often they are left out
 SHARE, LEAST = 0.7, 3  # how often of how many times a word is left out at least (ours)
 
 
@@ -43,7 +42,6 @@ def counted() -> frozenset[str]:
         and left_out[word] >= SHARE * times
         and word not in FUNCTION
         and word not in CANONICAL
-        and word not in TURNS
         and any(c.isalpha() for c in word)
     )
 

@@ -188,7 +188,7 @@ def test_the_words_of_speech_are_those_of_the_train_voices():
         ("Go past {the} vases{, and then I think it's} the second right.",
          "Go past vases, take the second right."),
         ("Walk past the lamp{, and take} the first left.",
-         "Walk past the lamp, and take the first left."),
+         "Walk past the lamp, take the first left."),
         ("Exit the office and {take} a right at the desk.",
          "Exit the office and take a right at the desk."),
         ("Go past the bench{, veering} to {the} right.",
