@@ -54,7 +54,7 @@ def _prs(value: float) -> str:
 
 def _header(section: Section, compared: bool) -> str:
     text = (
-        f"{section.grid.split}, severity {section.severity:g}, N = {len(section.grid.episodes)}, "
+        f"{section.grid.heading}, severity {section.severity:g}, N = {len(section.grid.episodes)}, "
         f"corruption suite {section.grid.suite}. SR in %. Intervals, and what "
         "marks mean, are in table.md."
     )

@@ -32,7 +32,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
         _panel(axis, section, block, names)
     grid = section.grid
     figure.suptitle(
-        f"SR (%) / SPL on {_plain(grid.split)}, severity {section.severity:g}, "
+        f"SR (%) / SPL on {_plain(grid.heading)}, severity {section.severity:g}, "
         f"N = {len(grid.episodes)}\n"
         f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
@@ -63,7 +63,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
         axis.tick_params(labelbottom=True)
     figure.supylabel("SR (%)", fontsize=9)
     figure.suptitle(
-        f"SR against severity on {_plain(grid.split)}, N = {len(grid.episodes)}; "
+        f"SR against severity on {_plain(grid.heading)}, N = {len(grid.episodes)}; "
         f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
     )
