@@ -37,7 +37,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
         _panel(axis, section, block, names)
     grid = section.grid
     figure.suptitle(
-        f"SR (%) / SPL on {_plain(grid.split)}, severity {section.severity:g}, "
+        f"SR (%) / SPL on {_plain(grid.heading)}, severity {section.severity:g}, "
         f"N = {len(grid.episodes)}\n"
         f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
@@ -68,7 +68,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
         axis.tick_params(labelbottom=True)
     figure.supylabel("SR (%)", fontsize=9)
     figure.suptitle(
-        f"SR against severity on {_plain(grid.split)}, N = {len(grid.episodes)}; "
+        f"SR against severity on {_plain(grid.heading)}, N = {len(grid.episodes)}; "
         f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
     )
@@ -142,8 +142,9 @@ def _curves(axis: Axes, found: dict[str, Curve]) -> None:
 def _line(axis: Axes, curve: Curve, colour: tuple, wider: float = 0.0, label: str = "") -> None:
     at = [severity for severity, _ in curve]
     values = [100 * estimate.value for _, estimate in curve]
-    size = {"linewidth": WIDTH + wider, "markersize": MARKER + wider}
-    axis.plot(at, values, "o-", color=colour, label=label, solid_capstyle="butt", **size)
+    wide, marker = WIDTH + wider, MARKER + wider
+    line = axis.plot(at, values, "o-", color=colour, label=label, linewidth=wide, markersize=marker)
+    line[0].set_solid_capstyle("butt")
 
 
 def _lies_on(other: Curve, piece: Curve) -> bool:
