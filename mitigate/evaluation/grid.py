@@ -1,6 +1,7 @@
 """Result rows arranged for tables: columns (agents) x conditions x episodes, with what is missing.
 
-Rows of different split, suite version or success rule never share a :class:`Grid`.
+Rows of different split, list of episodes, suite version or success rule never share a
+:class:`Grid`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from mitigate.corruptions.registry import AND, HALVES, UNSEEN, names, unseen_names
+from mitigate.evaluation.lists import by_list
 from mitigate.evaluation.rows import Row, upsert
 
 BLOCKS = {  # of ours; a corruption of another package is no part of them
@@ -51,14 +53,15 @@ class Retention:
 
 @dataclass(frozen=True, eq=False)
 class Grid:
-    """All results of one split, suite version and success rule.
+    """All results of one split, list of episodes, suite version and success rule.
 
     ``columns`` maps a column's label to its (name, agent shas).
     ``cells[label, corruption, severity, metric]`` is float64 [N], one value an episode, the mean
     over ``seeds[label, severity]``, NaN where a row is missing; a clean cell is there once for each
     severity, over that one's seeds. ``unfinished[label, severity]`` holds the seeds that are left
     out, with the rows they have and the rows of a whole one. ``runs[label][seed]`` are the cells of
-    one seed, by (corruption, severity, metric).
+    one seed, by (corruption, severity, metric). ``begins`` is the first episode's id where another
+    grid differs in its list alone, else empty.
     """
 
     split: str
@@ -70,6 +73,12 @@ class Grid:
     episodes: tuple[str, ...]
     cells: dict[tuple[str, str, float, str], np.ndarray]
     runs: dict[str, dict[int, _Run]]
+    begins: str = ""
+
+    @property
+    def heading(self) -> str:
+        """The split, and which of its lists, if there are several."""
+        return f"{self.split} from {self.begins}" if self.begins else self.split
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:
         """Return the values [N] of a cell; all NaN if nothing was measured."""
@@ -215,7 +224,7 @@ def halves(blocks: dict[str, tuple[str, ...]]) -> dict[str, dict[str, tuple[str,
 
 
 def grids(rows: Iterable[Row]) -> list[Grid]:
-    """Return the grids of ``rows``, ordered by split, suite and rule.
+    """Return the grids of ``rows``, ordered by split, suite and rule, then as their lists begin.
 
     Raises ValueError if there are no rows.
     """
@@ -227,7 +236,12 @@ def grids(rows: Iterable[Row]) -> list[Grid]:
             "There are no result rows to show: the files are empty. Evaluate first, with "
             "`make evaluate`."
         )
-    return [_grid(key, groups[key]) for key in sorted(groups)]
+    found = []
+    for key in sorted(groups):
+        made = [_grid(key, held) for held in by_list(groups[key])]
+        several = len(made) > 1
+        found += [replace(g, begins=g.episodes[0]) if several else g for g in made]
+    return found
 
 
 def label_columns(

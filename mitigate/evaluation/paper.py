@@ -53,8 +53,9 @@ def _prs(value: float) -> str:
 
 
 def _header(section: Section, compared: bool) -> str:
+    at = f"severity {section.severity:g}" if section.blocks else "clean only"
     text = (
-        f"{section.grid.split}, severity {section.severity:g}, N = {len(section.grid.episodes)}, "
+        f"{section.grid.heading}, {at}, N = {len(section.grid.episodes)}, "
         f"corruption suite {section.grid.suite}. SR in %. Intervals, and what "
         "marks mean, are in table.md."
     )

@@ -16,7 +16,12 @@ from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["RdYlGn"]
 LINES = [mpl.colormaps["tab10"](index) for index in range(10)]
+WIDTH, MARKER = 1.2, 3.0  # points, of a line and its markers where nothing coincides
+RIM = 1.8  # points by which a line is wider than one that lies on it
+CLOSE = 0.5  # points of SR that are less than a line is wide
 DPI = 150
+
+Curve = list[tuple[float, bootstrap.Estimate]]  # severities, rising, and SR in [0, 1]
 
 
 def heatmap(section: Section, path: Path | str) -> Path:
@@ -32,7 +37,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
         _panel(axis, section, block, names)
     grid = section.grid
     figure.suptitle(
-        f"SR (%) / SPL on {_plain(grid.split)}, severity {section.severity:g}, "
+        f"SR (%) / SPL on {_plain(grid.heading)}, severity {section.severity:g}, "
         f"N = {len(grid.episodes)}\n"
         f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
@@ -41,7 +46,8 @@ def heatmap(section: Section, path: Path | str) -> Path:
 
 
 def severity_curves(grid: Grid, path: Path | str) -> Path:
-    """Draw SR (%) against severity, one panel a corruption, with 95 % bootstrap bands."""
+    """Draw SR (%) against severity, one panel a corruption, with 95 % bootstrap bands. Where
+    lines coincide the first is the widest, so that each shows on both sides of the next."""
     measured = {name for _, name, _, _ in grid.cells if name != "clean"}
     names = [name for block in BLOCKS.values() for name in block if name in measured]
     names += sorted(measured.difference(names))
@@ -50,8 +56,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
     figure = Figure(figsize=(2.6 * across + 0.6, 2.0 * down + 1.2), layout="constrained")
     axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel()
     for axis, name in zip(axes, names, strict=False):
-        for index, column in enumerate(grid.columns):
-            _curve(axis, grid, column, name, LINES[index % len(LINES)])
+        _curves(axis, {column: _curve(grid, column, name) for column in grid.columns})
         axis.set_title(label(name), fontsize=9)
         axis.set(xlim=(-0.03, 1.03), ylim=(-3, 103))
         axis.tick_params(labelsize=8)
@@ -63,7 +68,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
         axis.tick_params(labelbottom=True)
     figure.supylabel("SR (%)", fontsize=9)
     figure.suptitle(
-        f"SR against severity on {_plain(grid.split)}, N = {len(grid.episodes)}; "
+        f"SR against severity on {_plain(grid.heading)}, N = {len(grid.episodes)}; "
         f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
         fontsize=9,
     )
@@ -103,8 +108,9 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
     axis.set_title(block, fontsize=9)
 
 
-def _curve(axis: Axes, grid: Grid, column: str, name: str, colour: tuple) -> None:
-    points = []
+def _curve(grid: Grid, column: str, name: str) -> Curve:
+    """What was measured of one column under one corruption, with the clean cell at 0."""
+    points: Curve = []
     measured = any(
         (column, name, severity, "success") in grid.cells for severity in grid.severities
     )
@@ -113,12 +119,40 @@ def _curve(axis: Axes, grid: Grid, column: str, name: str, colour: tuple) -> Non
         known = cell[~np.isnan(cell)]
         if len(known):
             points.append((severity, bootstrap.share(known, resamples=1000)))
-    at = [severity for severity, _ in points]
-    values = [100 * estimate.value for _, estimate in points]
-    low = [100 * estimate.low for _, estimate in points]
-    high = [100 * estimate.high for _, estimate in points]
-    axis.plot(at, values, "o-", color=colour, markersize=3, linewidth=1.2, label=_plain(column))
-    axis.fill_between(at, low, high, color=colour, alpha=0.15, linewidth=0)
+    return points
+
+
+def _curves(axis: Axes, found: dict[str, Curve]) -> None:
+    """Draw the curves of one panel; a piece on which later ones lie is wider than they are."""
+    for index, (column, curve) in enumerate(found.items()):
+        colour, later = LINES[index % len(LINES)], list(found.values())[index + 1 :]
+        _line(axis, curve, colour, label=_plain(column))
+        for piece in [curve[i : i + 2] for i in range(len(curve) - 1)] or [curve]:
+            wider = RIM * sum(_lies_on(other, piece) for other in later)
+            if wider:
+                _line(axis, piece, colour, wider)
+        at, low, high = (
+            [severity for severity, _ in curve],
+            [100 * estimate.low for _, estimate in curve],
+            [100 * estimate.high for _, estimate in curve],
+        )
+        axis.fill_between(at, low, high, color=colour, alpha=0.15, linewidth=0)
+
+
+def _line(axis: Axes, curve: Curve, colour: tuple, wider: float = 0.0, label: str = "") -> None:
+    at = [severity for severity, _ in curve]
+    values = [100 * estimate.value for _, estimate in curve]
+    wide, marker = WIDTH + wider, MARKER + wider
+    line = axis.plot(at, values, "o-", color=colour, label=label, linewidth=wide, markersize=marker)
+    line[0].set_solid_capstyle("butt")
+
+
+def _lies_on(other: Curve, piece: Curve) -> bool:
+    """Whether a curve has the points of ``piece``, which has one at least."""
+    held = {severity: estimate.value for severity, estimate in other}
+    return bool(piece) and all(
+        at in held and abs(100 * (estimate.value - held[at])) <= CLOSE for at, estimate in piece
+    )
 
 
 def _plain(name: str) -> str:

@@ -69,7 +69,7 @@ def _heading(section: Section) -> str:
         f"{markdown_of(x)} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns
     )
     return (
-        f"## {markdown_of(grid.split)}, {at}\n\n"
+        f"## {markdown_of(grid.heading)}, {at}\n\n"
         f"N = {len(grid.episodes)} episodes, {seeds}, corruption suite "
         f"{markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Agents: {agents}.\n"
         f"SR in %. PRS = mean over the block's corruptions of SR (SPL) / the same agent's clean "

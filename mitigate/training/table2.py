@@ -233,7 +233,12 @@ def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Pat
 
     found = rows.gather(paths)
     report.write(found, out)
-    made = [s for s in sections(found) if (s.grid.split, s.severity) == (cfg.split, cfg.severity)]
+    made = [
+        section
+        for section in sections(found)
+        if section.grid.split == cfg.split
+        and (section.severity == cfg.severity or not section.blocks)  # clean rows have none
+    ]
     if not made:
         held = sorted({f"{row['split']} at {row['severity']:g}" for row in found})
         raise ValueError(

@@ -341,3 +341,31 @@ def test_a_name_as_it_usually_is_stays_as_it_is():
     for name in ("da_per_episode", "frontier (0123ab)", "STOP and geodesic < 2.0 m", "base+rules"):
         assert markdown_of(name) == name
     assert markdown_of("a\n## b\r\n| c") == "a ## b \\| c"
+
+
+def other_list(made, **changes):
+    """The same rows over other episodes."""
+    return [r | changes | {"episode_id": f"{r['episode_id']}-other"} for r in made]
+
+
+def test_agents_of_another_list_of_episodes_stand_in_a_table_of_their_own():
+    first = column(8, ALL) + column(5, ALL, **HARD)
+    second = other_list(column(6, ALL), agent="aaaa00000000") + other_list(
+        column(7, ALL, **HARD), agent="bbbb00000000", seed=1
+    )
+    made = sections(first + second)
+    assert [part.columns for part in made] == [("base", "da_per_episode")] * 2
+    assert [part.moved["da_per_episode"].value for part in made] == pytest.approx([-0.3, 0.1])
+    assert not any(part.gaps for part in made)
+    text = markdown(made)
+    assert "## val_unseen from 0, severity 0.6" in text
+    assert "## val_unseen from 0-other, severity 0.6" in text
+    assert "from" not in markdown(sections(first)).splitlines()[0]
+
+
+def test_agents_that_meet_by_way_of_a_third_share_a_table():
+    few = [r for r in column(5, ALL, **HARD) if r["episode_id"] in "01"]
+    rest = [r for r in column(5, ALL) if r["episode_id"] in "89"]
+    every = column(6, ALL, name="oracle", agent="aaaa00000000")
+    assert len(sections(few + rest)) == 2
+    assert len(sections(few + rest + every)) == 1

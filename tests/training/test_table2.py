@@ -188,6 +188,14 @@ def test_rows_of_another_severity_are_told(tmp_path):
         table2.run(cfg)
 
 
+def test_clean_rows_alone_make_a_report(tmp_path):
+    """As of the ablations, whatever the severity is that nothing was measured at."""
+    rows.write(tmp_path / "rows.jsonl", column(8, {}))
+    cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
+    report = table2.run(cfg).read_text(encoding="utf-8")
+    assert "clean only" in report and "| Clean SR | 80.0 |" in report
+
+
 def test_the_papers_figures_stand_only_beside_its_severity(tmp_path):
     rows.write(tmp_path / "rows.jsonl", column(8, ALL, name="da_per_frame", severity=0.9))
     cfg = config(tmp_path / "out", severity=0.9, rows=[str(tmp_path / "rows.jsonl")])

@@ -34,15 +34,15 @@ def entry_of(
 
     ``split`` and ``agents`` (hashes) may be left out where the rows are of one column. ``file``:
     where they are, as the entry says. Raises ValueError if there are none, if they are of several
-    splits, suites or rules, or of agents that are no training seeds of one another, and if a
+    splits, lists, suites or rules, or of agents that are no training seeds of one another, and if a
     condition lacks episodes that others have.
     """
     own = chosen(rows, name, severity, split, agents)
     found = [part for part in sections(own) if part.blocks] or sections(own)
-    grids = {(part.grid.split, part.grid.suite, part.grid.rule) for part in found}
+    grids = {(part.grid.heading, part.grid.suite, part.grid.rule) for part in found}
     if len(grids) > 1 or any(len(part.columns) > 1 for part in found):
         raise ValueError(
-            f"The rows of {name} are of several splits, suites, rules or agents: "
+            f"The rows of {name} are of several splits, lists, suites, rules or agents: "
             f"{'; '.join(', '.join(grid) for grid in sorted(grids))}. Name a split, or a file of "
             "one."
         )
@@ -52,18 +52,18 @@ def entry_of(
             "entry needs all of them under each. The evaluation's own command goes on from there."
         )
     scores, rates = _figures(found)
-    ((at_split, suite, rule),) = grids
+    grid = found[0].grid
     return LeaderboardEntry(
         name=name,
         agents=tuple(_agents(own)),
         sensors=tuple(sensors),
         training_data=training_data,
-        split=at_split,
-        suite=suite,
-        rule=rule,
+        split=grid.split,
+        suite=grid.suite,
+        rule=grid.rule,
         severity=severity,
-        episodes=len(found[0].grid.episodes),
-        listed=listed_sha(found[0].grid.episodes),
+        episodes=len(grid.episodes),
+        listed=listed_sha(grid.episodes),
         scores=scores,
         SR=rates["SR"],
         SPL=rates["SPL"],

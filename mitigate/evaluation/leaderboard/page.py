@@ -38,7 +38,12 @@ def render(entries: Sequence[LeaderboardEntry], title: str = "Leaderboard") -> s
         key = (entry.split, entry.suite, entry.rule, entry.severity, entry.listed)
         groups[key].append(entry)
     ordered = sorted(groups.values(), key=lambda held: -len(held))
-    return document.page(title, ABOUT, [_section(held) for held in ordered], notes=NOTES)
+    shown = [_section(held) for held in ordered]
+    twice = Counter(section["title"] for section in shown)
+    for held, section in zip(ordered, shown, strict=True):
+        if twice[section["title"]] > 1:
+            section["title"] += f", list {held[0].listed}, {held[0].rule}"
+    return document.page(title, ABOUT, shown, notes=NOTES)
 
 
 def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:

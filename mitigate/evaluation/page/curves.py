@@ -31,7 +31,7 @@ def curves(parts: Sequence[Section]) -> list[dict[str, Any]]:
         panels = _panels(section.grid)
         if panels:
             grid = section.grid
-            title = f"{grid.split}, suite {grid.suite}"
+            title = f"{grid.heading}, suite {grid.suite}"
             columns = [x for x in grid.columns if any(_has(panel, x) for panel in panels)]
             title += f", {section.kind}" if section.kind else ""
             found.append({"title": title, "columns": columns, "panels": panels})

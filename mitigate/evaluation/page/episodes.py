@@ -89,8 +89,8 @@ def _steps(grid: Grid, rows: Iterable[Row]) -> dict[_Place, np.ndarray]:
     for row in rows:
         label = labels.get((row["name"], row["agent"]))
         same = (row["split"], row["suite"], row["rule"]) == (grid.split, grid.suite, grid.rule)
-        steps = row.get("steps")
-        if same and label is not None and isinstance(steps, (int, float)):
+        spot, steps = index.get(row["episode_id"]), row.get("steps")
+        if same and label is not None and spot is not None and isinstance(steps, (int, float)):
             place = (label, row["corruption"], float(row["severity"]), row["seed"])
-            found[place][index[row["episode_id"]]] = steps
+            found[place][spot] = steps
     return dict(found)

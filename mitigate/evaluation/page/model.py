@@ -64,7 +64,7 @@ def numbers(found: Estimate | None) -> Numbers:
 
 def _title(section: Section) -> str:
     at = f"severity {section.severity:g}" if section.blocks else "clean"
-    parts = (section.grid.split, section.kind, at)
+    parts = (section.grid.heading, section.kind, at)
     title = ", ".join(part for part in parts if part)
     return f"{title}, suite {section.grid.suite}"
 
@@ -72,7 +72,7 @@ def _title(section: Section) -> str:
 def _facts(section: Section) -> list[list[str]]:
     grid = section.grid
     return [
-        ["Split", grid.split],
+        ["Split", grid.heading],
         ["Episodes", f"{len(grid.episodes):,}"],
         ["Success", grid.rule],
         ["Corruption suite", grid.suite],

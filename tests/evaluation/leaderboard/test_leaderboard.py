@@ -63,6 +63,9 @@ def test_what_makes_no_entry_is_refused(rows):
     with pytest.raises(ValueError, match="Name a split"):
         entry_of(rows + other, "base", severity=0.6)
     assert entry_of(rows + other, "base", severity=0.6, split="val_seen").split == "val_seen"
+    elsewhere = [r | {"episode_id": f"{r['episode_id']}-b", "agent": "cccccc"} for r in rows]
+    with pytest.raises(ValueError, match="several splits, lists.*from 0-b"):
+        entry_of(rows + elsewhere, "base", severity=0.6)
 
 
 def test_a_score_over_other_corruptions_is_marked_and_ranks_last(rows):
@@ -180,3 +183,10 @@ def test_benchmark_refuses_what_measures_nothing():
         mitigate.benchmark(Straight(), suite="clean")
     with pytest.raises(ValueError, match="Did you mean flare"):
         mitigate.benchmark(Straight(), suite=["flair"])
+
+
+def test_two_tables_of_one_split_say_which_list_they_are_of(rows):
+    entry = entry_of(rows, "base", severity=0.6)
+    page, _ = held(render([entry, replace(entry, listed="0" * 12)]))
+    shown = [section["title"] for section in page["sections"]]
+    assert len(set(shown)) == 2 and all("list " in title for title in shown)

@@ -155,3 +155,13 @@ def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, r
     walk = ["--walk", "bass=checkpoints/base"]
     assert command.main([str(tmp_path / "rows.jsonl"), *walk]) == 2
     assert "Did you mean base?" in capsys.readouterr().err
+
+
+def test_two_lists_of_a_split_are_two_sections_with_their_own_episodes(rows):
+    other = [r | {"episode_id": f"{r['episode_id']}-b", "agent": "ccccccccccc"} for r in rows[:30]]
+    data, _ = held(report(rows + other))
+    assert [part["title"] for part in data["sections"]] == [
+        f"val_unseen from {begins}, severity 0.6, suite 1.0" for begins in ("0", "0-b")
+    ]
+    assert [len(grid["episodes"]) for grid in data["grids"]] == [10, 10]
+    assert [line["label"] for line in data["sections"][0]["columns"]] == ["base", "hard"]
