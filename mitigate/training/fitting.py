@@ -77,7 +77,9 @@ def draw_what_is_read(cfg: DictConfig, agent: nn.Module) -> None:
     undrawn: dict[str, None] = {}  # in the schedules' order
     for name, stage in cfg.stages.items() if lacking else ():
         node = None if stage is None else OmegaConf.select(stage, "recipe.schedule")
-        schedule = build(node) if isinstance(node, DictConfig) else None
+        if not isinstance(node, DictConfig):
+            continue
+        schedule = build(node)
         if not isinstance(schedule, Schedule) or schedule.mode == "clean":
             continue
         kept = [n for n in schedule.names if modality(n) not in lacking]
