@@ -142,8 +142,9 @@ def _curves(axis: Axes, found: dict[str, Curve]) -> None:
 def _line(axis: Axes, curve: Curve, colour: tuple, wider: float = 0.0, label: str = "") -> None:
     at = [severity for severity, _ in curve]
     values = [100 * estimate.value for _, estimate in curve]
-    size = {"linewidth": WIDTH + wider, "markersize": MARKER + wider}
-    axis.plot(at, values, "o-", color=colour, label=label, solid_capstyle="butt", **size)
+    wide, marker = WIDTH + wider, MARKER + wider
+    line = axis.plot(at, values, "o-", color=colour, label=label, linewidth=wide, markersize=marker)
+    line[0].set_solid_capstyle("butt")
 
 
 def _lies_on(other: Curve, piece: Curve) -> bool:
