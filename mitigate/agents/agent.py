@@ -86,6 +86,8 @@ class Trainable(Protocol):
     """An ``nn.Module`` that the recipes train, beside :class:`Agent`.
 
     ``loss_weights`` (attribute, optional): of its auxiliary losses by name; 1 where it names none.
+    ``sensors`` (attribute, optional): the entries of observations that it reads; a training draws
+    no corruption of frames that are not among them. Without it, it may read all.
     ``frozen`` (attribute, optional): names of modules that never train, such as a borrowed
     backbone; adapters in them do.
     ``plain_walks`` (attribute, optional): False if what :meth:`collect` returns is no plain data

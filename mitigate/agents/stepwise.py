@@ -59,6 +59,11 @@ class StepwiseAgent(nn.Module):
         names as the world's sensors give it, and the instructions."""
         raise NotImplementedError(f"{type(self).__name__} defines no forward(frames, texts)")
 
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """What it reads."""
+        return self.needs
+
     def parts(self) -> dict[str, nn.Module]:
         """The child modules by name."""
         return dict(self.named_children())

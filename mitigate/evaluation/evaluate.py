@@ -62,6 +62,17 @@ class FinetuneConfig:
 
 
 @dataclass
+class CostConfig:
+    """How many times as long as with the topological agent something takes with the chosen kind of
+    agent, for the estimate at the start of a training: a step on random views, a step on episodes
+    that it walks, an evaluated episode. None: not known."""
+
+    views: float | None = None
+    episodes: float | None = None
+    evaluation: float | None = None
+
+
+@dataclass
 class EvaluateConfig:
     """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
 
@@ -82,6 +93,7 @@ class EvaluateConfig:
     agent: Any = MISSING
     weights: WeightsConfig = field(default_factory=WeightsConfig)
     finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
+    cost: CostConfig = field(default_factory=CostConfig)
     env: Any = MISSING
     suite: Any = field(default=MISSING)
 

@@ -1,6 +1,7 @@
 """Whether a recipe, an agent, a world and a run's folder fit together, asked before the first step.
 
-One recipe serves agents of many kinds: a stage that has nothing to train in one is left out.
+One recipe serves agents of many kinds: a stage that has nothing to train in one is left out, and a
+corruption of what one does not read is not drawn.
 """
 
 from __future__ import annotations
@@ -10,13 +11,15 @@ from inspect import signature
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig, OmegaConf, open_dict
 from torch import nn
 
 from mitigate.core import checkpoint
-from mitigate.core.build import located, maker
+from mitigate.core.build import build, located, maker
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
+from mitigate.corruptions import Schedule
+from mitigate.corruptions.registry import modality, names
 from mitigate.training.parts import POLICY, policy_parts
 from mitigate.training.stages import IDENTITY, named
 from mitigate.training.trainer import differences
@@ -60,6 +63,39 @@ def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
     if parts == POLICY and encoders and not policy_parts(agent):
         return f"nothing but encoders is learned in {kind}"
     return None
+
+
+def draw_what_is_read(cfg: DictConfig, agent: nn.Module) -> None:
+    """Take the corruptions of frames that ``agent`` does not read out of the stages' schedules, and
+    say so: in their place it would train on clean frames.
+
+    Raises ValueError if a schedule draws no others.
+    """
+    own = getattr(agent, "sensors", (RGB, DEPTH))
+    lacking = [sensor for sensor in (RGB, DEPTH) if sensor not in own]
+    cause = f"{type(agent).__name__} reads no {' or '.join(lacking)}"
+    undrawn: dict[str, None] = {}  # in the schedules' order
+    for name, stage in cfg.stages.items() if lacking else ():
+        node = None if stage is None else OmegaConf.select(stage, "recipe.schedule")
+        if not isinstance(node, DictConfig):
+            continue
+        schedule = build(node)
+        if not isinstance(schedule, Schedule) or schedule.mode == "clean":
+            continue
+        kept = [n for n in schedule.names if modality(n) not in lacking]
+        if not kept:
+            raise ValueError(
+                f"{cause}, and the schedule of the stage {name} draws only "
+                f"{', '.join(schedule.names)}: it would train on clean frames. Name corruptions of "
+                f"what it reads, of {', '.join(names(*own))} (schedule.names=[...]), or choose "
+                "another agent (docs/agents.md)."
+            )
+        if len(kept) < len(schedule.names):
+            undrawn |= dict.fromkeys(n for n in schedule.names if n not in kept)
+            with open_dict(node):
+                node.names = kept
+    if undrawn:
+        say(f"{cause}: the schedule leaves out {', '.join(undrawn)}")
 
 
 def check(cfg: DictConfig, agent: nn.Module, folder: Path) -> None:

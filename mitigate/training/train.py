@@ -7,7 +7,6 @@ on where the last one stopped. Afterwards the agent is evaluated before and afte
 
 from __future__ import annotations
 
-import math
 import re
 import sys
 from contextlib import nullcontext
@@ -27,22 +26,25 @@ from mitigate.core import checkpoint, conf, precision, seeding
 from mitigate.core.build import OWN_CONFIG_ONLY, begun_from, build_agent, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.locks import FolderLock
-from mitigate.core.observation import VIEWS
-from mitigate.core.progress import duration, say
+from mitigate.core.progress import say
 from mitigate.core.workers import cores
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.evaluation.evaluate import EvaluationConfig, FinetuneConfig, WeightsConfig, load
+from mitigate.evaluation.evaluate import (
+    CostConfig,
+    EvaluationConfig,
+    FinetuneConfig,
+    WeightsConfig,
+    load,
+)
 from mitigate.training import fitting, limits
 from mitigate.training.batches import MOST, Workers
+from mitigate.training.estimate import REPORT, has_base, plan
 from mitigate.training.ranks import Ranks
 from mitigate.training.stages import plain, train_stage, trainer_settings
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
-# seconds of one core for an episode, by the agent's views: with one it decides at every step
-EPISODE_COST = {VIEWS: 0.12, 1: 0.35}  # on the machine of precision.REFERENCE
 MOST_ROLLOUTS, MOST_WORKERS = 100_000, 256  # (ours)
-EPISODES = 300  # of a list, where the estimate need not open it
 
 
 @dataclass
@@ -67,7 +69,7 @@ class TrainerConfig:
 @dataclass
 class StageConfig:
     """One stage: what to train (a ``_target_`` node), how, and what a step costs: seconds on the
-    machine of ``precision.REFERENCE``, for the estimate at the start alone."""
+    machine of ``precision.REFERENCE``, for the estimate at the start alone. None: not known."""
 
     recipe: Any = MISSING
     trainer: TrainerConfig = field(default_factory=TrainerConfig)
@@ -89,10 +91,11 @@ class TrainConfig:
     runs: str = "runs"
     folder: str | None = None
     workers: int | None = None
-    report: str = "mitigate.evaluation.evaluate.report_before_after"
+    report: str = REPORT
     agent: Any = MISSING
     weights: WeightsConfig = field(default_factory=WeightsConfig)
     finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
+    cost: CostConfig = field(default_factory=CostConfig)
     env: Any = MISSING
     schedule: Any = MISSING
     suite: Any = MISSING
@@ -123,6 +126,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     agent = build_agent(node, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
     OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
     fitting.leave_out(cfg, agent)
+    fitting.draw_what_is_read(cfg, agent)
     fitting.check(cfg, agent, folder)
     if ranks.first:
         say(plan(cfg, folder))
@@ -140,34 +144,10 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
         file.write(OmegaConf.to_yaml({"agent": written(cfg.agent, agent)}))
     OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
     if cfg.evaluation.enabled:
-        base = None
-        if cfg.init and not cfg.init_parts:
-            base = load(cfg.agent, cfg.init, cfg.seed)
+        base = load(cfg.agent, cfg.init, cfg.seed) if has_base(cfg) else None
         get_method(cfg.report)(cfg, base, agent, folder)
     print(f"done: {folder}", flush=True)
     return folder
-
-
-def plan(cfg: DictConfig, folder: Path) -> str:
-    """Return what a run is going to do and how long that will take here, for all of it."""
-    stages = {str(name): stage for name, stage in cfg.stages.items() if stage is not None}
-    steps = {name: trainer_settings(cfg, stage).get("steps", 0) for name, stage in stages.items()}
-    seconds: list[float] = []
-    for name, stage in stages.items():
-        done = checkpoint.checkpoints(folder / name)
-        left = steps[name] - (checkpoint.steps_done(done[-1]) if done else 0)
-        seconds.append(math.nan if stage.cost is None else max(0, left) * stage.cost)
-    quick, agents = cfg.evaluation, 1 if cfg.init is None else 2
-    listed = "all" if quick.episodes is None else quick.episodes
-    parts = [f"{name} {count} steps" for name, count in steps.items()]
-    if quick.enabled and cfg.report == TrainConfig.report:
-        walked = agents * len(cfg.suite.conditions) * (quick.episodes or EPISODES)
-        cost = EPISODE_COST[1 if cfg.env.get("views") == 1 else VIEWS]
-        seconds.append(walked * cost / (quick.workers or cores()))
-        parts.append(f"{agents} x {listed} episodes x {len(cfg.suite.conditions)} conditions")
-    total = sum(seconds) * precision.probe().fp32 / precision.REFERENCE
-    about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
-    return f"{cfg.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"
 
 
 def check(cfg: DictConfig) -> None:
@@ -202,7 +182,7 @@ def check(cfg: DictConfig) -> None:
             precision.device_of(settings.get("device", "auto"))
     if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
-    if OmegaConf.select(cfg, "env.training") is None and cfg.report == TrainConfig.report:
+    if OmegaConf.select(cfg, "env.training") is None and cfg.report == REPORT:
         raise ValueError(
             f"The world {cfg.env.name} has no training episodes: give its config an entry "
             "training, such as {_target_: mitigate.worlds.episodes.ListedEpisodes, path: x.json}."
@@ -214,12 +194,12 @@ def check(cfg: DictConfig) -> None:
                 f"The recipe {cfg.name} has no stage {name!r}: its stages are {', '.join(own)}. "
                 "Leave out what sets another one (experiment=frozen fits imitation and da_* only)."
             )
-    listed = cfg.report == TrainConfig.report or OmegaConf.select(cfg, "env.episodes")
+    listed = cfg.report == REPORT or OmegaConf.select(cfg, "env.episodes")
     if cfg.evaluation.enabled and listed:  # a mistake must not show only after hours of training
         count = cfg.evaluation.episodes
         episodes(cfg.env, cfg.evaluation.split, count if count is None else min(count, 1))
         met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-        if cfg.report == TrainConfig.report:
+        if cfg.report == REPORT:
             check_sensors(met, maker(cfg.env.world)().sensors, cfg.env.name)
 
 

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-import pytest
-from omegaconf import open_dict
+import copy
+from collections import Counter
 
+import pytest
+from omegaconf import OmegaConf, open_dict
+
+from mitigate.agents.frontier import FrontierAgent
+from mitigate.agents.recurrent import RecurrentAgent
+from mitigate.agents.stepwise import StepwiseAgent
+from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf
+from mitigate.core.build import build
+from mitigate.corruptions import DEPTH, RGB
 from mitigate.recipes.dagger import Dagger
 from mitigate.recipes.encoder import HardenEncoder
 from mitigate.recipes.imitate import Imitate
 from mitigate.recipes.imitate_stored import ImitateStored
 from mitigate.recipes.pretrain import Pretrain
 from mitigate.recipes.restore import Restore
-from mitigate.training import train
+from mitigate.training import fitting, train
 from tests.tiny import TinyAgent, TinyRecipe
 
 OFF = "evaluation.enabled=false"
@@ -142,3 +151,81 @@ def test_what_a_setting_of_an_agent_may_be_is_said_for_that_setting(tmp_path):
 def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
     with pytest.raises(FileNotFoundError, match="topological_imagenet RECIPE=swap_encoder"):
         checkpoint.weights_file(tmp_path / "base")
+
+
+def fitted(agent, *options: str):
+    """The stages of a training of ``agent``, by name."""
+    cfg = conf.load_config("train", [*options])
+    OmegaConf.resolve(cfg.stages)
+    before = copy.deepcopy(cfg.stages)
+    fitting.draw_what_is_read(cfg, agent)
+    return cfg.stages, before
+
+
+@pytest.mark.parametrize(
+    ("agent", "read"),
+    [
+        (RecurrentAgent(["rgb"]), RGB),
+        (RecurrentAgent(["depth"]), DEPTH),
+        (StepwiseAgent(), RGB),  # whose needs are rgb
+    ],
+)
+@pytest.mark.parametrize("recipe", ["da_per_frame", "da_per_episode", "da_success", "ts_distill"])
+def test_an_agent_meets_corruptions_of_what_it_reads_alone(recipe, agent, read, capsys):
+    stages, _ = fitted(agent, f"recipe={recipe}")
+    for stage in stages.values():
+        schedule = build(stage.recipe.schedule)
+        met = Counter(schedule.draw(0, f"e{i}", 0)[0].name for i in range(2000))
+        assert set(met) == {"clean", *read}
+        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # the clean share, and no more
+    lost = ", ".join(DEPTH if read is RGB else RGB)
+    said = capsys.readouterr().out
+    assert said.count("reads no") == 1 and said.endswith(f"the schedule leaves out {lost}\n")
+
+
+def test_of_named_corruptions_those_it_reads_are_drawn():
+    stages, _ = fitted(RecurrentAgent(["rgb"]), "schedule.names=[multipath,flare,spatter]")
+    assert stages.imitation.recipe.schedule.names == ["flare", "spatter"]
+
+
+@pytest.mark.parametrize(
+    "agent", [TopologicalAgent(16), RecurrentAgent(), FrontierAgent(), TinyAgent()]
+)
+def test_an_agent_that_reads_both_draws_what_the_schedule_says(agent, capsys):
+    """To the letter: what it was trained under is part of a run's identity."""
+    for recipe in ("da_per_episode", "stacked"):
+        stages, before = fitted(agent, f"recipe={recipe}")
+        assert stages == before
+    assert not capsys.readouterr().out
+
+
+def test_clean_schedules_stay_as_they_are():
+    stages, before = fitted(RecurrentAgent(["rgb"]), "recipe=imitation")
+    assert stages == before
+
+
+@pytest.mark.parametrize(
+    ("sensor", "names", "words"),
+    [
+        ("rgb", "missing_data,multipath", ["no depth", "missing_data, multipath", "motion_blur"]),
+        ("depth", "flare", ["no rgb", "only flare", "gaussian_noise"]),
+    ],
+)
+def test_a_schedule_of_nothing_that_the_agent_reads_is_refused(tmp_path, sensor, names, words):
+    options = ["agent=recurrent", f"agent.sensors=[{sensor}]", "init=null", OFF]
+    said = refusal(tmp_path, *options, f"schedule.names=[{names}]")
+    assert all(word in said for word in words) and "schedule.names=[...]" in said
+
+
+def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
+    met = {}
+
+    def trained(cfg, name, stage, *_):
+        met[name] = list(stage.recipe.schedule.names)
+        return "fp32"
+
+    monkeypatch.setattr(train, "train_stage", trained)
+    train.run(conf.load_config("train", ["agent=recurrent_rgb", OFF, f"folder={tmp_path}"]))
+    assert met == {"perception_rgb": list(RGB), "imitation": list(RGB)}
+    written = OmegaConf.load(tmp_path / "config.yaml")
+    assert written.stages.imitation.recipe.schedule.names == list(RGB)
