@@ -54,7 +54,7 @@ class TopologicalAgent(nn.Module):
         blind: sensors that are blanked before they enter (the ablations): of ``schema.SENSES``.
         size: pixels of a square view that it works on; frames of another size are resized.
         encoder: of RGB: "own", or "efficientnet_lite0" (``imagenet.py``), which stays as it is
-        but for adapters and what reads its map.
+        but for adapters and what reads its map; ``size`` is its alone then, depth stays at 64.
         vocabulary: the words it knows; None: those of the shipped agents.
     Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
     """
@@ -95,6 +95,7 @@ class TopologicalAgent(nn.Module):
         self._memory: Memory | None = None
         if encoder == IMAGENET:
             self.rgb_encoder, self.frozen = ImageNetEncoder(width, size), BORROWED
+            size = SIZE  # of depth, whose encoder is the base agent's
         else:
             self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)

@@ -88,3 +88,15 @@ def test_mistakes_say_what_is_allowed():
         TopologicalAgent(16, SMALL, encoder="resnet50")
     with pytest.raises(ValueError, match="multiple of 32"):
         TopologicalAgent(16, SMALL, size=48, encoder="efficientnet_lite0")
+
+
+def test_depth_is_seen_at_the_size_that_its_encoder_knows():
+    """The base agent's encoder of depth comes with it; at another scale it sees no free floor."""
+    made, base = agent(), TopologicalAgent(16, SMALL)
+    base.load_state_dict(
+        {n: w for n, w in made.state_dict().items() if not n.startswith("rgb")}, strict=False
+    )
+    depth = torch.rand(1, 12, 128, 128, 1) * 5
+    with torch.no_grad():
+        seen, known = made.eval().encode_depth(depth), base.eval().encode_depth(depth)
+    assert all(torch.equal(a, b) for a, b in zip(seen, known, strict=True))
