@@ -30,10 +30,13 @@ $(VENV)/.stamp-%: $(VENV)/.stamp
 
 install: $(VENV)/.stamp ## make the environment in .venv and stop
 
-train: $(VENV)/.stamp $(if $(filter encoder swap_encoder,$(RECIPE)),$(VENV)/.stamp-encoders) ## train and evaluate: RECIPE=da_per_episode ARGS="severity=0.6 seed=1" NPROC=2
+# the packages of encoders that others trained, where they are asked for
+ENCODERS = $(if $(or $(filter encoder swap_encoder,$(RECIPE)),$(findstring imagenet,$(ARGS))),$(VENV)/.stamp-encoders)
+
+train: $(VENV)/.stamp $(ENCODERS) ## train and evaluate: RECIPE=da_per_episode ARGS="severity=0.6 seed=1" NPROC=2
 	$(BIN)/python $(RANKS) -m mitigate.train recipe=$(RECIPE) $(ARGS)
 
-evaluate: $(VENV)/.stamp ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"
+evaluate: $(VENV)/.stamp $(ENCODERS) ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"
 	$(BIN)/python -m mitigate.evaluate $(ARGS)
 
 sweep: $(VENV)/.stamp ## many runs, one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
@@ -45,7 +48,7 @@ table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --ou
 report: $(VENV)/.stamp ## the same as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
 	$(BIN)/python -m mitigate.report $(ARGS)
 
-table1: $(VENV)/.stamp ## all kinds of agent under everything, the paper's Table I: ARGS="table=objects"
+table1: $(VENV)/.stamp $(ENCODERS) ## all kinds of agent under everything, the paper's Table I: ARGS="table=objects"
 	$(BIN)/python -m mitigate.table1 $(ARGS)
 
 table2: $(VENV)/.stamp ## train and evaluate the paper's Table II: ARGS="seeds=[0] jobs=2"
