@@ -35,7 +35,10 @@ _OF_THING = re.compile(
     r"(?<![^ ])(?:straight ahead|(?:which|that) (?:leads?|goes|go|runs?|leading) "
     r"(?:up|down|upwards?|downwards?|upstairs|downstairs|out|outside))(?= [.,;!?]|$)"
 )
-_ALL = re.compile(r"(?<![^ ])all the way(?= )")
+_ALL = re.compile(
+    r"(?<![^ ])(?:all the way|in the (?:opposite|other|reverse|same) direction|"
+    r"as soon as you(?:'re| are) (?:inside|in|out|outside|through))(?= )"
+)
 _OF_SIDE = re.compile(r"(?<![^ ])(?:to|on) (?:the|your|its|their) (?:left|right)(?= )")
 _SEEN = re.compile(
     r"(?<![^ ])(?:there's|there is|there are|you'll see|you will see|you see|you should see|"

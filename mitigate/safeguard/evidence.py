@@ -26,12 +26,14 @@ HIDDEN = ("hidden", "alike", "wide", "spelled", "leet", "code", "cipher", "case"
 # no words about all cases; "the" may be hidden
 _IDIOMS = re.compile(
     r"\b(?:all\s+(?:the\s+)?way|each other|each side|all around|at all times|turn all|all the "
-    r"(?=stairs|steps|way)|the whole (?:way|length)|entire|light switch(?:es)?)\b"
+    r"(?=stairs|steps|way)|the whole (?:way|length)|entire|light switch(?:es)?|"
+    r"(?!pausing|stopping|moving|navigating|driving)(?:[a-z]+ing|ac|air|wall|storage|kitchen|sink|"
+    r"tv|media|corner|book|drawer|cabinet|coffee|slot|ice|x-ray|fax) (?:units?|machines?))\b"
 )
 MOVES = re.compile(
     r"\b(?:past|through|into|onto|out of|along|towards?|across|around|between|beside|next to|"
-    r"in front of|behind|until|reach|down|up|at|by|near|from|on)\s+(?:the|a|an|your|that|this|"
-    r"two|both|some|another)\s+(?!way\b|same\b|other\b|opposite\b|text\b|order\b)[a-z]+"
+    r"in front of|in the direction of|behind|until|reach|down|up|at|by|near|from|on)\s+"
+    r"(?:the|a|an|your|that|this|two|both|some|another)\s+(?!way\b|same\b|other\b|opposite\b|text\b|order\b)[a-z]+"
 )
 _ROLE = re.compile(
     r"\b(?:you are|you're|you were|you have become|be|as|like|become|you'll be)\s+"

@@ -18,6 +18,7 @@ from mitigate.safeguard.honest import belongs
 from mitigate.safeguard.losses import unproven
 from mitigate.safeguard.meaning import CATEGORIES, differs
 from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.written import written
 
 ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
 _HUNTS = re.compile(
@@ -29,7 +30,8 @@ _TRACKED = re.compile(r"(\b(?:track|hunt|chas)\w*\b[^.;:!?]{0,40}?) down\b", re.
 _SEEKS = re.compile(
     r"\b(?:find|finding|look(?:ing|ed)? for|locate|locating|"
     r"search(?:ing|ed)? (?:for|out)|seek|spot|fetch|track(?:ing|ed)?(?: down)?|"
-    r"hunt(?:ing|ed)? (?:for|down|out)|where(?:'s| is| are)|need|want|"
+    r"hunt(?:ing|ed)? (?:for|down|out)|where(?:'s| is| are)|"
+    r"(?:need|want)(?!(?: you| us)? to\b)|"
     r"(?:go|walk|head|get|navigate|"
     r"proceed|come|take me|make your way|move)(?: on| over| up)? to|in search of|see|reach|"
     r"approach)"
@@ -51,7 +53,8 @@ _WANTED = re.compile(
 # what is to be found, named before or not at all
 _IT = re.compile(
     r"\b(?:find|locate|seek|spot|fetch|get|track|hunt|look for|search for|go to|walk to|head to|"
-    r"navigate to|approach|reach)\s+(?:me |us |down )*(?:it|them|one|that|this)\b(?! \w+ing\b)",
+    r"navigate to|approach|reach)\s+(?:me |us |down )*(?:(?:it|them|one|that|this)\b(?! \w+ing\b)|"
+    r"where (?:it|they)\b)",
     re.IGNORECASE,
 )
 _OF_THINGS = bag("a an the some any my your his her our their this that another")
@@ -59,12 +62,14 @@ _OF_THINGS = bag("a an the some any my your his her our their this that another"
 
 def route_facts(text: str) -> tuple[str, ...]:
     """Return what ``text`` tells of a way: turns, climbs, stops, landmarks that routes name, places
-    that one is to pass, object categories."""
+    that one is to pass, object categories, and things that one is led to by what stands on them."""
     plain = MASK.sub("the", plainly(text).text)
     said = facts(plain)
     known = [name for name in said.landmarks if name in LANDMARKS or name in CATEGORIES]
     passed = [] if known else MOVES.findall(plain.lower())
-    return (*said.directions, *known, *said.relations, *passed)
+    led = any(word in VERBS for word in words(plain)[:2])  # "follow the arrow that says ..."
+    signs = [plain[first:last] for first, last in written(plain)] if led else []
+    return (*said.directions, *known, *said.relations, *passed, *signs)
 
 
 def weight(text: str) -> int:
@@ -127,6 +132,8 @@ def result_refused(heard: str, given: str) -> str:
     lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still
     if lost:
         return f"it may be what is to be found ({', '.join(sorted(lost))})"
+    if goal and (wanted or _IT.search(heard)) and not (left or _IT.search(given)):
+        return "what is asked for would be lost"
     if goal and not left:
         told, still_told = mentioned(heard), mentioned(given)
         if told - still_told if _IT.search(given) else told and not still_told:

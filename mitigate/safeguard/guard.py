@@ -12,21 +12,16 @@ import os
 import re
 import time
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Protocol
 
 from mitigate.core.files import find
 from mitigate.core.names import unknown
-from mitigate.safeguard import gate, masks, rules
 from mitigate.safeguard.addresses import check_choice
-from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
-from mitigate.safeguard.refusals import refusal
-from mitigate.safeguard.text import MASK, passages, tidy, words
+from mitigate.safeguard.draft import Decision, Draft
+from mitigate.safeguard.plainly_said import Tags
 
-MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
-PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
-TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
 CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
     "http://host/v1@model")  # fmt: skip
 ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"
@@ -39,22 +34,6 @@ class Rewriter(Protocol):
     """A language model, local or behind an endpoint."""
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]: ...
-
-
-@dataclass(frozen=True)
-class Decision:
-    """What became of one instruction.
-
-    ``route``: "clean" (untouched), "rules", "tagger" (said in plain words by it), "model", or
-    "fallback" (the model was asked, and none of its answers was safe). ``reasons``: what was done
-    and refused, in words. ``seconds``: its share of the time.
-    """
-
-    original: str
-    text: str
-    route: str
-    reasons: tuple[str, ...]
-    seconds: float
 
 
 class Safeguard:
@@ -94,7 +73,7 @@ class Safeguard:
                 raise TypeError(f"An instruction must be a text (str), but this one is {text!r}.")
         fresh = [text for text in dict.fromkeys(texts) if text not in self._known]
         began = time.monotonic()
-        drafts = [_Draft(text, self.tagger) for text in fresh]
+        drafts = [Draft(text, self.tagger) for text in fresh]
         if self.rewriter is not None and drafts:
             self._ask(drafts)
         each = (time.monotonic() - began) / max(1, len(fresh))
@@ -104,7 +83,7 @@ class Safeguard:
             _append(self.log, decided)
         return [self._known[text] for text in texts]
 
-    def _ask(self, drafts: list[_Draft]) -> None:
+    def _ask(self, drafts: list[Draft]) -> None:
         assert self.rewriter is not None
         budget = self.seconds * len(drafts)
         began = time.monotonic()
@@ -182,124 +161,6 @@ def label(choice: str) -> str:
     while folder.name == "agent":  # every trained adapter lies in a folder called so
         folder = folder.parent
     return f"{folder.name}-{sha256(weights)[:6]}"
-
-
-class _Draft:
-    """One instruction on its way: what the rules made of it, its passages, the reasons so far."""
-
-    def __init__(self, original: str, tagger: Tags | None = None) -> None:
-        self.original, self.tagger = original, tagger
-        self.tidied = tidy(original)
-        short = len(words(self.tidied)) <= TOO_LONG
-        self.judge = tagger if short else None  # reads the text as it is heard
-        self.reasons: list[str] = []
-        self.asked = self.taken = 0
-        self.plain = not _readable(self.tidied) or (
-            _untouched(original, self.judge) and not self._spoken()
-        )
-        heard = rules.lower_capitals(original)
-        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(self.judge, heard))
-        self.repair(set())
-
-    def _spoken(self) -> bool:
-        """Return whether the tagger takes the text for speech."""
-        return self.judge is not None and is_speech(self.judge.tag(self.tidied))
-
-    def repair(self, empty: set[str]) -> None:
-        """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
-        if self.plain:
-            self.repaired, self.passages, self.styled = self.original, [self.original], False
-            self.same, self.tagged = True, False
-            self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
-            return
-        done = rules.repair(self.original, empty.__contains__, self.judge)
-        self.same = done.text == self.original
-        self.repaired, self.reasons = tidy(done.text), list(done.reasons)
-        self.tagged = self._say_plainly()
-        self.styled = done.marks >= MARKS
-        if len(words(self.repaired)) > TOO_LONG:
-            self.passages = [self.repaired]
-            self.reasons.append(f"over {TOO_LONG} words: rules alone")
-        else:
-            self.passages = passages(self.repaired, PASSAGE)
-
-    def _say_plainly(self) -> bool:
-        """Let the tagger say speech in plain words; return whether it changed any."""
-        if self.tagger is None or len(words(self.repaired)) > TOO_LONG:
-            return False
-        tagged = self.tagger.tag(self.repaired)
-        if not is_speech(tagged):
-            return False
-        said, kept = plainly_said(self.repaired, tagged)
-        self.reasons += kept
-        changed = said != self.repaired
-        if changed:
-            self.reasons.append("said in plain words by the tagger")
-            self.repaired, self.same = said, False
-        return changed
-
-    @property
-    def wanted(self) -> list[str]:
-        """The passages that the model is to say again."""
-        if self.plain or len(words(self.repaired)) > TOO_LONG:
-            return []
-        return [p for p in self.passages if MASK.search(p) or self.styled]
-
-    def take(self, said: dict[str, str | None]) -> None:
-        """Put safe answers in the place of their passages."""
-        wanted = set(self.wanted)
-        for index, passage in enumerate(self.passages):
-            if passage not in wanted:
-                continue
-            self.asked += 1
-            problem = refusal(passage, said.get(passage), index == len(self.passages) - 1)
-            if problem:
-                self.reasons.append(f"kept {passage[:40]!r}: {problem}")
-            else:
-                self.passages[index] = said[passage] or ""
-                self.taken += 1
-
-    def decision(self, seconds: float) -> Decision:
-        text = self.original if self.same else self.repaired
-        if self.taken:
-            text = self._said(text)
-        if not self.plain and MASK.search(text):
-            text = masks.fill(text)
-            self.reasons.append("masks filled by rule")
-        if text != self.original and not self.reasons:
-            self.reasons.append("said again by the model" if self.taken else "characters tidied")
-        done = "tagger" if self.tagged else "rules"
-        route = "model" if self.taken else "fallback" if self.asked else done
-        route = "clean" if text == self.original and not self.asked else route
-        return Decision(self.original, text, route, tuple(self.reasons), seconds)
-
-    def _said(self, text: str) -> str:
-        """Return the model's answers and the kept passages, or ``text`` if the whole is unsafe."""
-        said = " ".join(passage for passage in self.passages if passage).strip()
-        problem = gate.result_refused(self.repaired, said)
-        if problem:
-            self.taken = 0
-            self.reasons.append(f"kept all: {problem}")
-            return text
-        return said
-
-
-def _readable(text: str) -> bool:
-    """Return whether there are words, mostly in Latin letters, or a way is told in English."""
-    letters = [c for c in text if c.isalpha()]
-    latin = sum(c.isascii() for c in letters)
-    return bool(letters) and (latin > 0.5 * len(letters) or bool(gate.route_facts(text)))
-
-
-def _untouched(text: str, tagger: Tags | None) -> bool:
-    """Return whether ``text`` shows no mark of any corruption."""
-    return (
-        not MASK.search(text)
-        and rules.lower_capitals(text) == text
-        and rules.style_marks(text) < MARKS
-        and not rules.doubtful(text, judging(tagger, text))
-        and rules.repair(text, tags=tagger).text == text
-    )
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:

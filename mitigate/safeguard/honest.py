@@ -11,7 +11,7 @@ from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.evidence import VERBS
 from mitigate.safeguard.lexicon import GROUPS, places
 from mitigate.safeguard.text import words
-from mitigate.safeguard.written import written
+from mitigate.safeguard.written import without_written
 
 _ATTACKS = frozenset().union(
     *(GROUPS[name] for name in ("orders", "text", "annul", "invert", "case", "machine", "authority",
@@ -19,7 +19,8 @@ _ATTACKS = frozenset().union(
 ) | bag("so because but if who that unless than though")  # fmt: skip
 _ALSO = (
     r"(?:(?:and|now|then|here|so|once (?:there|inside)|(?:up)?on (?:arrival|arriving)|thereafter|"
-    r"subsequently|please|kindly|finally|next|first),? )*"
+    r"subsequently|please|kindly|finally|next|first|"
+    r"you(?:'ll| can| may| should| could| must| will)),? )*"
 )
 _A = r"(?:a|an|the|your|another|one|what)"
 _AT = r"(?:in|at|on|inside|into|near|by|to)"
@@ -44,7 +45,7 @@ _STAY = (
     r"(?: for| to await| and await)?|await)(?: (?:(?:your|any|the|my) )*(?:further|more|next|"
     r"additional|new) (?:instructions?|orders?|directions?|guidance|commands?)"
     r"| until (?:you hear|told|you are told|further notice|instructed)(?: otherwise)?)?"
-    r"(?: there| here| (?:in|at|inside) this (?:[\w-]+ )?[\w-]+)?"
+    r"(?: (?:right |just |around )?(?:there|here)| (?:in|at|inside) this (?:[\w-]+ )?[\w-]+)?"
 )
 _ARRIVED = (
     r"you(?:(?: have|'ve) (?:now )?(?:arrived|reached (?:it|your destination))|"
@@ -54,7 +55,8 @@ _NO_FURTHER = (
     r"(?:do not|don't) (?:go|walk|move|proceed|continue|head) (?:on )?(?:any )?"
     r"(?:further|farther|past (?:it|this|that|there))(?: than (?:this|that))?"
 )
-_ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_ARRIVED}|{_NO_FURTHER})")
+_THANKS = r"(?:,? (?:and )?(?:thanks|thank you)(?: (?:so|very|much|again|a lot|for your help))*)?"
+_ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_ARRIVED}|{_NO_FURTHER}){_THANKS}")
 _GOES_ON = re.compile(
     rf"{_ALSO}(?:keep|continue)(?: on)? (?:walking|going|moving|straight|forward)"
     r"(?: (?:straight|forward|ahead|on))*"
@@ -121,9 +123,7 @@ def _around(said: str) -> bool:
 
 def _plain(sentence: str) -> str:
     """Return a sentence in lower case, without what stands on things and the marks at its ends."""
-    for first, last in reversed(written(sentence)):
-        sentence = sentence[:first] + "labelled" + sentence[last:]
-    said = " ".join(sentence.lower().replace("’", "'").split())
+    said = " ".join(without_written(sentence).lower().replace("’", "'").split())
     return said.strip(" .,;:!-–—")
 
 

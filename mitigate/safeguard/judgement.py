@@ -17,6 +17,7 @@ from mitigate.safeguard.pieces import Piece, sentence_pieces
 from mitigate.safeguard.plainly_said import Tagged, Tags
 from mitigate.safeguard.text import words
 from mitigate.safeguard.weights import CONTEXT, OWN
+from mitigate.safeguard.written import without_written
 
 SURE = 0.5
 PLAIN = 0.06  # mean strangeness of sentences that are surely a plain route
@@ -139,4 +140,6 @@ def strangeness(sentence: str, markup: bool = False) -> float:
         return 0.0
     if in_another_language(sentence):
         return 0.99
+    if leads(sentence):  # "follow the sign that says ..."
+        sentence = without_written(sentence)
     return probability(OWN, features(sentence, markup))

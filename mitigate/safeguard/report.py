@@ -24,7 +24,8 @@ from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.safeguard.addresses import check_choice
 from mitigate.safeguard.data import read_texts
-from mitigate.safeguard.guard import PASSAGE, Rewriter, Safeguard, open_safeguard
+from mitigate.safeguard.draft import PASSAGE
+from mitigate.safeguard.guard import Rewriter, Safeguard, open_safeguard
 from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
 from mitigate.safeguard.spoken import SPLITS, VALIDATION, spoken
 from mitigate.safeguard.text import passages, sentences

@@ -25,8 +25,8 @@ _STEPS = {
     "around": "circle circling skirt skirting reverse",
 }  # fmt: skip
 _WAYS = {
-    "through": "through thru via", "past": "past beyond by", "into": "into inside in",
-    "out": "out outside from", "up": "up upstairs upwards upward",
+    "through": "through thru via", "past": "past beyond by", "into": "into inside in indoors",
+    "out": "out outside outdoors from", "up": "up upstairs upwards upward",
     "down": "down downstairs downwards downward", "around": "around round", "across": "across over",
     "along": "along", "between": "between", "under": "under beneath underneath",
     "behind": "behind", "onto": "onto",

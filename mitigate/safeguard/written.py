@@ -20,7 +20,7 @@ _QUOTED = re.compile(
 )
 # what says that a thing bears the words that follow
 _BEARS = re.compile(
-    r"(?:(?:\b(?:that|which)\s+|\bwhere\s+(?:a|an|the|one|some)\s+\w+\s+)?\b(?:says|said|reads?|"
+    r"(?:(?:\b(?:that|which|it)\s+|\bwhere\s+(?:a|an|the|one|some)\s+\w+\s+)?\b(?:says|said|reads?|"
     r"saying|reading|stating|states|labell?ed|labell?ing|label|marked|named|called|titled|entitled|"
     r"inscribed|written|printed|lettered|painted|bearing|numbered)"
     r"(?:\s+(?:as|with|on (?:it|them)|by|the|words?|title|name|sign|letters?|text)){0,4}"
@@ -61,6 +61,13 @@ def written(text: str) -> list[tuple[int, int]]:
         for first, a, b, last in quotes(text)
         if not tells_to_do(text[a:b])
     ]
+
+
+def without_written(text: str) -> str:
+    """Return a text without what stands on things: "follow the arrow labelled"."""
+    for first, last in reversed(written(text)):
+        text = f"{text[:first]}labelled{text[last:]}"
+    return text
 
 
 def tells_to_do(quoted: str) -> bool:

@@ -15,7 +15,8 @@ from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.data import draw_pair
-from mitigate.safeguard.guard import Safeguard, open_safeguard, refusal
+from mitigate.safeguard.guard import Safeguard, open_safeguard
+from mitigate.safeguard.refusals import refusal
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.rules import style_marks
 from mitigate.safeguard.text import MASK, sentences

@@ -1,0 +1,161 @@
+"""One instruction on its way through the safeguard: rules, a network that says it plainly,
+a language model; what each did and could not do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mitigate.safeguard import gate, masks, rules
+from mitigate.safeguard.object_goal import object_goal
+from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
+from mitigate.safeguard.refusals import refusal
+from mitigate.safeguard.text import MASK, passages, tidy, words
+
+MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
+PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
+TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What became of one instruction.
+
+    ``route``: "clean" (untouched), "rules", "tagger" (said in plain words by it), "model", or
+    "fallback" (the model was asked, and none of its answers was safe). ``reasons``: what was done
+    and refused, in words. ``seconds``: its share of the time.
+    """
+
+    original: str
+    text: str
+    route: str
+    reasons: tuple[str, ...]
+    seconds: float
+
+
+class Draft:
+    """One instruction on its way: what the rules made of it, its passages, the reasons so far."""
+
+    def __init__(self, original: str, tagger: Tags | None = None) -> None:
+        self.original, self.tagger = original, tagger
+        self.tidied = tidy(original)
+        short = len(words(self.tidied)) <= TOO_LONG
+        self.judge = tagger if short else None  # reads the text as it is heard
+        self.reasons: list[str] = []
+        self.asked = self.taken = 0
+        self.plain = not _readable(self.tidied) or (
+            _untouched(original, self.judge)
+            and not self._spoken()
+            and object_goal(self.tidied) is None
+        )
+        heard = rules.lower_capitals(original)
+        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(self.judge, heard))
+        self.repair(set())
+
+    def _spoken(self) -> bool:
+        """Return whether the tagger takes the text for speech."""
+        return self.judge is not None and is_speech(self.judge.tag(self.tidied))
+
+    def repair(self, empty: set[str]) -> None:
+        """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
+        if self.plain:
+            self.repaired, self.passages, self.styled = self.original, [self.original], False
+            self.same, self.tagged = True, False
+            self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
+            return
+        done = rules.repair(self.original, empty.__contains__, self.judge)
+        self.same = done.text == self.original
+        self.repaired, self.reasons = tidy(done.text), list(done.reasons)
+        self.tagged = not self._say_goal() and self._say_plainly()
+        self.styled = done.marks >= MARKS
+        if len(words(self.repaired)) > TOO_LONG:
+            self.passages = [self.repaired]
+            self.reasons.append(f"over {TOO_LONG} words: rules alone")
+        else:
+            self.passages = passages(self.repaired, PASSAGE)
+
+    def _say_goal(self) -> bool:
+        """Say a request for one thing in plain words; return whether it was one."""
+        goal = object_goal(self.repaired)
+        if goal is None:
+            return False
+        self.reasons.append("a request for one thing, said in plain words")
+        self.repaired, self.same = goal, False
+        return True
+
+    def _say_plainly(self) -> bool:
+        """Let the tagger say speech in plain words; return whether it changed any."""
+        if self.tagger is None or len(words(self.repaired)) > TOO_LONG:
+            return False
+        tagged = self.tagger.tag(self.repaired)
+        if not is_speech(tagged):
+            return False
+        said, kept = plainly_said(self.repaired, tagged)
+        self.reasons += kept
+        changed = said != self.repaired
+        if changed:
+            self.reasons.append("said in plain words by the tagger")
+            self.repaired, self.same = said, False
+        return changed
+
+    @property
+    def wanted(self) -> list[str]:
+        """The passages that the model is to say again."""
+        if self.plain or len(words(self.repaired)) > TOO_LONG:
+            return []
+        return [p for p in self.passages if MASK.search(p) or self.styled]
+
+    def take(self, said: dict[str, str | None]) -> None:
+        """Put safe answers in the place of their passages."""
+        wanted = set(self.wanted)
+        for index, passage in enumerate(self.passages):
+            if passage not in wanted:
+                continue
+            self.asked += 1
+            problem = refusal(passage, said.get(passage), index == len(self.passages) - 1)
+            if problem:
+                self.reasons.append(f"kept {passage[:40]!r}: {problem}")
+            else:
+                self.passages[index] = said[passage] or ""
+                self.taken += 1
+
+    def decision(self, seconds: float) -> Decision:
+        text = self.original if self.same else self.repaired
+        if self.taken:
+            text = self._said(text)
+        if not self.plain and MASK.search(text):
+            text = masks.fill(text)
+            self.reasons.append("masks filled by rule")
+        if text != self.original and not self.reasons:
+            self.reasons.append("said again by the model" if self.taken else "characters tidied")
+        done = "tagger" if self.tagged else "rules"
+        route = "model" if self.taken else "fallback" if self.asked else done
+        route = "clean" if text == self.original and not self.asked else route
+        return Decision(self.original, text, route, tuple(self.reasons), seconds)
+
+    def _said(self, text: str) -> str:
+        """Return the model's answers and the kept passages, or ``text`` if the whole is unsafe."""
+        said = " ".join(passage for passage in self.passages if passage).strip()
+        problem = gate.result_refused(self.repaired, said)
+        if problem:
+            self.taken = 0
+            self.reasons.append(f"kept all: {problem}")
+            return text
+        return said
+
+
+def _readable(text: str) -> bool:
+    """Return whether there are words, mostly in Latin letters, or a way is told in English."""
+    letters = [c for c in text if c.isalpha()]
+    latin = sum(c.isascii() for c in letters)
+    return bool(letters) and (latin > 0.5 * len(letters) or bool(gate.route_facts(text)))
+
+
+def _untouched(text: str, tagger: Tags | None) -> bool:
+    """Return whether ``text`` shows no mark of any corruption."""
+    return (
+        not MASK.search(text)
+        and rules.lower_capitals(text) == text
+        and rules.style_marks(text) < MARKS
+        and not rules.doubtful(text, judging(tagger, text))
+        and rules.repair(text, tags=tagger).text == text
+    )

@@ -1,0 +1,72 @@
+"""Requests for one thing are said in plain words, and nothing else is."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.safeguard.guard import open_safeguard
+from mitigate.safeguard.object_goal import object_goal
+
+
+@pytest.mark.parametrize(
+    "heard, plain",
+    [
+        ("Hey buddy, could you find me a red backpack? Thanks!", "Look for a red backpack."),
+        ("So, a sofa. Go find one for us, pal!", "Look for a sofa."),
+        ("Dear Sir or Madam, kindly proceed to the TV.", "Go to the TV."),
+        ("Please find an armchair, and come to a halt beside it.", "Go to an armchair and stop."),
+        ("I'm not sure, but I think you look for the nearest sink.", "Look for the nearest sink."),
+        ("Could you please look for a plant in the house?", "Look for a plant."),
+        ("So you get to the side table. And then you stop.", "Go to the side table and stop."),
+        ("Look [MASK] [MASK] painting.", "Look for a painting."),
+    ],
+)  # fmt: skip
+def test_a_request_for_one_thing_keeps_the_thing_and_what_it_is_like(heard, plain):
+    assert object_goal(heard) == plain
+
+
+@pytest.mark.parametrize(
+    "heard",
+    [
+        "Please go around the table for me, thanks a lot.",  # how to go by it
+        "Could you please get out of the bed? Thank you!",
+        "So, um, walk past the chair please, my dear friend.",
+        "Hi! Please find the chair behind the sofa, thank you.",  # where it stands
+        "Hi! Please find the chair with red legs, thank you.",
+        "Please find a chair or a bed, whichever, thank you so much.",  # two things
+        "Hello! Please don't look for a chair, thank you so much.",  # denied
+        "Please stop looking for the chair now, thanks so much.",
+        "Hello! The chair has been located, thanks so much for that.",
+        "Please start at the bed, thank you so much, my dear.",
+        "Hello! Please turn left and then find a chair, thanks!",  # a turn
+        "Hello! Please go up the stairs and find a chair, thanks!",
+        "I need you to smash the lamp please, thank you.",  # something else to do
+        "Hello! Could you find me two chairs please? Thanks!",  # a number
+        "Hey, could you please find the stop sign? Thanks!",  # part of a name
+        "Look for a chair.",  # plain
+        "Walk to the bed and wait.",
+        "Hello there, and thank you very much!",  # no thing
+        "Look for a [MASK], please.",
+        "",
+    ],
+)
+def test_whatever_else_is_told_leaves_the_text_as_it_is(heard):
+    assert object_goal(heard) is None
+
+
+def test_the_rules_alone_say_it_plainly_and_why():
+    heard = "Good day. You are kindly requested to proceed to the sofa. In closing, you may stop."
+    decision = open_safeguard("rules").canonicalise(heard)
+    assert decision.text == "Go to the sofa and stop."
+    assert decision.route == "rules"
+    assert "a request for one thing, said in plain words" in decision.reasons
+
+
+def test_what_is_asked_for_is_not_lost_with_what_stands_beside_it():
+    heard = (
+        "I want to know what time it is so I think you need to find a clock. They're round a lot "
+        "of the time and sometimes they hang on a wall."
+    )
+    assert "clock" in open_safeguard("rules").canonicalise(heard).text
+    heard = "Uh oh, I've lost my backpack again! Be a sweetheart and track it down for me?"
+    assert "track it down" in open_safeguard("rules").canonicalise(heard).text
