@@ -32,8 +32,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     options = parser.parse_args(argv)
     try:
         written = run(options.rows, options.out)
-    except (FileNotFoundError, ValueError) as error:
-        print(f"table: {error}", file=sys.stderr)
+    except (OSError, ValueError) as error:
+        from mitigate.core.conf import said
+
+        print(f"table: {said(error)}", file=sys.stderr)
         return 2
     print(written[0].read_text(encoding="utf-8"))
     print("\n".join(f"wrote {path}" for path in written))

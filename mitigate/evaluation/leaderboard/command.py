@@ -89,7 +89,9 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
-    """Write the page of the entries in ``paths``; return its path. Errors as :func:`entries_of`."""
+    """Write the page of the entries in ``paths``; return its path. Errors as :func:`entries_of`
+    and ``document.check_out``."""
+    document.check_out(out)
     return document.write(render(entries_of(paths)), out)
 
 
