@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from hydra.errors import HydraException
+from omegaconf.errors import OmegaConfBaseException
 from torch import nn
 
 from mitigate.core import conf, seeding
@@ -18,6 +20,7 @@ from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
+from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.scale.launcher import count
@@ -64,11 +67,12 @@ def benchmark(
             ``options``.
         training_data, link: for the entry. out: folder of the rows; None: one in
             ``runs/benchmark``.
-    Raises ValueError for unknown names and numbers out of range, FileNotFoundError for missing
-    weights.
+    Raises ValueError for what is no agent, unknown names, numbers out of range and texts that an
+    entry cannot hold, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(suite, severity, seed, options)
     agent, name = _agent(agent, name, cfg, seed)
+    check_texts(name=name, training_data=training_data, link=link)
     split, made = split or cfg.split, world or maker(cfg.env.world)
     chosen = evaluation.episodes(cfg.env, split, episodes) if listed is None else list(listed)
     if not chosen:
@@ -77,6 +81,13 @@ def benchmark(
     folder = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}")
     file = folder / evaluation.ROWS
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
+    if file.exists() and not hasattr(agent, "settings"):
+        print(
+            f"benchmark: rows in {file} count, unless they are of another class or other weights: "
+            f"a {type(agent).__name__} has no settings() that says more. If it was changed, give "
+            "it some, or name another folder (out=...).",
+            flush=True,
+        )
     with FolderLock(folder):
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
@@ -96,11 +107,17 @@ def _conditions(
     """Return the config of an evaluation, and the conditions of the suite, clean first."""
     seeding.check(seed)
     named = [f"suite={suite}"] if isinstance(suite, str) else []
-    cfg = conf.load_config("evaluate", [*options, *named])
+    try:
+        cfg = conf.load_config("evaluate", [*options, *named])
+    except (HydraException, OmegaConfBaseException) as error:
+        raise ValueError(conf.explain(error, "evaluate", [*options, *named])) from None
     names = list(cfg.suite.conditions) if isinstance(suite, str) else list(suite)
     met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
-    if all(corruption.name == "clean" for corruption in met):
-        raise ValueError(f"suite={suite!r} corrupts nothing: name a suite or corruptions.")
+    if all(corruption.severity == 0 for corruption in met):
+        raise ValueError(
+            f"suite={suite!r} at severity {severity:g} corrupts nothing: name a suite or "
+            "corruptions, and a severity above 0."
+        )
     return cfg, met
 
 
@@ -109,6 +126,7 @@ def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]
     if isinstance(agent, (str, Path)):
         loaded = evaluation.load(cfg.agent, str(agent), seed)
         return loaded, name or evaluation.name_of(str(agent))
+    evaluation.check_walks(agent)
     return agent, name or type(agent).__name__
 
 

@@ -57,10 +57,16 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
 def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
     """Return how ``entry`` differs from what ``rows`` say, a line each; none if it does not.
 
+    Of ``rows``, those of its agents, their seeds and its conditions count; a file may hold more.
     Raises ValueError if they hold nothing of the entry.
     """
+    agents = {(one["agent"], one["seed"]) for one in entry.agents}
+    own = [row for row in rows if (row["agent"], row["seed"]) in agents]
+    if not own:
+        told = ", ".join(f"{agent} with seed {seed}" for agent, seed in sorted(agents))
+        raise ValueError(f"The rows hold none of {told:.300}.")
     again = entry_of(
-        rows,
+        [row for row in own if row["corruption"] in entry.SR],
         entry.name,
         severity=entry.severity,
         split=entry.split,
@@ -68,14 +74,22 @@ def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
         training_data=entry.training_data,
         link=entry.link,
         file=entry.rows["file"],
-        agents=[one["agent"] for one in entry.agents],
     )
-    said, found = asdict(entry), asdict(again)
+    said, found = _figures(entry), _figures(again)
     return [
-        f"{key} is {said[key]!r:.120}, but its rows say {found[key]!r:.120}"
-        for key in said
-        if key != "version" and not _same(said[key], found[key])
+        f"{key} is {said.get(key)!r:.120}, but its rows say {found.get(key)!r:.120}"
+        for key in said | found
+        if key != "version" and not _same(said.get(key), found.get(key))
     ]
+
+
+def _figures(entry: LeaderboardEntry) -> dict[str, Any]:
+    """Return the values of an entry by name, those of its mappings each by its own."""
+    held: dict[str, Any] = {}
+    for key, value in asdict(entry).items():
+        parts = value if isinstance(value, dict) else {}
+        held |= {f"{key}, {name},": own for name, own in parts.items()} or {key: value}
+    return held
 
 
 def _same(a: Any, b: Any) -> bool:
