@@ -172,3 +172,18 @@ def test_damaged_gzip_and_a_bomb_are_refused(tmp_path):
             rows.read(path)
         with pytest.raises(ValueError, match="is damaged"):
             rows.gather([tmp_path])
+
+
+def test_rows_that_contradict_one_before_are_told_and_repeated_ones_are_not(tmp_path, recwarn):
+    first, second = cell(5), cell(7)
+    rows.write(tmp_path / "a.jsonl", first)
+    rows.write(tmp_path / "b.jsonl", second)
+    assert rows.gather([tmp_path / "a.jsonl", tmp_path / "a.jsonl"]) == first and not recwarn.list
+    with pytest.warns(UserWarning, match="2 rows say another success.*first base, episode 5"):
+        assert rows.gather([tmp_path]) == second
+
+
+def test_a_folder_called_like_a_row_file_is_a_folder(tmp_path):
+    (tmp_path / "old.jsonl").mkdir()
+    rows.write(tmp_path / "old.jsonl/rows.jsonl", cell(5))
+    assert rows.gather([tmp_path]) == cell(5)
