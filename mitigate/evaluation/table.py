@@ -29,7 +29,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m mitigate.table", description=__doc__)
     parser.add_argument("rows", nargs="+", metavar="ROWS", help="row files or run folders")
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
-    options = parser.parse_args(argv)
+    options = parser.parse_intermixed_args(argv)
     try:
         written = run(options.rows, options.out)
     except (OSError, ValueError) as error:

@@ -170,8 +170,13 @@ def _named(paths: Sequence[Path | str]) -> str:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status: 2 for a bad input, 1 for a wrong entry."""
-    options = vars(_parser().parse_args(argv))
+    parser = _parser()
+    given, more = parser.parse_known_args(argv)  # which leaves words behind an option, as of "add"
+    options = vars(given)
     what = options.pop("what")
+    if unknown := [word for word in more if word.startswith("-")]:
+        parser.error(f"unrecognized arguments: {' '.join(unknown)}")
+    options["paths"] += more
     if what == "check":
         wrong: list[str] = []
         status = told("leaderboard", lambda: wrong.extend(check(options["paths"])))
@@ -182,6 +187,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = options.pop("paths")
     paths = [word for word in words if "=" not in word or Path(word).exists()]
     own = [word for word in words if word not in paths]
+    if not paths:
+        parser.error(f"add: name a row file; there is none of {', '.join(own)}.")
     return told("leaderboard", lambda: add(paths, options=own, **options))
 
 

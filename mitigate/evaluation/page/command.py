@@ -117,7 +117,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--walks", type=int, default=12, help="how many episodes (default 12)")
     parser.add_argument("--seed", type=int, default=0, help="of the rows that are walked again")
-    given = vars(parser.parse_args(argv))
+    given = vars(parser.parse_intermixed_args(argv))
     words = given.pop("rows")
     paths = [word for word in words if "=" not in word or Path(word).exists()]
     options = [word for word in words if word not in paths]

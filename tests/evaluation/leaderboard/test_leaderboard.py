@@ -203,6 +203,24 @@ def test_an_entry_is_compared_with_its_own_rows_where_the_file_holds_more(rows):
         command.differences(entry, [r | {"seed": 1} for r in rows])
 
 
+def test_words_that_say_what_an_agent_sees_may_stand_behind_options(
+    rows, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("rows.jsonl", rows)
+    add = ["add", "rows.jsonl", "--name", "base", "--folder", "entries", "env.views=1"]
+    assert command.main(add) == 0
+    assert load("entries/base.json").sensors[0] == "rgb: 64 x 64 x 3 uint8, 90 degrees wide"
+    assert command.main(["check", "entries/base.json", "entries/base.json"]) == 0
+    for wrong, words in (
+        (["add", "--name", "base", "env.views=1"], "name a row file"),
+        ([*add, "--no-such", "x"], "unrecognized arguments: --no-such"),
+    ):
+        with pytest.raises(SystemExit):
+            command.main(wrong)
+        assert words in capsys.readouterr().err
+
+
 def test_nothing_is_written_that_would_be_refused_again(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     result_rows.write("rows.jsonl", rows)

@@ -153,7 +153,7 @@ def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, r
     assert sorted(p.name for p in tmp_path.iterdir()) == ["page.html", "rows.jsonl"]
     assert command.main([str(tmp_path / "nowhere")]) == 2
     assert "nowhere" in capsys.readouterr().err
-    walk = ["--walk", "bass=checkpoints/base"]
+    walk = ["--walk", "bass=checkpoints/base", "split=val_unseen"]
     assert command.main([str(tmp_path / "rows.jsonl"), *walk]) == 2
     assert "Did you mean base?" in capsys.readouterr().err
 
