@@ -78,17 +78,10 @@ def benchmark(
     if not chosen:
         raise ValueError("listed holds no episode: give some, or leave it out.")
     _tell(agent, made(), chosen, len(met), workers)
-    folder = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}")
-    file = folder / evaluation.ROWS
+    file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / evaluation.ROWS
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
-    if file.exists() and not hasattr(agent, "settings"):
-        print(
-            f"benchmark: rows in {file} count, unless they are of another class or other weights: "
-            f"a {type(agent).__name__} has no settings() that says more. If it was changed, give "
-            "it some, or name another folder (out=...).",
-            flush=True,
-        )
-    with FolderLock(folder):
+    _tell_reused(agent, file)
+    with FolderLock(file.parent):
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
         rows,
@@ -128,6 +121,17 @@ def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]
         return loaded, name or evaluation.name_of(str(agent))
     evaluation.check_walks(agent)
     return agent, name or type(agent).__name__
+
+
+def _tell_reused(agent: Any, file: Path) -> None:
+    """Print that rows of before count, where they may be of an agent that was changed since."""
+    if file.exists() and not hasattr(agent, "settings"):
+        print(
+            f"benchmark: rows in {file} count, unless they are of another class or other weights: "
+            f"a {type(agent).__name__} has no settings() that says more. If it was changed, give "
+            "it some, or name another folder (out=...).",
+            flush=True,
+        )
 
 
 def _plain(name: str) -> str:
