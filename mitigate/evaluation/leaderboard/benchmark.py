@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
 import re
+import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -19,6 +21,7 @@ from mitigate.core.progress import duration
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.episode_lists import check_episodes
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
@@ -41,7 +44,7 @@ def benchmark(
     suite: str | Sequence[str] = "full",
     severity: float = 0.6,
     seed: int = 0,
-    workers: int | None = None,
+    workers: int | None = 1,
     options: Sequence[str] = (),
     world: Callable[[], World] | None = None,
     listed: Sequence[Episode] | None = None,
@@ -55,13 +58,13 @@ def benchmark(
     it was stopped.
 
     Args:
-        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights,
-            such as "checkpoints/base".
+        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
         name: heading of the entry; None: of the weights' folder, or the agent's class.
         split: list of episodes of the world; None: its own first. episodes: how many, spread over
             the list; None: all, as entries of the leaderboard have.
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
-            the corruptions. workers: processes, None: one a core if there is work for them.
+            the corruptions. workers: processes; None: one a core if there is work. More than one
+            read the script again, which keeps its call under ``if __name__ == "__main__":``.
         options: of ``mitigate evaluate``, such as "agent=recurrent" or "env.views=1".
         world, listed: makes a world of your own, and its episodes, in place of those of
             ``options``.
@@ -75,9 +78,9 @@ def benchmark(
     check_texts(name=name, training_data=training_data, link=link)
     split, made = split or cfg.split, world or maker(cfg.env.world)
     chosen = evaluation.episodes(cfg.env, split, episodes) if listed is None else list(listed)
-    if not chosen:
-        raise ValueError("listed holds no episode: give some, or leave it out.")
-    _tell(agent, made(), chosen, len(met), workers)
+    check_episodes("listed" if listed is not None else split, chosen)
+    _check_world(made, met)
+    _tell(agent, made, chosen, len(met), workers)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / evaluation.ROWS
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     _tell_reused(agent, file)
@@ -138,18 +141,50 @@ def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
+def _check_world(make_world: Any, met: Sequence[Corruption]) -> None:
+    if not callable(make_world):
+        raise ValueError(
+            f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
+            "since each process has its own."
+        )
+    world = make_world()
+    evaluation.check_sensors(met, world.sensors, type(world).__name__)
+
+
+def _check_copies(*things: Any) -> None:
+    """Raise ValueError for what other processes cannot be given."""
+    main = Path(getattr(sys.modules["__main__"], "__file__", None) or "")
+    typed = [thing for thing in things if type(thing).__module__ == "__main__"]
+    try:
+        if typed and not main.is_file():
+            raise TypeError(f"a {type(typed[0]).__name__} was typed in, and is in no file")
+        pickle.dumps(things)
+    except (pickle.PicklingError, AttributeError, TypeError, RecursionError) as error:
+        raise ValueError(
+            f"Other processes cannot be given a copy of the agent or its world ({error}): give "
+            "workers=1, or define them at the head of a module."
+        ) from None
+
+
 def _tell(
-    agent: Any, world: World, episodes: Sequence[Episode], conditions: int, workers: int | None
+    agent: Any,
+    make_world: Callable[[], World],
+    episodes: Sequence[Episode],
+    conditions: int,
+    workers: int | None,
 ) -> None:
     """Print how much there is to walk, and about how long it takes, from a few clean walks."""
     total = len(episodes) * conditions
+    processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
+    if processes > 1:
+        _check_copies(agent, make_world)
+    world = make_world()
     if isinstance(agent, nn.Module):
         agent.eval()
     for episode in episodes[:TIMED]:  # the first one loads what is needed
         started = time.monotonic()
         run_episode(agent, world, episode, CLEAN, 0)
         each = time.monotonic() - started
-    processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
     print(
         f"benchmark: {len(episodes)} episodes x {conditions} conditions = {total} walks of about "
         f"{each:.2g} s on {processes} process{'es' * (processes > 1)}: about "

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import json
+import os
 import re
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +26,7 @@ from mitigate.evaluation.leaderboard.entry import load
 from mitigate.evaluation.leaderboard.from_rows import entry_of, rows_sha
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.sections import sections
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import column
 from tests.evaluation.page.test_document import held
 
@@ -263,6 +269,37 @@ def test_benchmark_knows_an_agent_by_the_networks_it_holds_and_says_what_it_cann
     assert "no settings()" not in capsys.readouterr().out
 
 
+class Dark(ApartmentsWorld):
+    """Shows depth alone."""
+
+    def __init__(self) -> None:
+        super().__init__(16)
+        del self.sensors["rgb"]
+
+
+def test_benchmark_runs_in_a_script_as_the_page_has_it(tmp_path):
+    """Without a guard around the call, of an agent that the script defines, or that is typed in."""
+    script = (
+        "import mitigate\n"
+        f"{inspect.getsource(Straight)}"
+        "FORWARD, STOP = 1, 0\n"
+        "made = mitigate.benchmark(Straight(), episodes=40, suite=['flare'],\n"
+        "                          options=['env.size=8'])\n"
+        "print('reached', made.episodes)\n"
+    )
+    (tmp_path / "mine.py").write_text(script, encoding="utf-8")
+    for call, name in ((["mine.py"], "file"), (["-c", script], "typed")):
+        done = subprocess.run(
+            [sys.executable, *call],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHON_CPU_COUNT": "2"},
+            capture_output=True,
+            text=True,
+        )
+        assert "reached 40" in done.stdout, (name, done.stderr)
+        shutil.rmtree(tmp_path / "runs")
+
+
 @pytest.mark.parametrize(
     ("agent", "options", "words"),
     [
@@ -274,6 +311,10 @@ def test_benchmark_knows_an_agent_by_the_networks_it_holds_and_says_what_it_cann
         (Straight(), {"severity": 0}, "at severity 0 corrupts nothing"),
         (Straight(), {"name": "x" * 201}, "name must be a line of at most 200"),
         (Straight(), {"training_data": "x" * 2001}, "training_data must be"),
+        (Straight(), {"listed": []}, "listed lists no episode"),
+        (Straight(), {"world": ApartmentsWorld(16)}, "world is a ApartmentsWorld: give what makes"),
+        (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark shows only"),
+        (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "give workers=1"),
     ],
 )
 def test_benchmark_says_what_is_wrong_before_anything_walks(
