@@ -160,9 +160,12 @@ def _files(path: Path) -> list[Path]:
 def _holds_rows(path: Path) -> bool:
     try:
         with open_text(path) as file:
-            first = _parse(file.readline(LONGEST_LINE + 1))
+            line = file.readline(LONGEST_LINE + 1)
     except (UnicodeDecodeError, OSError):
         return True  # damaged: let read() say so
+    first = _parse(line)
+    if first is None and line.strip() and len(line) <= LONGEST_LINE:
+        return True
     return isinstance(first, dict) and IDENTITY.keys() <= first.keys()
 
 
