@@ -168,6 +168,8 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
         return f"{key}={value} has the wrong type: {key} must be {KINDS.get(kind, kind)}."
     if override is not None:
         key, _, value = override.partition("=")
+        if "not a ListConfig" in text:
+            return f"{key}={value} has the wrong type: {key} must be a list, such as [{value}]."
         return _misfit(key, value, _chosen_by(options, primary))
     return " ".join(str(error).split())
 
