@@ -128,11 +128,11 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     check_walks(agent)
     front, world = guard.label(cfg.safeguard), build.maker(cfg.env.world)
-    restorer = restorer_of(cfg.restore)
+    sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
+    restorer = restorer_of(cfg.restore, sensors)
     before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
     before = [part for part in before if part != "none"]
     name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
-    sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
     check_sensors(met, sensors, cfg.env.name)
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     with FolderLock(out):

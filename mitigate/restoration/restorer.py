@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -141,9 +141,16 @@ class Restorer(nn.Module):
         folders.fill(self, folder)
 
 
-def restorer_of(folder: str | None) -> Restorer | None:
-    """The restorer of an option ``restore=``: none for None; else as :func:`load_restorer`."""
-    return None if folder is None else load_restorer(folder)
+def restorer_of(folder: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
+    """The restorer of an option ``restore=``: none for None; else as :func:`load_restorer`.
+    ValueError if it restores none of ``sensors``, which are what a world shows."""
+    made, shown = None if folder is None else load_restorer(folder), [*sensors]
+    if made is not None and not any(name in made.nets for name in shown):
+        raise ValueError(
+            f"The restorer {folder} is for {', '.join(made.nets)}, but the world shows "
+            f"{', '.join(shown)}: leave restore= out, or train one for these."
+        )
+    return made
 
 
 def load_restorer(folder: str | Path) -> Restorer:

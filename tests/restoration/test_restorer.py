@@ -13,7 +13,7 @@ import torch
 from mitigate.core.observation import DEPTH, RGB, Observation
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
 from mitigate.restoration import report, ring
-from mitigate.restoration.restorer import Restorer, load_restorer
+from mitigate.restoration.restorer import Restorer, load_restorer, restorer_of
 from mitigate.restoration.world import Restored
 from mitigate.worlds.world import Corrupted
 from tests.restoration.conftest import opened
@@ -194,6 +194,14 @@ def shipped(tmp_path_factory):
     copied = tmp_path_factory.mktemp("shipped") / "restorer"
     shutil.copytree(SHIPPED, copied)
     return load_restorer(copied)
+
+
+def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
+    Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
+    with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose"):
+        restorer_of(str(tmp_path / "mine"), (RGB, "pose"))
+    assert restorer_of(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
+    assert restorer_of(None, (RGB,)) is None
 
 
 @pytest.mark.parametrize(
