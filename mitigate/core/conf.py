@@ -80,10 +80,8 @@ def main(
             program()
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary, sys.argv[1:])}")
-    except ValueError as error:
-        sys.exit(f"error: {error}")
-    except OSError as error:
-        sys.exit(f"error: {error if error.strerror is None else _told(error)}")
+    except (ValueError, OSError) as error:
+        sys.exit(f"error: {said(error)}")
     except (MemoryError, RuntimeError, OverflowError) as error:
         told = _too_much(error)
         if not told:
@@ -119,8 +117,11 @@ class _Quieter:
         return getattr(self._stream, name)
 
 
-def _told(error: OSError) -> str:
-    """What the system said, of which file, and what may help."""
+def said(error: ValueError | OSError) -> str:
+    """An error in one paragraph: ours as it is; of the system's what it said, of which file, and
+    what may help."""
+    if not isinstance(error, OSError) or error.strerror is None:
+        return str(error)
     told = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         told += (
@@ -167,6 +168,8 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
         return f"{key}={value} has the wrong type: {key} must be {KINDS.get(kind, kind)}."
     if override is not None:
         key, _, value = override.partition("=")
+        if "not a ListConfig" in text:
+            return f"{key}={value} has the wrong type: {key} must be a list, such as [{value}]."
         return _misfit(key, value, _chosen_by(options, primary))
     return " ".join(str(error).split())
 

@@ -24,19 +24,30 @@ DIGITS = 12  # hex digits: 48 bits
 def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> str:
     """Return the hash of ``agent`` behind ``sensors``.
 
-    It covers the weights (names, types, shapes, values), the agent's class and ``settings()``
-    (vocabulary and all else that is no weight), what each sensor gives, and what stands in front of
-    the agent (``front``: the safeguard that repairs its instructions).
+    It covers the weights (names, types, shapes, values), also those of networks that an agent which
+    is none itself holds as attributes, the agent's class and ``settings`` (a mapping, or a method
+    that returns one: vocabulary and all else that is no weight), what each sensor gives, and what
+    stands in front of the agent (``front``: the safeguard that repairs its instructions).
     """
+    settings = getattr(agent, "settings", dict)
     held = {
         "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
-        "weights": weights_sha(agent) if isinstance(agent, nn.Module) else "",
-        "settings": getattr(agent, "settings", dict)(),
+        "weights": _weights(agent),
+        "settings": settings() if callable(settings) else settings,
         "sensors": {name: asdict(sensor) for name, sensor in sorted(sensors.items())},
         "front": front,
     }
     text = json.dumps(held, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
+
+
+def _weights(agent: Any) -> str | dict[str, str]:
+    """The hash of the weights of a network, or of each of those in the attributes of another
+    object; empty if there are none."""
+    if isinstance(agent, nn.Module):
+        return weights_sha(agent)
+    own = getattr(agent, "__dict__", {})
+    return {k: weights_sha(v) for k, v in own.items() if isinstance(v, nn.Module)} or ""
 
 
 def _plain(value: Any) -> Any:

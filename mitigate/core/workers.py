@@ -197,10 +197,12 @@ class _Crew:
         self.crew.remove(worker)
         self.deaths += 1
         if self.deaths > DEATHS:
+            own = " A script keeps what it calls under `if __name__ == '__main__':`, since each "
+            own += "worker reads it."
             raise WorkersDied(
                 f"A second worker process was {cause}. {self.done} of {self.total} jobs are "
                 f"finished. There were {self.size} workers: give fewer (workers=1 takes the least "
-                "memory), or free some memory."
+                f"memory), or free some memory.{own if cause.startswith('ended with') else ''}"
             )
         self.progress.say(
             f"A worker process was {cause}. What it had not finished "

@@ -33,21 +33,27 @@ OmegaConf.register_new_resolver("unseen", unseen_of, replace=True)
 
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
-    """Return one Corruption for each name or pair of names; ``clean`` has severity 0.
+    """Return one Corruption for each name or pair of names, once; ``clean`` has severity 0.
 
-    Raises ValueError for an unknown name, and for two severities of a pair.
+    Raises ValueError for no name, an unknown one, and two severities of a pair.
     """
     from mitigate.corruptions import CLEAN, Corruption
     from mitigate.corruptions.registry import known, parts
     from mitigate.corruptions.suite import check_severity
 
     allowed = ("clean", *known("rgb", "depth", "instruction"))
+    if not names:
+        raise ValueError(
+            "conditions=[] names none: give some, such as [clean,spatter], or null for the suite's."
+        )
     for part in (part for name in names for part in parts(name)):
         if part not in allowed:
             raise ValueError(unknown("condition", part, allowed))
     severity = check_severity(severity)  # also where all conditions are clean
     depth = severity if severity_depth is None else check_severity(severity_depth)
-    found = [CLEAN if name == "clean" else Corruption(name, severity) for name in names]
+    found = [
+        CLEAN if name == "clean" else Corruption(name, severity) for name in dict.fromkeys(names)
+    ]
     for place, corruption in enumerate(found):
         if corruption.modality == "depth":
             found[place] = Corruption(corruption.name, depth)

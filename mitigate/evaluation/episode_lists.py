@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from omegaconf import DictConfig
 
 from mitigate.core.files import find
 from mitigate.core.names import unknown
+
+if TYPE_CHECKING:
+    from mitigate.worlds.episodes import Episode
 
 GOLDEN = (5**0.5 - 1) / 2
 
@@ -28,12 +33,12 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
     listed = list(read_episodes(find(env.episodes[split])))
-    _check_episodes(env.episodes[split], listed)
+    check_episodes(env.episodes[split], listed)
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
 
 
-def _check_episodes(source: str, listed: list) -> None:
+def check_episodes(source: str, listed: Sequence[Episode]) -> None:
     """Raise ValueError for a list that cannot be scored: rows name an episode by its id alone."""
     twice = [name for name, n in Counter(e.episode_id for e in listed).items() if n > 1]
     silent = [e.episode_id for e in listed if not e.instruction.text.strip()]

@@ -126,13 +126,13 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 
     node = build.settings_of(cfg.agent, cfg.checkpoint, overrides)
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
-    _check_walks(agent)
+    check_walks(agent)
     front, world = guard.label(cfg.safeguard), build.maker(cfg.env.world)
-    restorer = restorer_of(cfg.restore)
+    sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
+    restorer = restorer_of(cfg.restore, sensors)
     before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
     before = [part for part in before if part != "none"]
     name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
-    sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
     check_sensors(met, sensors, cfg.env.name)
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     with FolderLock(out):
@@ -172,8 +172,14 @@ def _check(cfg: DictConfig) -> None:
         )
 
 
-def _check_walks(agent: nn.Module) -> None:
-    if not (hasattr(agent, "reset") and hasattr(agent, "act")):
+def check_walks(agent: Any) -> None:
+    """Raise ValueError for what cannot be evaluated: it lacks ``reset`` or ``act``, or is the class
+    of an agent and not one."""
+    if isinstance(agent, type):
+        raise ValueError(
+            f"{agent.__name__} is a class and walks no episodes: give an object of it."
+        )
+    if not all(callable(getattr(agent, name, None)) for name in ("reset", "act")):
         raise ValueError(
             f"A {type(agent).__name__} walks no episodes: it has no reset() and act(). Choose an "
             "agent that does (agent=..., docs/agents.md)."

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import warnings
 from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
@@ -121,18 +122,33 @@ def missing(rows: Iterable[Row], wanted: Iterable[Row]) -> list[Row]:
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:
-    """Return the rows of files and of all row files under folders, upserted in that order.
+    """Return the rows of files and of all row files under folders, upserted in that order; warn of
+    those that say another success or SPL than one before.
 
     In a folder, JSON lines of another kind are passed over. Raises FileNotFoundError if a path
     does not exist or a folder holds no rows.
     """
-    return upsert(*(read(file) for path in paths for file in _files(Path(path))))
+    held: dict[tuple, Row] = {}
+    other: list[Row] = []
+    for row in chain.from_iterable(read(file) for path in paths for file in _files(Path(path))):
+        before = held.get(identity(row), row)
+        other += [row] if any(before[key] != row[key] for key in ("success", "spl")) else []
+        held[identity(row)] = row
+    if other:
+        warnings.warn(
+            f"{len(other)} rows say another success or SPL than one before of the same agent, "
+            f"episode and condition (first {other[0]['name']}, episode {other[0]['episode_id']}, "
+            f"{other[0]['corruption']}): the last counts. Name the files of one evaluation.",
+            stacklevel=2,
+        )
+    return list(held.values())
 
 
 def _files(path: Path) -> list[Path]:
     if not path.is_dir():
         return [path]
-    found = [p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and _holds_rows(p)]
+    named = (p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and not p.is_dir())
+    found = [p for p in named if _holds_rows(p)]
     if not found:
         raise FileNotFoundError(
             f"No result rows under {path}: no {' or '.join(SUFFIXES)} file there begins with a "
@@ -144,9 +160,12 @@ def _files(path: Path) -> list[Path]:
 def _holds_rows(path: Path) -> bool:
     try:
         with open_text(path) as file:
-            first = _parse(file.readline(LONGEST_LINE + 1))
+            line = file.readline(LONGEST_LINE + 1)
     except (UnicodeDecodeError, OSError):
         return True  # damaged: let read() say so
+    first = _parse(line)
+    if first is None and line.strip() and len(line) <= LONGEST_LINE:
+        return True
     return isinstance(first, dict) and IDENTITY.keys() <= first.keys()
 
 
@@ -159,7 +178,7 @@ def _parse(line: str) -> Any:
 
 def _problem(row: Any) -> str:
     if not isinstance(row, dict):
-        return "is not a JSON object"
+        return f"is not a JSON object of finite numbers and at most {LONGEST_LINE} characters"
     lacking = [key for key in REQUIRED if key not in row]
     if lacking:
         return f"lacks {', '.join(lacking)}"

@@ -29,11 +29,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m mitigate.table", description=__doc__)
     parser.add_argument("rows", nargs="+", metavar="ROWS", help="row files or run folders")
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
-    options = parser.parse_args(argv)
+    options = parser.parse_intermixed_args(argv)
     try:
         written = run(options.rows, options.out)
-    except (FileNotFoundError, ValueError) as error:
-        print(f"table: {error}", file=sys.stderr)
+    except (OSError, ValueError) as error:
+        from mitigate.core.conf import said
+
+        print(f"table: {said(error)}", file=sys.stderr)
         return 2
     print(written[0].read_text(encoding="utf-8"))
     print("\n".join(f"wrote {path}" for path in written))

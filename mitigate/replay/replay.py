@@ -241,7 +241,7 @@ def replay(
             pictures += _picture(
                 name, agent, drives, met, found[name], answers, seed, out, restorer
             )
-    text = report.table(found, severity, sum(steps), len(steps))
+    text = report.table(found, severity, sum(steps), len(steps), restorer)
     with atomic_text(out / TABLE) as table:
         table.write(text)
     print(text.partition("\nFalse stops")[0])

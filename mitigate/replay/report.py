@@ -18,6 +18,7 @@ from mitigate.evaluation.plots import COLOURS, DPI
 from mitigate.evaluation.sections import label
 from mitigate.replay.changes import Changes
 from mitigate.replay.walk import ACTIONS, Answers
+from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.recorded import Recording
 
 Found = Mapping[str, Mapping[str, Changes]]  # agent -> condition -> changes
@@ -26,14 +27,18 @@ WIDE = 800  # pixels of a cell, from which there is one in a row
 SIDE = 160  # pixels: height of a view in a picture
 
 
-def table(found: Found, severity: float, steps: int, drives: int) -> str:
-    """The report as Markdown: one block for changed decisions, one for the rest."""
+def table(
+    found: Found, severity: float, steps: int, drives: int, restorer: Restorer | None = None
+) -> str:
+    """The report as Markdown: one block for changed decisions, one for the rest. restorer: which
+    the frames went through."""
     agents = list(found)
     conditions = [name for name in _conditions(found) if name != "clean"]
+    behind = f" Frames went through the restorer `{restorer.hash}`." if restorer else ""
     lines = [
         f"Decisions that a corruption of severity {severity:g} changes, in %, of {steps} steps in "
         f"{drives} drive{'s' * (drives > 1)}, against the same agent on clean frames. Brackets are "
-        "95 % bootstrap intervals over runs of ten steps.",
+        f"95 % bootstrap intervals over runs of ten steps.{behind}",
         "",
         "| condition | " + " | ".join(agents) + " |",
         "|---|" + "---:|" * len(agents),

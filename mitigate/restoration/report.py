@@ -16,6 +16,8 @@ from typing import Any, NamedTuple
 
 import cv2
 import numpy as np
+from hydra.errors import HydraException
+from omegaconf.errors import OmegaConfBaseException
 from torch import nn
 
 from mitigate.core import conf
@@ -198,11 +200,22 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", default="runs/restoration", help="folder of table and picture")
     options = parser.parse_args(arguments)
-    cfg = conf.load_config("evaluate", [f"suite={options.suite}"])
+    if options.count < 1:
+        raise ValueError(f"--count {options.count}: give 1 instant or more.")
+    chosen = [f"suite={options.suite}"]
+    try:
+        cfg = conf.load_config("evaluate", chosen)
+    except (HydraException, OmegaConfBaseException) as error:
+        raise ValueError(conf.explain(error, "evaluate", chosen)) from None
     met = conditions(list(cfg.suite.conditions), options.severity, None)
     restorer = load_restorer(options.folder)
-    count, seed = max(1, options.count), options.seed
-    seen = instants(cfg.env, options.split, count, seed, list(restorer.nets))
+    seed = options.seed
+    if not any({*corruption.modalities} & {*restorer.nets} for corruption in met):
+        raise ValueError(
+            f"suite={options.suite} corrupts no frames of {', '.join(restorer.nets)}: choose "
+            "another, such as full or unseen_val."
+        )
+    seen = instants(cfg.env, options.split, options.count, seed, list(restorer.nets))
     about = f"{options.split}, suite {options.suite}, severity {options.severity:g}"
     write(restorer, seen, met, seed, Path(options.out), about)
 
@@ -210,5 +223,5 @@ def main(arguments: Sequence[str] | None = None) -> None:
 if __name__ == "__main__":
     try:
         main()
-    except (ValueError, FileNotFoundError) as error:
-        sys.exit(f"error: {error}")
+    except (ValueError, OSError) as error:
+        sys.exit(f"error: {conf.said(error)}")

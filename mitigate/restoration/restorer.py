@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from mitigate.core.files import find
 from mitigate.core.identity import DIGITS
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
+from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.suite import MOST_VIEWS
 from mitigate.restoration import folder as folders
 from mitigate.restoration.frames import CHANNELS, SensorRestorer
@@ -91,7 +92,8 @@ class Restorer(nn.Module):
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """A frame of one instant: uint8 [H, W, 3] or [V, H, W, 3], or float32 metres [H, W],
         [H, W, 1] or [V, H, W, 1]. What the gate takes for clean is returned as it came, else a new
-        array of the same shape and dtype. Raises KeyError, TypeError and ValueError."""
+        array of the same shape and dtype. Raises KeyError for another sensor, TypeError and
+        ValueError for another dtype or shape, and for depth that is no metres."""
         net, views = self._net(sensor), self._views(sensor, np.asarray(frame))
         changed, made = net.judged(torch.from_numpy(views))
         return made.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
@@ -125,7 +127,10 @@ class Restorer(nn.Module):
                 f"A {sensor} frame is [H, W, {channels}], or up to {MOST_VIEWS} views of one "
                 f"instant [V, H, W, {channels}], but the shape is {list(frame.shape)}."
             )
-        return np.require(frame.reshape(shape), kind, ["C", "W"])
+        views = np.require(frame.reshape(shape), kind, ["C", "W"])
+        if sensor == DEPTH:
+            check_unit(views[..., 0], DepthSensor(z_max=self._net(sensor).far))
+        return views
 
     def save(self, folder: str | Path, *, half: bool = False) -> None:
         """Write a folder that :func:`load_restorer` reads; ``half``: weights in float16."""
@@ -136,9 +141,16 @@ class Restorer(nn.Module):
         folders.fill(self, folder)
 
 
-def restorer_of(folder: str | None) -> Restorer | None:
-    """The restorer of an option ``restore=``: none for None; else as :func:`load_restorer`."""
-    return None if folder is None else load_restorer(folder)
+def restorer_of(folder: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
+    """The restorer of an option ``restore=``: none for None; else as :func:`load_restorer`.
+    ValueError if it restores none of ``sensors``, which are what a world shows."""
+    made, shown = None if folder is None else load_restorer(folder), [*sensors]
+    if made is not None and not any(name in made.nets for name in shown):
+        raise ValueError(
+            f"The restorer {folder} is for {', '.join(made.nets)}, but the world shows "
+            f"{', '.join(shown)}: leave restore= out, or train one for these."
+        )
+    return made
 
 
 def load_restorer(folder: str | Path) -> Restorer:

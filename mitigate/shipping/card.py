@@ -11,12 +11,12 @@ from typing import Any
 
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
-from mitigate.core.files import find, sha256
-from mitigate.core.names import markdown_of
+from mitigate.core.files import ROOT, find, sha256
+from mitigate.core.names import markdown_of, short
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import Section, label, sections
+from mitigate.evaluation.sections import Retained, Section, label, sections
 from mitigate.shipping import hardened
 from mitigate.shipping.front_matter import front_matter
 
@@ -27,8 +27,10 @@ LICENCE, UNKNOWN = "Apache-2.0", "other"  # of our agents; Hugging Face's word w
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
     """Return what the resolved config ``cfg`` of a run and this checkout say about ``agent``.
 
-    Raises FileNotFoundError if the base or a teacher that the run names is gone.
+    Raises FileNotFoundError if the base or a teacher that the run names is gone, ValueError for an
+    entry of ``cfg`` that no training writes.
     """
+    _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
     trained_at = {**cfg, **(cfg.get("schedule") or {})}
     kind = str((cfg.get("agent") or {}).get("_target_", hardened.TARGET))
@@ -57,9 +59,14 @@ def reference(weights: str) -> dict[str, str]:
 
 
 def commit() -> str | None:
-    """Return the git commit of the checkout, or None outside one."""
+    """Return the git commit of the checkout; None outside one, and without git."""
+    if not (ROOT / ".git").exists():  # installed: a repository around it is another's
+        return None
     command = ["git", "rev-parse", "HEAD"]
-    found = subprocess.run(command, cwd=Path(__file__).parent, capture_output=True, text=True)
+    try:
+        found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+    except OSError:
+        return None
     return found.stdout.strip() or None if found.returncode == 0 else None
 
 
@@ -97,7 +104,7 @@ def _entry(section: Section) -> dict[str, Any]:
         "seeds": list(grid.seeds[column, section.severity]),
         "clean": {metric: _interval(found) for (_, metric), found in section.clean.items()},
         "PRS": {
-            f"PRS-{metric} ({block})": _interval(found.estimate)
+            f"PRS-{metric} ({_heading(section, block, found)})": _interval(found.estimate)
             for (_, block, metric), found in section.retained.items()
         },
         "SR": {
@@ -107,6 +114,12 @@ def _entry(section: Section) -> dict[str, Any]:
         },
         "incomplete": sorted({gap.corruption for gap in section.gaps}),
     }
+
+
+def _heading(section: Section, block: str, found: Retained) -> str:
+    """What a PRS is over: a block, and how many of its corruptions if those are not all."""
+    held, whole = len(found.corruptions), section.whole(block)
+    return block if held >= whole else f"{block}, {held} of {whole}"
 
 
 def _interval(found: Estimate) -> list[float | None]:
@@ -153,7 +166,7 @@ def _table(entry: dict[str, Any]) -> str:
     return (
         f"## {markdown_of(entry['split'])}, severity {entry['severity']:g}\n\n"
         f"{entry['episodes']} episodes, seed {', '.join(map(str, entry['seeds']))}, "
-        f"suite {entry['suite']}. "
+        f"suite {markdown_of(entry['suite'])}. "
         f"Success: {markdown_of(entry['rule'])}.\n\n" + "\n".join(lines) + gaps
     )
 
@@ -191,6 +204,33 @@ def _use(card: dict[str, Any]) -> str:
         f"{checked['float16']:.2g}.\n\nMilliseconds, fastest of {times['calls']} "
         f"calls and median processor time, threads: {times['threads']}.\n\n{table}"
     )
+
+
+def _check(cfg: dict[str, Any]) -> None:
+    """Raise ValueError for what a card would repeat of a config that may be anybody's."""
+    schedule = cfg.get("schedule") or {}
+    held = {**cfg, **(schedule if isinstance(schedule, dict) else {})}
+    name, stages = held.get("name"), held.get("stages") or {}
+    good = {
+        "name": isinstance(name, str) and name.isprintable() and "`" not in name,
+        "severity": _is_span(held.get("severity")),
+        "severity_depth": held.get("severity_depth") is None or _is_span(held["severity_depth"]),
+        "seed": type(held.get("seed")) is int,
+        "schedule": isinstance(schedule, dict),
+        "stages": isinstance(stages, dict)
+        and all(isinstance(stage or {}, dict) for stage in stages.values()),
+    }
+    for key in [key for key, fine in good.items() if not fine]:
+        raise ValueError(
+            f"The run's config.yaml says {key}={short(held.get(key))}, which no training writes: "
+            "export the run's folder as `make train` left it."
+        )
+
+
+def _is_span(severity: Any) -> bool:
+    """Whether it is a number, or a list of some."""
+    found = severity if isinstance(severity, list) and severity else [severity]
+    return all(type(number) in (int, float) for number in found)
 
 
 def _precision(stages: dict[str, Any]) -> str:

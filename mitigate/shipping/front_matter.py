@@ -34,7 +34,21 @@ def front_matter(card: dict[str, Any]) -> str:
     results = [_result(entry) for entry in card["metrics"]]
     if results:
         held["model-index"] = [{"name": card["name"], "results": results}]
-    return f"---\n{yaml.safe_dump(held, sort_keys=False, allow_unicode=True)}---\n"
+    text = yaml.dump(held, Dumper=_Quoting, sort_keys=False, allow_unicode=True)
+    return f"---\n{text}---\n"
+
+
+class _Quoting(yaml.SafeDumper):
+    """Quotes texts that YAML 1.2, which the hub reads, takes for numbers and PyYAML's 1.1 does
+    not: 1e3, 08."""
+
+
+def _represent(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+    style = "'" if re.match(r"[-+.]*\d", text) else None
+    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style)
+
+
+_Quoting.add_representer(str, _represent)
 
 
 def _result(entry: dict[str, Any]) -> dict[str, Any]:

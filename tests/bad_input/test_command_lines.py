@@ -83,6 +83,8 @@ WRONG = {
         ("workers=10000000", "workers=10000000"),
         (f"seed={HUGE}", "seed is too great"),
         ("severity=inf", "everity"),
+        ("conditions=spatter+mask", "a list, such as [spatter+mask]"),
+        ("conditions=[]", "conditions=[] names none"),
         ("conditions=[../../x]", "no condition"),
         ("conditions=[clean,'a|b']", "no condition"),
         ("checkpoint=/etc", "no weights"),

@@ -125,3 +125,8 @@ def test_conditions_of_an_evaluation_may_be_pairs_at_one_severity():
 def test_the_command_line_takes_a_pair():
     cfg = conf.load_config("evaluate", ["conditions=[clean,low_light+missing_data]"])
     assert list(cfg.conditions) == ["clean", "low_light+missing_data"]
+
+
+def test_a_condition_that_is_named_twice_is_met_once():
+    found = evaluate.conditions(["clean", "spatter+flare", "clean", "spatter+flare"], 0.6, None)
+    assert found == [CLEAN, Corruption("spatter+flare", 0.6)]

@@ -172,3 +172,29 @@ def test_damaged_gzip_and_a_bomb_are_refused(tmp_path):
             rows.read(path)
         with pytest.raises(ValueError, match="is damaged"):
             rows.gather([tmp_path])
+
+
+def test_rows_that_contradict_one_before_are_told_and_repeated_ones_are_not(tmp_path, recwarn):
+    first, second = cell(5), cell(7)
+    rows.write(tmp_path / "a.jsonl", first)
+    rows.write(tmp_path / "b.jsonl", second)
+    assert rows.gather([tmp_path / "a.jsonl", tmp_path / "a.jsonl"]) == first and not recwarn.list
+    with pytest.warns(UserWarning, match="2 rows say another success.*first base, episode 5"):
+        assert rows.gather([tmp_path]) == second
+
+
+def test_a_folder_called_like_a_row_file_is_a_folder(tmp_path):
+    (tmp_path / "old.jsonl").mkdir()
+    rows.write(tmp_path / "old.jsonl/rows.jsonl", cell(5))
+    assert rows.gather([tmp_path]) == cell(5)
+
+
+def test_a_file_whose_first_line_is_damaged_is_not_passed_over(tmp_path):
+    rows.write(tmp_path / "a/rows.jsonl", cell(5))
+    rows.write(tmp_path / "b/rows.jsonl", cell(5, name="hard"))
+    file = tmp_path / "b/rows.jsonl"
+    file.write_bytes(b"\0\0" + file.read_bytes()[2:])
+    with pytest.raises(ValueError, match=r"b/rows\.jsonl, line 1 is not a JSON object"):
+        rows.gather([tmp_path])
+    file.write_bytes(b"")  # an evaluation that wrote none yet
+    assert rows.gather([tmp_path]) == cell(5)

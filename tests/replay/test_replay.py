@@ -13,8 +13,10 @@ import pytest
 from mitigate.agents.recurrent.odometer import Odometer
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, RGB, RIGHT, STOP
 from mitigate.corruptions import CLEAN, Corruption
+from mitigate.replay import report
 from mitigate.replay.changes import compare
 from mitigate.replay.walk import Answers, walk
+from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.recorded import Recording
 from mitigate.worlds.recorded.steps import NONE, answered
 
@@ -67,6 +69,16 @@ def test_a_restorer_goes_over_the_frames_before_the_agent_does():
     found = walk(ByBrightness(), drive(), dark, 0, keep=[2], restorer=brightened)
     assert found.actions.tolist() == [FORWARD] * T and len(looks) == T
     assert (found.seen[2][RGB] == 200).all()
+
+
+def test_the_table_says_which_restorer_the_frames_went_through():
+    made = drive()
+    answers = {made.name: walk(ByBrightness(), made, CLEAN, 0)}
+    found = {"mine": {"clean": compare([made], answers, answers)}}
+    restorer = Restorer(sensors=[RGB], width=4)
+    said = f"Frames went through the restorer `{restorer.hash}`."
+    assert said in report.table(found, 0.6, T, 1, restorer)
+    assert "restorer" not in report.table(found, 0.6, T, 1)
 
 
 def test_where_nobody_knows_who_drove_all_walks_are_told_the_clean_answers():

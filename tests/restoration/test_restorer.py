@@ -12,8 +12,8 @@ import torch
 
 from mitigate.core.observation import DEPTH, RGB, Observation
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
-from mitigate.restoration import ring
-from mitigate.restoration.restorer import Restorer, load_restorer
+from mitigate.restoration import report, ring
+from mitigate.restoration.restorer import Restorer, load_restorer, restorer_of
 from mitigate.restoration.world import Restored
 from mitigate.worlds.world import Corrupted
 from tests.restoration.conftest import opened
@@ -63,6 +63,7 @@ def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
     [
         (RGB, np.zeros((8, 8, 3), np.float32), "uint8"),
         (DEPTH, np.zeros((8, 8, 1), np.uint16), "float32 metres"),
+        (DEPTH, np.full((8, 8), 2500, np.float32), "in millimetres"),
         (RGB, np.zeros((8, 8), np.uint8), r"\[H, W, 3\]"),
         (RGB, np.zeros((37, 8, 8, 3), np.uint8), "36 views"),
         ("sound", np.zeros(3), "rgb, depth, not for sound"),
@@ -193,6 +194,29 @@ def shipped(tmp_path_factory):
     copied = tmp_path_factory.mktemp("shipped") / "restorer"
     shutil.copytree(SHIPPED, copied)
     return load_restorer(copied)
+
+
+def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
+    Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
+    with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose"):
+        restorer_of(str(tmp_path / "mine"), (RGB, "pose"))
+    assert restorer_of(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
+    assert restorer_of(None, (RGB,)) is None
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--suite", "fulll"], "no suite 'fulll'. Did you mean full?"),
+        (["--suite", "instructions"], "suite=instructions corrupts no frames of rgb, depth"),
+        (["--count", "0"], "--count 0: give 1 instant or more"),
+        (["--split", "nowhere"], "no split 'nowhere'"),
+    ],
+)
+def test_the_report_says_what_is_wrong_and_writes_nothing(tmp_path, options, words):
+    with pytest.raises(ValueError, match=words):
+        report.main([str(SHIPPED), "--out", str(tmp_path / "out"), *options])
+    assert not [*tmp_path.iterdir()]
 
 
 def test_the_shipped_restorer_leaves_a_clean_panorama_alone(shipped, panorama):

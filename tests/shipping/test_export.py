@@ -24,6 +24,7 @@ from mitigate.core import build, checkpoint
 from mitigate.core.files import sha256
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
 from mitigate.evaluation import rows
+from mitigate.shipping import card as cards
 from mitigate.shipping import export, hardened, programs
 from mitigate.shipping.card import metrics
 
@@ -143,7 +144,7 @@ def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
     (entry,) = card["metrics"]
     assert entry["episodes"] == 8 and entry["clean"]["SR"][0] == 0.75
     assert entry["clean"]["SR"][1] < 0.75 < entry["clean"]["SR"][2]
-    assert entry["PRS"]["PRS-SR (RGB)"][0] == 1.0
+    assert entry["PRS"]["PRS-SR (RGB, 1 of 8)"][0] == 1.0  # spatter alone
     text = (folder / "README.md").read_text()
     assert "Clean SR | 0.750 [" in text and "spatter" in text.lower()
     for kind in ("eager", "exported"):
@@ -375,6 +376,36 @@ def test_rows_of_another_agent_are_no_metrics_of_this_one(place, tmp_path):
             place / "runs/whole", "mine", out=tmp_path / "out", rows=[tmp_path / "rows.jsonl"]
         )
     assert metrics(rows.read(tmp_path / "rows.jsonl"), {"abc"}) == []
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("name", 5),
+        ("name", "a`b"),
+        ("name", "a\nb"),
+        ("severity", "high"),
+        ("severity", None),
+        ("severity", []),
+        ("severity_depth", [0.3, "1"]),
+        ("seed", "<b>"),
+        ("schedule", "per_frame"),
+        ("stages", [1]),
+        ("stages", {"one": "two"}),
+    ],
+)
+def test_what_no_training_writes_into_a_config_is_told_by_its_key(key, value):
+    cfg = {"name": "tiny", "severity": 0.6, "severity_depth": None, "seed": 3} | {key: value}
+    with pytest.raises(ValueError, match=rf"config\.yaml says {key}="):
+        cards.facts(cfg, None)
+
+
+def test_the_commit_is_that_of_this_checkout_or_not_stated(monkeypatch, tmp_path):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert cards.commit() is None  # no git
+    monkeypatch.undo()
+    monkeypatch.setattr(cards, "ROOT", tmp_path)
+    assert cards.commit() is None  # installed below a repository that is another's
 
 
 def test_a_missing_teacher_is_told(place, tmp_path):

@@ -57,6 +57,20 @@ def test_a_card_without_metrics_or_with_strange_names_is_one_too():
     assert "PRS-SR (RGB)" not in {result.metric_name for result in data.eval_results}
 
 
+@pytest.mark.parametrize("name", ["1e3", "08", "0o17", "-1e5", "1.e3", ".5e3", "on", "null", "2.0"])
+def test_a_text_stays_one_to_readers_of_yaml_of_today(name):
+    card = card_of(SHIPPED[0]) | {"name": name, "recipe": name}
+    text = front_matter(card)
+    assert f"name: '{name}'\n" in text and ModelCard(text).data.model_name == name
+
+
+def test_a_page_shows_the_words_of_rows_as_they_are():
+    card = card_of(SHIPPED[0])
+    card["metrics"][0]["suite"] = "1.1 <script>alert(1)</script> `x`"
+    text = ModelCard(readme(card)).text
+    assert r"suite 1.1 \<script>alert(1)\</script> \`x\`." in text
+
+
 def test_renewing_a_folder_changes_its_readme_and_the_sums_alone(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
     before = card_of(folder)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import pickle
 import re
+import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+from hydra.errors import HydraException
+from omegaconf.errors import OmegaConfBaseException
 from torch import nn
 
 from mitigate.core import conf, seeding
@@ -17,7 +21,9 @@ from mitigate.core.progress import duration
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.episode_lists import check_episodes
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
+from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.scale.launcher import count
@@ -38,7 +44,7 @@ def benchmark(
     suite: str | Sequence[str] = "full",
     severity: float = 0.6,
     seed: int = 0,
-    workers: int | None = None,
+    workers: int | None = 1,
     options: Sequence[str] = (),
     world: Callable[[], World] | None = None,
     listed: Sequence[Episode] | None = None,
@@ -52,32 +58,33 @@ def benchmark(
     it was stopped.
 
     Args:
-        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights,
-            such as "checkpoints/base".
+        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
         name: heading of the entry; None: of the weights' folder, or the agent's class.
         split: list of episodes of the world; None: its own first. episodes: how many, spread over
             the list; None: all, as entries of the leaderboard have.
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
-            the corruptions. workers: processes, None: one a core if there is work for them.
+            the corruptions. workers: processes; None: one a core if there is work. More than one
+            read the script again, which keeps its call under ``if __name__ == "__main__":``.
         options: of ``mitigate evaluate``, such as "agent=recurrent" or "env.views=1".
         world, listed: makes a world of your own, and its episodes, in place of those of
             ``options``.
         training_data, link: for the entry. out: folder of the rows; None: one in
             ``runs/benchmark``.
-    Raises ValueError for unknown names and numbers out of range, FileNotFoundError for missing
-    weights.
+    Raises ValueError for what is no agent, unknown names, numbers out of range and texts that an
+    entry cannot hold, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(suite, severity, seed, options)
     agent, name = _agent(agent, name, cfg, seed)
+    check_texts(name=name, training_data=training_data, link=link)
     split, made = split or cfg.split, world or maker(cfg.env.world)
     chosen = evaluation.episodes(cfg.env, split, episodes) if listed is None else list(listed)
-    if not chosen:
-        raise ValueError("listed holds no episode: give some, or leave it out.")
-    _tell(agent, made(), chosen, len(met), workers)
-    folder = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}")
-    file = folder / evaluation.ROWS
+    check_episodes("listed" if listed is not None else split, chosen)
+    _check_world(made, met)
+    _tell(agent, made, chosen, len(met), workers)
+    file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / evaluation.ROWS
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
-    with FolderLock(folder):
+    _tell_reused(agent, file)
+    with FolderLock(file.parent):
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
         rows,
@@ -96,11 +103,17 @@ def _conditions(
     """Return the config of an evaluation, and the conditions of the suite, clean first."""
     seeding.check(seed)
     named = [f"suite={suite}"] if isinstance(suite, str) else []
-    cfg = conf.load_config("evaluate", [*options, *named])
+    try:
+        cfg = conf.load_config("evaluate", [*options, *named])
+    except (HydraException, OmegaConfBaseException) as error:
+        raise ValueError(conf.explain(error, "evaluate", [*options, *named])) from None
     names = list(cfg.suite.conditions) if isinstance(suite, str) else list(suite)
     met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
-    if all(corruption.name == "clean" for corruption in met):
-        raise ValueError(f"suite={suite!r} corrupts nothing: name a suite or corruptions.")
+    if all(corruption.severity == 0 for corruption in met):
+        raise ValueError(
+            f"suite={suite!r} at severity {severity:g} corrupts nothing: name a suite or "
+            "corruptions, and a severity above 0."
+        )
     return cfg, met
 
 
@@ -109,25 +122,69 @@ def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]
     if isinstance(agent, (str, Path)):
         loaded = evaluation.load(cfg.agent, str(agent), seed)
         return loaded, name or evaluation.name_of(str(agent))
+    evaluation.check_walks(agent)
     return agent, name or type(agent).__name__
+
+
+def _tell_reused(agent: Any, file: Path) -> None:
+    """Print that rows of before count, where they may be of an agent that was changed since."""
+    if file.exists() and not hasattr(agent, "settings"):
+        print(
+            f"benchmark: rows in {file} count, unless they are of another class or other weights: "
+            f"a {type(agent).__name__} has no settings() that says more. If it was changed, give "
+            "it some, or name another folder (out=...).",
+            flush=True,
+        )
 
 
 def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
+def _check_world(make_world: Any, met: Sequence[Corruption]) -> None:
+    if not callable(make_world):
+        raise ValueError(
+            f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
+            "since each process has its own."
+        )
+    world = make_world()
+    evaluation.check_sensors(met, world.sensors, type(world).__name__)
+
+
+def _check_copies(*things: Any) -> None:
+    """Raise ValueError for what other processes cannot be given."""
+    main = Path(getattr(sys.modules["__main__"], "__file__", None) or "")
+    typed = [thing for thing in things if type(thing).__module__ == "__main__"]
+    try:
+        if typed and not main.is_file():
+            raise TypeError(f"a {type(typed[0]).__name__} was typed in, and is in no file")
+        pickle.dumps(things)
+    except (pickle.PicklingError, AttributeError, TypeError, RecursionError) as error:
+        raise ValueError(
+            f"Other processes cannot be given a copy of the agent or its world ({error}): give "
+            "workers=1, or define them at the head of a module."
+        ) from None
+
+
 def _tell(
-    agent: Any, world: World, episodes: Sequence[Episode], conditions: int, workers: int | None
+    agent: Any,
+    make_world: Callable[[], World],
+    episodes: Sequence[Episode],
+    conditions: int,
+    workers: int | None,
 ) -> None:
     """Print how much there is to walk, and about how long it takes, from a few clean walks."""
     total = len(episodes) * conditions
+    processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
+    if processes > 1:
+        _check_copies(agent, make_world)
+    world = make_world()
     if isinstance(agent, nn.Module):
         agent.eval()
     for episode in episodes[:TIMED]:  # the first one loads what is needed
         started = time.monotonic()
         run_episode(agent, world, episode, CLEAN, 0)
         each = time.monotonic() - started
-    processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
     print(
         f"benchmark: {len(episodes)} episodes x {conditions} conditions = {total} walks of about "
         f"{each:.2g} s on {processes} process{'es' * (processes > 1)}: about "

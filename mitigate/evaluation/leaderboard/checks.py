@@ -40,6 +40,13 @@ def problem(name: str, value: Any) -> str:
     return f"must be {told}, not {short(value)}" if told else ""
 
 
+def check_texts(**texts: Any) -> None:
+    """Raise ValueError for a text (name=..., link=...) that an entry cannot hold."""
+    for name, value in texts.items():
+        if wrong := problem(name, value):
+            raise ValueError(f"{name} {wrong}.")
+
+
 def _text(most: int, empty: bool = False) -> Callable[[Any], str]:
     def check(value: Any) -> str:
         good = isinstance(value, str) and len(value) <= most and (empty or value.strip() != "")

@@ -57,10 +57,16 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
 def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
     """Return how ``entry`` differs from what ``rows`` say, a line each; none if it does not.
 
+    Of ``rows``, those of its agents, their seeds and its conditions count; a file may hold more.
     Raises ValueError if they hold nothing of the entry.
     """
+    agents = {(one["agent"], one["seed"]) for one in entry.agents}
+    own = [row for row in rows if (row["agent"], row["seed"]) in agents]
+    if not own:
+        told = ", ".join(f"{agent} with seed {seed}" for agent, seed in sorted(agents))
+        raise ValueError(f"The rows hold none of {told:.300}.")
     again = entry_of(
-        rows,
+        [row for row in own if row["corruption"] in entry.SR],
         entry.name,
         severity=entry.severity,
         split=entry.split,
@@ -68,14 +74,22 @@ def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
         training_data=entry.training_data,
         link=entry.link,
         file=entry.rows["file"],
-        agents=[one["agent"] for one in entry.agents],
     )
-    said, found = asdict(entry), asdict(again)
+    said, found = _figures(entry), _figures(again)
     return [
-        f"{key} is {said[key]!r:.120}, but its rows say {found[key]!r:.120}"
-        for key in said
-        if key != "version" and not _same(said[key], found[key])
+        f"{key} is {said.get(key)!r:.120}, but its rows say {found.get(key)!r:.120}"
+        for key in said | found
+        if key != "version" and not _same(said.get(key), found.get(key))
     ]
+
+
+def _figures(entry: LeaderboardEntry) -> dict[str, Any]:
+    """Return the values of an entry by name, those of its mappings each by its own."""
+    held: dict[str, Any] = {}
+    for key, value in asdict(entry).items():
+        parts = value if isinstance(value, dict) else {}
+        held |= {f"{key}, {name},": own for name, own in parts.items()} or {key: value}
+    return held
 
 
 def _same(a: Any, b: Any) -> bool:
@@ -89,7 +103,9 @@ def _same(a: Any, b: Any) -> bool:
 
 
 def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
-    """Write the page of the entries in ``paths``; return its path. Errors as :func:`entries_of`."""
+    """Write the page of the entries in ``paths``; return its path. Errors as :func:`entries_of`
+    and ``document.check_out``."""
+    document.check_out(out)
     return document.write(render(entries_of(paths)), out)
 
 
@@ -154,8 +170,13 @@ def _named(paths: Sequence[Path | str]) -> str:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status: 2 for a bad input, 1 for a wrong entry."""
-    options = vars(_parser().parse_args(argv))
+    parser = _parser()
+    given, more = parser.parse_known_args(argv)  # which leaves words behind an option, as of "add"
+    options = vars(given)
     what = options.pop("what")
+    if unknown := [word for word in more if word.startswith("-")]:
+        parser.error(f"unrecognized arguments: {' '.join(unknown)}")
+    options["paths"] += more
     if what == "check":
         wrong: list[str] = []
         status = told("leaderboard", lambda: wrong.extend(check(options["paths"])))
@@ -166,6 +187,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = options.pop("paths")
     paths = [word for word in words if "=" not in word or Path(word).exists()]
     own = [word for word in words if word not in paths]
+    if not paths:
+        parser.error(f"add: name a row file; there is none of {', '.join(own)}.")
     return told("leaderboard", lambda: add(paths, options=own, **options))
 
 

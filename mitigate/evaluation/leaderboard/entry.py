@@ -56,8 +56,10 @@ class LeaderboardEntry:
     format: int = FORMAT
 
     def save(self, path: Path | str) -> Path:
-        """Write the entry to ``path`` as JSON, atomically."""
+        """Write the entry to ``path`` as JSON, atomically. Raises ValueError for what :func:`load`
+        would refuse."""
         text = json.dumps(asdict(self), indent=1, allow_nan=False)
+        _check(json.loads(text), path)
         with atomic_text(path) as file:
             file.write(_short_lines(text) + "\n")
         return Path(path)
@@ -82,6 +84,12 @@ def load(path: Path | str) -> LeaderboardEntry:
     if path.stat().st_size > LARGEST:
         raise ValueError(f"{path} has more than {LARGEST} bytes, as no entry has. {_AGAIN}")
     held = read_json(path, _AGAIN)
+    _check(held, path)
+    return LeaderboardEntry(**held | {n: tuple(held[n]) for n in ("agents", "sensors")})
+
+
+def _check(held: Any, path: Path | str) -> None:
+    """Raise ValueError, naming file and key, if ``held`` is no entry."""
     names = [one.name for one in fields(LeaderboardEntry)]
     if not isinstance(held, dict) or sorted(held) != sorted(names):
         raise ValueError(
@@ -91,7 +99,6 @@ def load(path: Path | str) -> LeaderboardEntry:
         wrong = problem(name, held[name])
         if wrong:
             raise ValueError(f"{path}: {name} {wrong}. {_AGAIN}")
-    return LeaderboardEntry(**held | {n: tuple(held[n]) for n in ("agents", "sensors")})
 
 
 def _words(found: Numbers) -> str:

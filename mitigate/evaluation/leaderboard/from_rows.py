@@ -28,16 +28,15 @@ def entry_of(
     training_data: str = "",
     link: str = "",
     file: str = "",
-    agents: Iterable[str] = (),
 ) -> LeaderboardEntry:
     """Return the entry of the rows whose column is ``name``, at one severity.
 
-    ``split`` and ``agents`` (hashes) may be left out where the rows are of one column. ``file``:
-    where they are, as the entry says. Raises ValueError if there are none, if they are of several
+    ``split`` may be left out where the rows are of one. ``file``: where they are, as the entry
+    says. Raises ValueError if there are none, if they are of several
     splits, lists, suites or rules, or of agents that are no training seeds of one another, and if a
     condition lacks episodes that others have.
     """
-    own = chosen(rows, name, severity, split, agents)
+    own = chosen(rows, name, severity, split)
     found = [part for part in sections(own) if part.blocks] or sections(own)
     grids = {(part.grid.heading, part.grid.suite, part.grid.rule) for part in found}
     if len(grids) > 1 or any(len(part.columns) > 1 for part in found):
@@ -72,21 +71,14 @@ def entry_of(
     )
 
 
-def chosen(
-    rows: Iterable[Row],
-    name: str,
-    severity: float,
-    split: str | None = None,
-    agents: Iterable[str] = (),
-) -> list[Row]:
-    """Return the rows of an entry: of the column ``name``, clean or at ``severity``; of ``agents``
-    alone, if any are given. Raises ValueError if there are none."""
-    held, own_agents = list(rows), set(agents)
+def chosen(rows: Iterable[Row], name: str, severity: float, split: str | None = None) -> list[Row]:
+    """Return the rows of an entry: of the column ``name``, clean or at ``severity``. Raises
+    ValueError if there are none."""
+    held = list(rows)
     names = {row["name"] for row in held}
     if name not in names:
         raise ValueError(unknown("agent in these rows", name, names))
     own = [row for row in held if row["name"] == name and split in (None, row["split"])]
-    own = [row for row in own if not own_agents or row["agent"] in own_agents]
     own = [row for row in own if row["severity"] in (0, severity)]
     if not any(row["severity"] == severity for row in own):
         raise ValueError(f"The rows of {name} hold no corruption at severity {severity:g}.")

@@ -34,13 +34,19 @@ def run(
         walk: (name in the rows, weights) of the agents whose walks are drawn, the plain one first.
         walks: how many episodes of ``options``' split they walk. seed: of the rows' keys that they
             walk by. options: of ``mitigate evaluate``, such as "split=val_seen".
-    Raises FileNotFoundError for a path without rows, ValueError for damaged rows and names that are
-    not in them.
+    Raises FileNotFoundError for a path without rows, ValueError for damaged rows, names that are
+    not in them, options without ``walk`` and an ``out`` that does not end in .html.
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document
     from mitigate.evaluation.page.report import report
 
+    document.check_out(out)  # before the walks, which take minutes
+    if options and not walk:
+        raise ValueError(
+            f"There is no file {options[0]}, and an option says only where agents walk: check the "
+            "path, or name the agents with --walk NAME=WEIGHTS."
+        )
     held = rows.gather(paths)
     drawn = list(_walks(held, walk, walks, seed, options)) if walk else []
     return document.write(report(held, title=title, walks=drawn), out)
@@ -111,7 +117,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--walks", type=int, default=12, help="how many episodes (default 12)")
     parser.add_argument("--seed", type=int, default=0, help="of the rows that are walked again")
-    given = vars(parser.parse_args(argv))
+    given = vars(parser.parse_intermixed_args(argv))
     words = given.pop("rows")
     paths = [word for word in words if "=" not in word or Path(word).exists()]
     options = [word for word in words if word not in paths]
@@ -130,8 +136,8 @@ def told(name: str, work: Callable[[], Path | None]) -> int:
 
     try:
         written = work()
-    except (FileNotFoundError, ValueError) as error:
-        print(f"{name}: {error}", file=sys.stderr)
+    except (OSError, ValueError) as error:
+        print(f"{name}: {conf.said(error)}", file=sys.stderr)
         return 2
     except (HydraException, OmegaConfBaseException) as error:
         print(f"{name}: {conf.explain(error, 'evaluate')}", file=sys.stderr)

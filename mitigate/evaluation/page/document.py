@@ -19,6 +19,7 @@ from mitigate.core.files import atomic_text
 from mitigate.corruptions import SUITE_VERSION
 
 ASSETS = Path(__file__).parent / "assets"
+SUFFIXES = (".html", ".htm")
 SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
 
 
@@ -66,11 +67,24 @@ def page(
     return _filled((ASSETS / "page.html").read_text(encoding="utf-8"), values)
 
 
+def check_out(out: Path | str) -> Path:
+    """Return ``out``; raise ValueError unless it is the name of a page. A page replaces what is
+    there, which must not be rows."""
+    path = Path(out)
+    if path.suffix.lower() not in SUFFIXES or path.is_dir():
+        raise ValueError(
+            f"A page cannot be written to {str(out)!r}, which it would replace: name a file that "
+            "ends in .html, such as report.html."
+        )
+    return path
+
+
 def write(text: str, out: Path | str) -> Path:
-    """Write a page to ``out``, atomically."""
-    with atomic_text(out) as file:
+    """Write a page to ``out``, atomically. Raises as :func:`check_out`."""
+    path = check_out(out)
+    with atomic_text(path) as file:
         file.write(text)
-    return Path(out)
+    return path
 
 
 def _filled(frame: str, values: dict[str, str]) -> str:

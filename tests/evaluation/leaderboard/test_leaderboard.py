@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import inspect
 import json
+import os
+import re
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+import torch
 
 import mitigate
 from mitigate.core.observation import FORWARD, STOP
@@ -19,6 +26,7 @@ from mitigate.evaluation.leaderboard.entry import load
 from mitigate.evaluation.leaderboard.from_rows import entry_of, rows_sha
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.sections import sections
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import column
 from tests.evaluation.page.test_document import held
 
@@ -101,10 +109,11 @@ def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, m
     better = replace(entry, SR=entry.SR | {"spatter": [0.9, 0.8, 1.0]})
     better.save("entries/base.json")
     assert command.main(["check", "entries"]) == 1
-    assert "base: SR is" in capsys.readouterr().out
+    said = "base: SR, spatter, is [0.9, 0.8, 1.0], but its rows say [0.2, "
+    assert said in capsys.readouterr().out
     entry.save("entries/base.json")
     result_rows.write("rows.jsonl.gz", [rows[0] | {"steps": 5}, *rows[1:]])
-    assert command.differences(entry, command.rows_of(entry))[0].startswith("rows is")
+    assert command.differences(entry, command.rows_of(entry))[0].startswith("rows, sha256, is")
     Path("rows.jsonl.gz").unlink()
     assert command.main(["check", "entries"]) == 1
     assert "not at hand" in capsys.readouterr().out
@@ -190,3 +199,128 @@ def test_two_tables_of_one_split_say_which_list_they_are_of(rows):
     page, _ = held(render([entry, replace(entry, listed="0" * 12)]))
     shown = [section["title"] for section in page["sections"]]
     assert len(set(shown)) == 2 and all("list " in title for title in shown)
+
+
+def test_an_entry_is_compared_with_its_own_rows_where_the_file_holds_more(rows):
+    entry = entry_of(rows, "base", severity=0.6)
+    more = [r | {"seed": 1} for r in rows] + [r | {"corruption": "flare"} for r in rows[10:20]]
+    assert command.differences(entry, [*rows, *more]) == []
+    with pytest.raises(ValueError, match="hold none of 0123456789ab with seed 0"):
+        command.differences(entry, [r | {"seed": 1} for r in rows])
+
+
+def test_words_that_say_what_an_agent_sees_may_stand_behind_options(
+    rows, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("rows.jsonl", rows)
+    add = ["add", "rows.jsonl", "--name", "base", "--folder", "entries", "env.views=1"]
+    assert command.main(add) == 0
+    assert load("entries/base.json").sensors[0] == "rgb: 64 x 64 x 3 uint8, 90 degrees wide"
+    assert command.main(["check", "entries/base.json", "entries/base.json"]) == 0
+    for wrong, words in (
+        (["add", "--name", "base", "env.views=1"], "name a row file"),
+        ([*add, "--no-such", "x"], "unrecognized arguments: --no-such"),
+    ):
+        with pytest.raises(SystemExit):
+            command.main(wrong)
+        assert words in capsys.readouterr().err
+
+
+def test_nothing_is_written_that_would_be_refused_again(rows, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("rows.jsonl", rows)
+    before = {p.name: p.read_bytes() for p in tmp_path.iterdir()}
+    add = ["add", "rows.jsonl", "--name", "base", "--folder", "."]
+    for wrong in (["--training-data", "x" * 2001], ["--link", "\u202e"]):
+        assert command.main([*add, *wrong]) == 2
+        assert "printable signs" in capsys.readouterr().err
+    assert command.main(["show", "--out", "rows.jsonl"]) == 2
+    assert "name a file that ends in .html" in capsys.readouterr().err
+    assert {p.name: p.read_bytes() for p in tmp_path.iterdir()} == before
+
+
+class Pupil(Straight):
+    """Its weights are in a network that it holds."""
+
+    def __init__(self, weight: float) -> None:
+        self.net = torch.nn.Linear(1, 1)
+        torch.nn.init.constant_(self.net.weight, weight)
+        self.net.bias.data.zero_()
+
+
+def test_benchmark_knows_an_agent_by_the_networks_it_holds_and_says_what_it_cannot_know(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    options = {"episodes": 1, "suite": ["flare"], "workers": 1, "options": ["env.size=16"]}
+    first = mitigate.benchmark(Pupil(1), **options)
+    assert "no settings()" not in capsys.readouterr().out
+    assert mitigate.benchmark(Pupil(1), **options) == first
+    assert "a Pupil has no settings()" in capsys.readouterr().out
+    second = mitigate.benchmark(Pupil(2), **options)
+    assert second.agents != first.agents and second.rows["sha256"] != first.rows["sha256"]
+    for entry in (first, second):
+        assert command.differences(entry, command.rows_of(entry)) == []
+    described = Straight()
+    described.settings = {"speed": 1}  # a mapping will do
+    capsys.readouterr()
+    assert mitigate.benchmark(described, **options).agents != first.agents
+    assert "no settings()" not in capsys.readouterr().out
+
+
+class Dark(ApartmentsWorld):
+    """Shows depth alone."""
+
+    def __init__(self) -> None:
+        super().__init__(16)
+        del self.sensors["rgb"]
+
+
+def test_benchmark_runs_in_a_script_as_the_page_has_it(tmp_path):
+    """Without a guard around the call, of an agent that the script defines, or that is typed in."""
+    script = (
+        "import mitigate\n"
+        f"{inspect.getsource(Straight)}"
+        "FORWARD, STOP = 1, 0\n"
+        "made = mitigate.benchmark(Straight(), episodes=40, suite=['flare'],\n"
+        "                          options=['env.size=8'])\n"
+        "print('reached', made.episodes)\n"
+    )
+    (tmp_path / "mine.py").write_text(script, encoding="utf-8")
+    for call, name in ((["mine.py"], "file"), (["-c", script], "typed")):
+        done = subprocess.run(
+            [sys.executable, *call],
+            cwd=tmp_path,
+            env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHON_CPU_COUNT": "2"},
+            capture_output=True,
+            text=True,
+        )
+        assert "reached 40" in done.stdout, (name, done.stderr)
+        shutil.rmtree(tmp_path / "runs")
+
+
+@pytest.mark.parametrize(
+    ("agent", "options", "words"),
+    [
+        (Straight, {}, "Straight is a class"),
+        (None, {}, "A NoneType walks no episodes"),
+        (lambda observation: STOP, {}, "no reset"),
+        (Straight(), {"suite": "fulll"}, "no suite 'fulll'. Did you mean full?"),
+        (Straight(), {"options": ["no.option=1"]}, "no.option"),
+        (Straight(), {"severity": 0}, "at severity 0 corrupts nothing"),
+        (Straight(), {"name": "x" * 201}, "name must be a line of at most 200"),
+        (Straight(), {"training_data": "x" * 2001}, "training_data must be"),
+        (Straight(), {"listed": []}, "listed lists no episode"),
+        (Straight(), {"world": ApartmentsWorld(16)}, "world is a ApartmentsWorld: give what makes"),
+        (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark shows only"),
+        (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "give workers=1"),
+    ],
+)
+def test_benchmark_says_what_is_wrong_before_anything_walks(
+    tmp_path, monkeypatch, agent, options, words
+):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=re.escape(words)):
+        mitigate.benchmark(agent, **options)
+    assert not [*tmp_path.iterdir()]

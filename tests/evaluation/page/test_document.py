@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from mitigate.corruptions import Corruption
+from mitigate.evaluation import table
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.page import command
 from mitigate.evaluation.page.choosing import KINDS, choose
@@ -152,9 +153,32 @@ def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, r
     assert sorted(p.name for p in tmp_path.iterdir()) == ["page.html", "rows.jsonl"]
     assert command.main([str(tmp_path / "nowhere")]) == 2
     assert "nowhere" in capsys.readouterr().err
-    walk = ["--walk", "bass=checkpoints/base"]
+    walk = ["--walk", "bass=checkpoints/base", "split=val_unseen"]
     assert command.main([str(tmp_path / "rows.jsonl"), *walk]) == 2
     assert "Did you mean base?" in capsys.readouterr().err
+
+
+def test_a_page_replaces_no_rows_and_a_place_that_cannot_be_is_told(tmp_path, capsys, rows):
+    file = tmp_path / "rows.jsonl"
+    write(file, rows)
+    before = file.read_bytes()
+    (tmp_path / "folder.html").mkdir()
+    for out in (file, tmp_path / "folder.html", tmp_path, "", tmp_path / "report"):
+        assert command.main([str(file), "--out", str(out)]) == 2
+        assert "name a file that ends in .html" in capsys.readouterr().err
+    for out in (file / "report.html", tmp_path / f"{'x' * 300}.html"):
+        assert command.main([str(file), "--out", str(out)]) == 2
+        assert capsys.readouterr().err.startswith("report: ")
+    assert table.main([str(file), "--out", str(file)]) == 2
+    assert "File exists" in capsys.readouterr().err
+    assert file.read_bytes() == before and len([*tmp_path.iterdir()]) == 2
+
+
+def test_a_path_that_looks_like_an_option_is_not_passed_over(tmp_path, capsys):
+    out = str(tmp_path / "out.html")
+    assert command.main(["runs/severity=0.3/rows.jsonl", "--out", out]) == 2
+    assert "no file runs/severity=0.3/rows.jsonl" in capsys.readouterr().err
+    assert not (tmp_path / "out.html").exists()
 
 
 def test_two_lists_of_a_split_are_two_sections_with_their_own_episodes(rows):
