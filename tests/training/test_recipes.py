@@ -19,12 +19,14 @@ OTHERS = (  # kinds of agent from shipped weights, each through a kind of recipe
     ("topological", "da_per_episode", "hardened/harden"),
 )
 LITTLE = {  # what a stage's recipe learns from, beside two rollouts a step
-    "frames": 96,
+    "batch": 8,
+    "frames": 48,
     "held": 2,
     "instants": 4,
+    "micro_batch": 4,
     "pairs": 4,
     "panoramas": 4,
-    "texts": 12,
+    "texts": 8,
     "variants": 1,
 }
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
