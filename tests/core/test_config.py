@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from dataclasses import replace
 
 import pytest
@@ -303,7 +304,7 @@ def test_a_program_that_another_one_starts_ends_in_a_paragraph_too(monkeypatch, 
     def program():
         running = programs.Running(chain)
         while running.poll() is None:
-            pass
+            time.sleep(0.02)
         raise ValueError(running.outcome.problem)
 
     with pytest.raises(SystemExit) as stop:
