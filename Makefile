@@ -58,7 +58,7 @@ export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/
 	$(BIN)/python -m mitigate.export $(RUN) $(NAME) $(ARGS)
 
 test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist loadgroup $(ARGS)
+	PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist loadgroup $(ARGS)
 
 test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
 	$(BIN)/python -m tools.faults $(ARGS)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import re
 import shlex
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+
+import mitigate
 
 # one worker of pytest trains, not each its own
 pytestmark = pytest.mark.xdist_group("bring your own")
@@ -23,30 +27,33 @@ COMMANDS = re.search(r"```bash\n(.*?)```", PAGE, re.DOTALL)[1].splitlines()
 LONGEST = 80  # lines, of a world and an agent that are trained, evaluated and exported
 
 
-def run(folder: Path, *command: str) -> str:
+def run(folder: Path, *command: str) -> None:
     done = subprocess.run(
         [sys.executable, *command],
         cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHON_CPU_COUNT": "1"},  # starts no workers
         capture_output=True,
         text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory) -> Path:
+def folder(tmp_path_factory) -> Iterator[Path]:
     """Where a stranger saved the page's files and ran its commands."""
     folder = tmp_path_factory.mktemp("mine")
     (folder / "corridor.py").write_text(CODE)
     for name, text in CONFIGS.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
-    run(folder, "-c", "import corridor; corridor.write_lists()")
-    for command in COMMANDS:
-        run(folder, *shlex.split(command)[1:])
-    return folder
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        patch.syspath_prepend(folder)
+        importlib.import_module("corridor").write_lists()
+        for command in COMMANDS:
+            run(folder, *shlex.split(command)[1:])
+        yield folder
+    del sys.modules["corridor"]
 
 
 def success(file: Path) -> dict[str, float]:
@@ -80,16 +87,9 @@ def test_the_saved_agent_is_the_one_that_was_trained(folder):
 
 
 def test_the_exported_folder_fills_an_agent_that_its_user_built(folder):
-    said = run(
-        folder,
-        "-c",
-        "import mitigate, corridor\n"
-        "mine = corridor.Policy(adapters=True)\n"
-        "agent = mitigate.load_hardened('hardened/corridor', agent=mine)\n"
-        "print(type(agent).__name__)\n"
-        "try:\n    mitigate.load_hardened('hardened/corridor')\n"
-        "except ValueError as error:\n    print(error)",
-    )
-    assert said.startswith("Policy\n") and "is of the agent corridor.Policy" in said
+    mine = sys.modules["corridor"].Policy(adapters=True)
+    assert mitigate.load_hardened("hardened/corridor", agent=mine) is mine
+    with pytest.raises(ValueError, match=r"is of the agent corridor\.Policy"):
+        mitigate.load_hardened("hardened/corridor")
     page = (folder / "hardened/corridor/README.md").read_text()
     assert "Apache" not in page and "agent=Mine(...)" in page

@@ -74,5 +74,7 @@ def test_the_page_lists_what_is_over_the_bar():
 
 def test_both_ways_of_evaluating_are_timed_on_the_same_rows(monkeypatch):
     monkeypatch.setattr(evaluation, "CHECKPOINTS", ("checkpoints/base",))
+    real, names = evaluation.conditions, ["clean", "flare", "missing_data"]
+    monkeypatch.setattr(evaluation, "conditions", lambda _, *severities: real(names, *severities))
     (pace,) = evaluation.paces(1).values()
-    assert pace.same and pace.count == 13 and pace.alone > 0 and pace.together > 0
+    assert pace.same and pace.count == 3 and pace.alone > 0 and pace.together > 0

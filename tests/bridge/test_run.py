@@ -302,6 +302,7 @@ def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
         stderr=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
         text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a job in the background
     )
     events = tmp_path / "o" / "conditions" / "clean" / "events.jsonl"
     for _ in range(400):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import os
 import re
@@ -11,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-import mitigate.evaluation.evaluate  # noqa: F401 - the schema and the resolver of its config
 from mitigate.core import conf
-from mitigate.corruptions import INSTRUCTION, NAMES, Record, registry
+from mitigate.corruptions import INSTRUCTION, NAMES, Record, Schedule, registry
+from mitigate.evaluation import evaluate
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
@@ -53,8 +54,8 @@ def test_a_wrong_record_is_refused():
 
 
 @pytest.fixture
-def installed(tmp_path) -> dict[str, str]:
-    """The environment of a process where the page's package is installed."""
+def package(tmp_path) -> Path:
+    """Where the page's package is installed."""
     (tmp_path / "rain.py").write_text(MINE)
     group, line = POINT.strip().splitlines()
     folder = tmp_path / "rain-1.0.dist-info"
@@ -65,7 +66,29 @@ def installed(tmp_path) -> dict[str, str]:
     (folder / "entry_points.txt").write_text(
         f"[mitigate.corruptions]\n{name} = {value.strip(chr(34))}\n"
     )
-    return {**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"}
+    return tmp_path
+
+
+@pytest.fixture
+def installed(package) -> dict[str, str]:
+    """The environment of a process where it is found."""
+    return {**os.environ, "PYTHONPATH": f"{package}{os.pathsep}{ROOT}"}
+
+
+@pytest.fixture
+def found(package, monkeypatch):
+    """Lets this process find the package; when called, as it is now."""
+
+    def forget():
+        registry.further.cache_clear()
+        sys.modules.pop("rain", None)
+        importlib.invalidate_caches()
+
+    monkeypatch.syspath_prepend(package)
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)  # a change within a second is one, too
+    forget()
+    yield forget
+    forget()
 
 
 def run(installed: dict[str, str], folder: Path, *command: str) -> str:
@@ -76,24 +99,28 @@ def run(installed: dict[str, str], folder: Path, *command: str) -> str:
     return done.stdout
 
 
-def test_a_corruption_of_another_package_joins_a_suite_a_schedule_and_the_list(installed, tmp_path):
+def test_a_corruption_of_another_package_joins_a_suite_and_a_schedule(
+    found, tmp_path, monkeypatch, capsys
+):
     options = ["episodes=1", "conditions=[clean,rain,flare]", "env.size=32", "workers=1"]
-    said = run(installed, ROOT, "-m", "mitigate.evaluate", *options, f"out={tmp_path}/out")
+    monkeypatch.setattr(sys, "argv", ["mitigate evaluate", *options, f"out={tmp_path}/out"])
+    evaluate.main()
+    said = capsys.readouterr().out
     assert "| Rain |" in said and "PRS-SR (Other)" in said
     rows = [json.loads(x) for x in (tmp_path / "out/rows.jsonl").read_text().splitlines()]
     assert {row["corruption"] for row in rows} == {"clean", "rain", "flare"}
     assert {row.get("version") for row in rows if row["corruption"] == "rain"} == {"1"}
     changed = (tmp_path / "rain.py").read_text().replace('version="1"', 'version="2"')
     (tmp_path / "rain.py").write_text(changed)
-    said = run(installed, ROOT, "-m", "mitigate.evaluate", *options, f"out={tmp_path}/out")
+    found()
+    evaluate.main()
     assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 4
+    drawn, _ = Schedule.always("rain", 0.5).draw(0, "e", 1)
+    assert (drawn.name, drawn.modality) == ("rain", "rgb") and "rain" not in NAMES
+
+
+def test_the_list_of_another_process_has_it(installed, tmp_path):
     assert "rain" in run(installed, tmp_path, "-m", "mitigate.corrupt", "--list")
-    code = (
-        "from mitigate.corruptions import *\n"
-        "drawn, key = Schedule.always('rain', 0.5).draw(0, 'e', 1)\n"
-        "assert (drawn.name, drawn.modality) == ('rain', 'rgb') and 'rain' not in NAMES"
-    )
-    run(installed, tmp_path, "-c", code)
 
 
 def test_it_changes_frames_by_its_key_and_not_at_severity_0(installed, tmp_path):

@@ -21,7 +21,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
 ADAPTERS = {"target_modules": [r"(rgb|depth)_encoder\.stages\.1"], "ring": [r"rgb.*stages\.2"]}
-SOURCES = {"world": partial(ApartmentsWorld, 64, 2), "training": DrawnEpisodes(2)}
+SOURCES = {"world": partial(ApartmentsWorld, 32, 2), "training": DrawnEpisodes(2)}
 EPISODES = {"episodes": 1, "follow_oracle": 1.0, **SOURCES}
 VIEWS = {"panoramas": 1, "schedule": Schedule("per_episode", 0.6), **SOURCES}
 
@@ -29,7 +29,7 @@ VIEWS = {"panoramas": 1, "schedule": Schedule("per_episode", 0.6), **SOURCES}
 def small(seed: int = 0, **options) -> TopologicalAgent:
     """An untrained agent that sees free space everywhere."""
     seeding.seed_everything(seed, "agent")
-    agent = TopologicalAgent(16, SMALL, **options)
+    agent = TopologicalAgent(16, SMALL, size=32, **options)
     with torch.no_grad():
         agent.waypoint_head.out.bias.fill_(8.0)
     return agent

@@ -30,9 +30,9 @@ def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -
 
 @pytest.fixture(autouse=True, scope="module")
 def few_poses():
-    """A quarter of those that a training stores."""
+    """A sixteenth of those that a training stores."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stored, "SPACING", 1.0)
+        patch.setattr(stored, "SPACING", 2.0)
         yield
 
 

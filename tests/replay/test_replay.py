@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
 import sys
 
 import numpy as np
 import pytest
 
+from mitigate import cli
 from mitigate.agents.recurrent.odometer import Odometer
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, RGB, RIGHT, STOP
 from mitigate.corruptions import CLEAN, Corruption
@@ -21,7 +21,6 @@ from mitigate.worlds.recorded import Recording
 from mitigate.worlds.recorded.steps import NONE, answered
 
 T = 30
-MITIGATE = [sys.executable, "-c", "from mitigate.cli import main; main()"]
 
 
 class ByBrightness:
@@ -165,21 +164,32 @@ def test_an_odometer_counts_an_arc_as_it_was():
     assert odometer.heading == pytest.approx(math.radians(80))
 
 
-def test_the_command_writes_decisions_tables_and_pictures(tmp_path):
-    run = MITIGATE
-    made = subprocess.run(
-        [*run, "export_drive", str(tmp_path / "drives"), "episodes=1", "form=mcap", "env.size=64"],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert made.returncode == 0, made.stderr
+@pytest.fixture
+def mitigate(monkeypatch, capsys):
+    """Runs ``mitigate`` with some words; returns its status and what it printed and complained."""
+
+    def run(*words: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", sys.argv)  # which it replaces
+        with pytest.raises(SystemExit) as ended:
+            cli.main(words)
+        said, status = capsys.readouterr(), ended.value.code or 0
+        if isinstance(status, str):  # what the interpreter prints at the end
+            return 1, said.out, said.err + status
+        return status, said.out, said.err
+
+    return run
+
+
+def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
+    drives = str(tmp_path / "drives")
+    status, _, wrong = mitigate("export_drive", drives, "episodes=1", "form=mcap", "env.size=64")
+    assert status == 0, wrong
     (bag,) = [path for path in (tmp_path / "drives").iterdir() if path.is_dir()]
     out = tmp_path / "out"
-    done = subprocess.run(
-        [*run, "replay", str(bag), f"out={out}", "conditions=[foreign_object,missing_data]",
-         "agents=[checkpoints/recurrent/base,checkpoints/recurrent/teacher]"],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    options = ("conditions=[foreign_object,missing_data]", f"out={out}")
+    agents = "agents=[checkpoints/recurrent/base,checkpoints/recurrent/teacher]"
+    status, printed, wrong = mitigate("replay", str(bag), agents, *options)
+    assert status == 0, wrong
     lines = [json.loads(line) for line in (out / "decisions.jsonl").read_text().splitlines()]
     steps = max(line["step"] for line in lines) + 1
     assert len(lines) == 2 * 3 * steps
@@ -188,7 +198,7 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path):
     assert all(line["action"] == line["clean"] for line in clean)
     assert (out / "changes.png").is_file() and (out / "table.md").is_file()
     assert json.loads((out / "replay.json").read_text())["drives"] == [str(bag)]
-    assert "Foreign object" in done.stdout
+    assert "Foreign object" in printed
 
 
 @pytest.mark.parametrize(
@@ -202,10 +212,7 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path):
         (["tests", "colour=red"], "colour"),
     ],
 )
-def test_a_users_mistake_is_one_paragraph(options, says):
-    done = subprocess.run(
-        [*MITIGATE, "replay", *(options or ["seed=1"])],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode != 0 and "Traceback" not in done.stderr
-    assert says in done.stderr
+def test_a_users_mistake_is_one_paragraph(options, says, mitigate):
+    status, _, wrong = mitigate("replay", *(options or ["seed=1"]))
+    assert status != 0 and "Traceback" not in wrong
+    assert says in wrong

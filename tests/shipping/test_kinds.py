@@ -9,11 +9,11 @@ from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core import conf
 from mitigate.core.checkpoint import weights_sha
-from mitigate.shipping import export
+from mitigate.shipping import export, others
 from mitigate.training import train
 
 SMALL = ["agent.size=16", "env.size=16", "init=null", "trainer.steps=1", "workers=0"]
-SMALL.append("evaluation.enabled=false")
+SMALL += ["evaluation.enabled=false", "rollouts=1"]
 KINDS = {
     "frontier": (FrontierAgent, ["stages.imitation=null", "agent.width=8"]),
     "recurrent_rgb": (RecurrentAgent, ["agent.rgb_width=8", "stages.perception_rgb=null"]),
@@ -21,7 +21,8 @@ KINDS = {
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_a_run_is_exported_and_loads_again(tmp_path, kind):
+def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
+    monkeypatch.setattr(others, "WALKS", 1)
     made, own = KINDS[kind]
     options = [f"agent={kind}", *SMALL, *own]
     cfg = conf.load_config("train", ["recipe=imitation", "debug=smoke", *options])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from omegaconf import OmegaConf
 
+from mitigate.agents.topological import stored
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build, carried
 from mitigate.training import train
@@ -17,11 +18,23 @@ OTHERS = (  # kinds of agent from shipped weights, each through a kind of recipe
     ("frontier", "conv_adapter", "frontier/base"),
     ("topological", "da_per_episode", "hardened/harden"),
 )
+LITTLE = {  # what a stage's recipe learns from, beside two rollouts a step
+    "batch": 8,
+    "frames": 48,
+    "held": 2,
+    "instants": 4,
+    "micro_batch": 4,
+    "pairs": 4,
+    "panoramas": 4,
+    "texts": 8,
+    "variants": 1,
+}
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
 
 
 @pytest.mark.parametrize("name", RECIPES)
-def test_every_recipe_trains_two_steps(tmp_path, name):
+def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
+    monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, of which to store features
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
     options.append("workers=0")  # two a stage take longer to start than to work
     cfg = conf.load_config("train", options)
@@ -32,13 +45,11 @@ def test_every_recipe_trains_two_steps(tmp_path, name):
     if "adapters" in cfg.agent and "model" in cfg.agent:  # an encoder that an extra brings
         cfg.agent = OmegaConf.merge(cfg.agent, TINY_ENCODER)
         cfg.agent.kwargs = {}
-    if "variants" in (cfg.stages.get("planner") or {}).get("recipe", {}):
-        cfg.stages.planner.recipe.variants = 1
     if "size" in cfg.agent and "size" in cfg.env:
         cfg.agent.size = cfg.env.size = 32
-    for stage in filter(None, cfg.stages.values()):  # frames that a gate learns from
-        if "held" in stage.recipe:
-            stage.recipe.held, stage.recipe.instants = 2, 4
+    cfg.rollouts, cfg.schedule.names = 2, ["low_light", "spatter", "missing_data"]
+    for stage in filter(None, cfg.stages.values()):
+        stage.recipe.update({k: v for k, v in LITTLE.items() if k in stage.recipe})
     folder = train.run(cfg)
     for stage in (name for name, settings in cfg.stages.items() if settings):
         assert checkpoint.checkpoints(folder / stage)[-1].name == "step-00000002.pt"

@@ -10,7 +10,7 @@ from omegaconf import OmegaConf
 
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
-from mitigate.evaluation import rows
+from mitigate.evaluation import plots, rows
 from mitigate.training import table2
 from tests.evaluation.made_rows import column, row
 
@@ -32,6 +32,13 @@ def finished(cfg) -> None:
         agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
         made = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
         rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
+
+
+@pytest.fixture(autouse=True)
+def no_plots(monkeypatch):
+    """Drawing them takes most of a report's time (tests/evaluation/test_report.py has them)."""
+    monkeypatch.setattr(plots, "heatmap", lambda section, path: path)
+    monkeypatch.setattr(plots, "severity_curves", lambda grid, path: path)
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from hashlib import blake2b
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import torch
@@ -24,19 +24,21 @@ from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import SIZE, DepthEncoder, RGBEncoder
 from mitigate.agents.schema import RGB_ENCODERS, SENSES
 from mitigate.agents.text import Vocabulary, pad
-from mitigate.agents.topological import decisions as joining
 from mitigate.agents.topological import learning
-from mitigate.agents.topological.decisions import MapDecisions, Piece
 from mitigate.agents.topological.imagenet import ImageNetEncoder
 from mitigate.agents.topological.mapping import TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
-from mitigate.agents.topological.stored import Store
+from mitigate.agents.topological.rollout import Piece
 from mitigate.agents.topological.waypoints import WaypointHead, select
 from mitigate.core import names
 from mitigate.core.memory import Memory
 from mitigate.core.observation import STOP, VIEWS
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
+
+if TYPE_CHECKING:  # tensordict, which only training needs, is as slow to import as torch
+    from mitigate.agents.topological.decisions import MapDecisions
+    from mitigate.agents.topological.stored import Store
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
 PARTS = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
@@ -158,6 +160,8 @@ class TopologicalAgent(nn.Module):
 
     def store(self, world: Callable[[], Any], folder: str, **variants: Any) -> Store:
         """Features of all scenes of a world, to train on without rendering (``stored.py``)."""
+        from mitigate.agents.topological.stored import Store
+
         return Store(self, world, folder, **variants)
 
     def parts(self) -> dict[str, nn.Module]:
@@ -181,7 +185,9 @@ class TopologicalAgent(nn.Module):
 
     def join(self, pieces: Sequence[Piece]) -> MapDecisions:
         """Pieces of :meth:`collect` as one padded batch."""
-        return joining.join(pieces, self.tokens)
+        from mitigate.agents.topological.decisions import join
+
+        return join(pieces, self.tokens)
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
         """Logits over [stop] and ghosts; see :func:`learning.decide`."""

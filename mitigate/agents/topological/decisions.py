@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,19 +11,10 @@ from tensordict import tensorclass
 from torch import Tensor
 
 from mitigate.agents.topological.planner import DecisionBatch, collate
-from mitigate.agents.topological.rollout import Step, Trace
+from mitigate.agents.topological.rollout import Piece, Step
 
 STOP_WEIGHT = 1.5  # one decision in about six is a stop
 FARTHEST = 25.0  # metres; the distance loss asks for no more
-
-
-@dataclass
-class Piece:
-    """Rollouts of some episodes: their traces, and what was seen at each decision, in order: arrays
-    [P, ...] by name."""
-
-    traces: list[Trace]
-    seen: dict[str, np.ndarray]
 
 
 @tensorclass(shadow=True)

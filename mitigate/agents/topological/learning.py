@@ -13,8 +13,7 @@ from torch import Tensor
 from mitigate.agents.agent import Output
 from mitigate.agents.concepts import THINGS
 from mitigate.agents.losses import agreement, f1, free_loss, presence_loss
-from mitigate.agents.topological.decisions import MapDecisions, Piece
-from mitigate.agents.topological.rollout import LiveWalk, roll_out
+from mitigate.agents.topological.rollout import LiveWalk, Piece, roll_out
 from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
@@ -22,6 +21,7 @@ from mitigate.worlds.world import World
 
 if TYPE_CHECKING:
     from mitigate.agents.topological.agent import TopologicalAgent
+    from mitigate.agents.topological.decisions import MapDecisions
 
 # of the planner (metres to the goal, which views show what the instruction ends at) and of the
 # perception (what views show, where one can go); chosen for the shipped agents

@@ -60,6 +60,15 @@ class Trace:
     views: list[np.ndarray] = field(default_factory=list)
 
 
+@dataclass
+class Piece:
+    """Rollouts of some episodes: their traces, and what was seen at each decision, in order: arrays
+    [P, ...] by name."""
+
+    traces: list[Trace]
+    seen: dict[str, np.ndarray]
+
+
 def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
     """The shortest-path oracle's answer for a decision."""
     nodes = [walk.distance(p) for p in graph.positions]

@@ -21,8 +21,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mitigate.agents.topological.decisions import Piece
-from mitigate.agents.topological.rollout import roll_out
+from mitigate.agents.topological.rollout import Piece, roll_out
 from mitigate.agents.topological.stored_walk import Features, ScenePoses, StoredWalk, look
 from mitigate.agents.topological.waypoints import COUNT, select
 from mitigate.core import precision
