@@ -4,42 +4,13 @@ requests: statements ("the stairs are behind you"), relative clauses, verbs behi
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 
-from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.edits import CLAUSE_ENDS, DROP, KEEP, NUMBER, PLAIN, Edited
+from mitigate.safeguard.edits import CLAUSE_ENDS, DROP, KEEP, PLAIN, Edited
 from mitigate.safeguard.plain_words import plain_form
-from mitigate.safeguard.speech import STOP
 from mitigate.safeguard.steps import MARKS, MOVES, PRONOUNS, STEP, TURNS, WAY
+from mitigate.safeguard.wholes import span_of, spelled, wholes
 
-_SKIPPED = r"(?:right |now |just |directly |straight |somewhere )*"
-# what is told whole, if a part of it stays
-_WHOLE = re.compile(
-    r"(?<![^ ])(?:"
-    rf"(?:the|a|an|those|these|that|your|my|some) (?:[\w-]+ ){{1,4}}?(?:is|are|should be|will be|"
-    rf"would be|must be) {_SKIPPED}(?:behind|in front of|ahead of) you|"
-    r"(?:when|once) (?:you're|you are) out|"
-    r"there (?:should|will|may|might|would|must|could) be|"
-    r"(?:(?:so )?(?:that )?you(?:'ll| will)? know (?:that )?)?(?:it's|that's|it is|that is|"
-    r"this is|you're(?: in| at| on)?|you are(?: in| at| on)?) the "
-    r"right (?:one|place|way|track|door|room|spot|path|hallway|direction|area)|"
-    r"(?:through|of|in|on|from|by|behind|under|over|at|to|near|beside) which "
-    r"(?:(?!and |then )[\w'-]+ )*[\w'-]+|"
-    r"(?:identifiable|recogni[sz]able|distinguishable|identified|marked|characteri[sz]ed) by "
-    r"(?:(?!and |then )[\w'-]+ )*[\w'-]+"
-    r")(?= )"
-)
-# what stays with the thing before it, if that stays
-_OF_THING = re.compile(
-    r"(?<![^ ])(?:straight ahead|(?:which|that) (?:leads?|goes|go|runs?|leading) "
-    r"(?:up|down|upwards?|downwards?|upstairs|downstairs|out|outside))(?= [.,;!?]|$)"
-)
-_ALL = re.compile(
-    r"(?<![^ ])(?:all the way|in the (?:opposite|other|reverse|same) direction|"
-    r"as soon as you(?:'re| are) (?:inside|in|out|outside|through))(?= )"
-)
-_OF_SIDE = re.compile(r"(?<![^ ])(?:to|on) (?:the|your|its|their) (?:left|right)(?= )")
 _SEEN = re.compile(
     r"(?<![^ ])(?:there's|there is|there are|you'll see|you will see|you see|you should see|"
     r"which is|which are)(?= )"
@@ -62,48 +33,12 @@ _TOWARDS = bag("to towards toward")
 
 def clauses_told(made: Edited) -> bool:
     """Give back what is told whole or not at all; return whether there was such."""
-    changed = _wholes(made) | _denied(made) | _again(made) | _seen(made)
+    changed = wholes(made) | _denied(made) | _again(made) | _seen(made)
     for place in range(len(made.found)):
         changed |= _kept_up(made, place) | _asked(made, place) | _relative(made, place)
         changed |= _pronoun(made, place) | _verb(made, place) | _subject(made, place)
         changed |= _it_is(made, place)
     return changed
-
-
-def _wholes(made: Edited) -> bool:
-    text, places = spelled(made.found)
-    changed = False
-    for match in _WHOLE.finditer(text):
-        span = span_of(match, places)
-        if any(made.kept(p) for p in span):
-            changed |= made.give_back(span)
-            if match.group().endswith("you"):
-                ends = span.stop < len(made.found) and made.found[span.stop].text in CLAUSE_ENDS
-                changed |= ends and made.give_back([span.stop])
-                _no_phrase(made, span.start - 1)
-    for match in STOP.finditer(text):
-        if made.kept((span := span_of(match, places))[0]):  # "come to rest"
-            again = made.before[span.stop : span.stop + 1] == [NUMBER["stop"]]
-            changed |= made.give_back([*span, span.stop] if again else span)
-    for match in _ALL.finditer(text):
-        changed |= bool(made.kept_words(0)) and made.give_back(span_of(match, places))
-    for match in _OF_SIDE.finditer(text):
-        span = span_of(match, places)
-        if made.kept(span[0]) and made.kept(span[-1]):
-            changed |= made.give_back(span)
-    for match in _OF_THING.finditer(text + ". "):
-        span = span_of(match, places)
-        thing = span.start - 1
-        if thing >= 0 and made.kept(thing) and made.found[thing].tag == "NOUN":
-            changed |= made.give_back(span)
-    return changed
-
-
-def _no_phrase(made: Edited, place: int) -> None:
-    """Take back the phrases of the words up to ``place`` that are taken out."""
-    while place >= 0 and not made.kept(place):
-        made.before[place] = 0
-        place -= 1
 
 
 def _seen(made: Edited) -> bool:
@@ -286,18 +221,3 @@ def _verb(made: Edited, place: int) -> bool:
     if joins or ahead[-1].word in ("and", "or", "first"):
         return made.give_back([*joins[-1:], *range(verb, place + 1)])
     return False
-
-
-def spelled(found: Sequence[Token]) -> tuple[str, dict[int, int]]:
-    """Return the tokens in lower case with a space between them, and where each begins."""
-    text, places = "", {}
-    for place, token in enumerate(found):
-        places[len(text)] = place
-        text += token.lower + " "
-    return text, places
-
-
-def span_of(match: re.Match[str], places: dict[int, int]) -> range:
-    """Return the places of the tokens that a match of what is spelled holds."""
-    first = places[match.start()]
-    return range(first, first + 1 + match.group().count(" "))

@@ -15,6 +15,7 @@ from mitigate.safeguard.steps import DOORS, MARKS, PRONOUNS, TURNS, WAY, Step, s
 
 _PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
 _IT_IS = bag("it's it'll")  # a left
+_SHOWN = bag("see there's there'll there're there spot notice count")  # "there's a door" is no way
 # by which one stops, whether or not it is said so
 _RESTS = STOPS | bag(
     "remains rests done end ends ending destination goal there here position place finished final "
@@ -55,7 +56,8 @@ def _backed(
         return False
     for word in phrase:
         way = WAY.get(word)
-        doors = way in ("through", "into", "out") and DOORS & {*following[:4]}
+        doors = way in ("through", "into", "out") and bool(DOORS & {*following[:4]})
+        doors = doors and not _SHOWN & {*clause}
         if way and word not in ("in", "from", "by") and way not in heard and not doors:
             return False
     return True

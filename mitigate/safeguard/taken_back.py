@@ -21,7 +21,7 @@ from collections.abc import Sequence
 
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.clauses import clauses_told, span_of, spelled
+from mitigate.safeguard.clauses import clauses_told
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.neighbours import SEEKS, STOPS, parted
@@ -30,6 +30,7 @@ from mitigate.safeguard.speech import SIDE_BACK, STOP
 from mitigate.safeguard.speech_words import speech_words
 from mitigate.safeguard.steps import MARKS, PRONOUNS, WAY, WHICH, same, steps, unknown_move, which
 from mitigate.safeguard.turns_told import turns_told
+from mitigate.safeguard.wholes import span_of, spelled, together
 
 _AT = bag("in inside outside by from")  # where a thing is, unless a verb of motion stands before
 _IF = bag("if unless")
@@ -65,12 +66,6 @@ _NOTHING = re.compile(
 )
 _AT_THAT = bag("upon once when after")
 # words that are told together or not at all
-_WHOLE = re.compile(
-    r"(?<![^ ])(?:(?:track|hunt)(?:ing|ed)? (?:one|it|that|them|those) down|as far as|in front of|"
-    r"(?:above|below|beneath|underneath) (?:it|them|that|those)|"
-    r"next to|close to|on top of|out of|away from|instead of|one more|once more|"
-    r"at the (?:end|top|bottom|foot|head|center|centre) of|to the (?:left|right) of)(?= )"
-)
 _WHEN = bag("until till before prior after upon once when")  # tells when, of what comes then
 _BRACKETS = frozenset("()[]")
 _QUOTES = frozenset("'\"“”‘’`")
@@ -109,7 +104,7 @@ def _mended(made: Edited, drop: Sequence[float]) -> None:
     _sayings(made)
     for _ in range(_ROUNDS):
         mended = [
-            _wholes(made),
+            together(made),
             _denials(made),
             _words(made, drop),
             unbacked(made),
@@ -138,18 +133,6 @@ def _sayings(made: Edited) -> None:
                 made.before[behind] = NUMBER[phrase]
                 if made.found[behind].lower == "the":
                     made.acts[behind] = KEEP
-
-
-def _wholes(made: Edited) -> bool:
-    """Give back words that are told together, of which a part is left before a thing that stays;
-    return whether there were such."""
-    text, places = spelled(made.found)
-    changed = False
-    for match in _WHOLE.finditer(text):
-        span = span_of(match, places)
-        if any(made.kept(p) for p in span):
-            changed |= not all(made.kept(p) for p in span) and made.give_back(span)
-    return changed
 
 
 def _times(made: Edited) -> bool:

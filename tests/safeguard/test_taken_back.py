@@ -45,6 +45,10 @@ def given(marked: str, drop: float = 0.99) -> str:
         ("{I'd like you to quit} the cabin and turn left.", "quit the cabin"),
         ("Turn {about} and go left.", "turn about"),
         ("{Then it's} the {next} room {you want}, stop there.", "room"),
+        ("When the counter {ends}, turn right.", "counter ends"),
+        ("Walk to the bathroom and stop {inside}.", "stop inside"),
+        ("Walk {parallel} to the steps.", "parallel to"),
+        ("Go down the hallway {in the opposite direction}.", "in the opposite direction"),
     ],
 )
 def test_a_step_in_whatever_words_comes_back(marked, said):
@@ -85,6 +89,7 @@ def test_what_denies_nothing_of_the_way_may_go():
         ("Pass the bench with <turn>a red heart and go straight.", "turn a red"),
         ("<go through the>{There's a} mirror and you walk by it.", "through"),
         ("See <up>the couch and go straight.", "up"),
+        ("<go through the>{You'll see} doors on your left, and take the third.", "through"),
         ("Walk past the bed and <turn>right out onto the porch.", "turn"),
     ],
 )
