@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mitigate.safeguard import gate, masks, rules
+from mitigate.safeguard.manners import plainer
 from mitigate.safeguard.object_goal import object_goal
 from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
 from mitigate.safeguard.refusals import refusal
@@ -65,8 +66,8 @@ class Draft:
         done = rules.repair(self.original, empty.__contains__, self.judge)
         self.same = done.text == self.original
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
-        self.tagged = not self._say_goal() and self._say_plainly()
         self.styled = done.marks >= MARKS
+        self.tagged = not self._say_goal() and self._say_plainly()
         if len(words(self.repaired)) > TOO_LONG:
             self.passages = [self.repaired]
             self.reasons.append(f"over {TOO_LONG} words: rules alone")
@@ -83,8 +84,14 @@ class Draft:
         return True
 
     def _say_plainly(self) -> bool:
-        """Let the tagger say speech in plain words; return whether it changed any."""
-        if self.tagger is None or len(words(self.repaired)) > TOO_LONG:
+        """Say orders of a manner of speaking in plain words, then let the tagger say speech so;
+        return whether that one changed any."""
+        if len(words(self.repaired)) > TOO_LONG:
+            return False
+        if self.styled and (plain := plainer(self.repaired)) != self.repaired:
+            self.reasons.append("orders said in plain words")
+            self.repaired, self.same = plain, False
+        if self.tagger is None:
             return False
         tagged = self.tagger.tag(self.repaired)
         if not is_speech(tagged):

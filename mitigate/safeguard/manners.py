@@ -1,0 +1,118 @@
+"""Orders that are made polite, formal or chatty, said plainly: "You are then requested to effect a
+turn to the left." is "Turn left.".
+
+Only closed forms are known, and each stands for one thing: words that greet, that make an order
+polite or that join it to the one before, in front of a verb that tells what to do, and verbs in
+many words. What else a sentence says stays as it was heard, and the gate compares both.
+"""
+
+from __future__ import annotations
+
+import re
+
+from mitigate.corruptions.language.words import bag
+from mitigate.safeguard import gate
+from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.steps import MOVES, STEP
+from mitigate.safeguard.text import sentences
+
+_GREETS = (
+    r"(?:(?:(?:dear|esteemed|honou?red|valued|respected) \w+(?: (?:or|and) \w+)?|hello|hi|hey|"
+    r"greetings|good (?:day|morning|afternoon|evening)|(?:um|uh|er|hm+|well|okay|ok|alright|so|oh))"
+    r"(?: (?:there|friend|buddy|pal|folks))?[,!]? )*"
+)
+_JOINS = (
+    r"(?:(?:and|then|next|now|thereafter|thereupon|subsequently|afterwards?|finally|ultimately|"
+    r"lastly|initially|first(?:ly)?|secondly|thirdly|(?:following|after) (?:this|that|which)|"
+    r"at (?:this|that|which) (?:juncture|point|stage|time)|upon (?:completion|doing so)|once done|"
+    r"to (?:commence|begin|start|conclude|end|finish|complete the (?:task|route))|"
+    r"in (?:conclusion|closing)|at the outset|(?:task )?briefing|(?:navigation )?procedure|"
+    r"having done so)(?: with)?[,:]? )*"
+)
+_POLITE = r"(?:kindly|respectfully|further|hereby|politely|please|then|now|next|also)"
+_CHATTY = r"(?:just|simply|basically|kind of|sort of|then|now|also|maybe|probably)"
+_ASKS = (
+    r"(?:it (?:is|would be) (?:then |now |next )?(?:advisable|recommended|best|necessary|required)"
+    r" to|"
+    rf"you (?:are|will be) (?:{_POLITE} )*(?:requested|asked|advised|invited|instructed|directed|"
+    r"required|going) to|"
+    rf"you (?:should|may|might|must|can|will|shall|are to|may wish to)(?: {_POLITE})*|"
+    r"(?:i|we)(?:'d| would| should)? (?:like|ask|request|advise|invite) (?:that )?you(?: to)?|"
+    r"(?:may|might|could|can) i ask (?:that )?you(?: to)?|"
+    r"(?:would|could|can|will) you (?:please |kindly |just )*(?:be so (?:kind|good) as to )?|"
+    rf"(?:please |kindly )?be so (?:kind|good) as to|(?:please|kindly)(?: {_POLITE})*|"
+    r"(?:go ahead and|let's(?: go ahead and| just)?|all you (?:have to )?do is|just|simply)|"
+    r"(?:i (?:think|guess|believe|suppose),? )?(?:what you do is )?"
+    rf"you(?:'ll| will|'re going to|'re gonna)?(?: {_CHATTY})*"
+    rf"(?: (?:want|need|have|got) to| wanna| gotta| should| can)?(?: {_CHATTY})*)"
+)
+_VERB = r"(?P<verb>[a-z]+)\b(?! yourself in\b)"
+_FRAME = re.compile(
+    rf"(?P<before>{_GREETS}{_JOINS}(?:{_ASKS} )?(?:please )?)(?P<rest>{_VERB})", re.IGNORECASE
+)
+_INSIDE = re.compile(rf"(?P<join>, |\band (?:then )?)(?:{_ASKS}|to) (?={_VERB})", re.IGNORECASE)
+_VERBS = MOVES | STEP.keys() | STOPS | SEEKS | bag(
+    """
+    make effect execute perform betake convey direct egress depart transition maintain face position
+    orient keep reach select choose open locate carry head
+    """
+)  # fmt: skip
+_ENDS = r"(?= ?(?:[.,;:!?]|$)| (?:and|then|at|before|after|when|once|into|through|past|as|until)\b)"
+_BEFORE_WAY = (
+    r"(?= (?:to|towards?|into|in|past|through|along|down|up|across|around|round|out|over|onto|"
+    r"beyond|between|straight|forwards?|ahead|inside|outside|beneath|under|via|by)\b)"
+)
+_ADVERBS = {"slight": "slightly ", "sharp": "sharply ", "hard": "sharply ", "": ""}
+_TURN = re.compile(
+    r"\b(?:make|effect|execute|perform|complete|undertake|take) an? "
+    r"(?:(?P<how>slight|sharp|hard) )?"
+    r"(?P<side>left|right)(?:-hand)? turn\b",
+    re.IGNORECASE,
+)
+_TO_SIDE = r"(?:to|towards?) (?:the|your) (left|right)"
+_SAYINGS = tuple(
+    (re.compile(rf"\b(?:{pattern})", re.IGNORECASE), said)
+    for pattern, said in (
+        (rf"(?:make|effect|execute|perform) a turn {_TO_SIDE}\b", r"turn \1"),
+        (rf"(?:turn|reorient|pivot|rotate)(?: yourself)? {_TO_SIDE}{_ENDS}", r"turn \1"),
+        (rf"reverse (?:your |the )?(?:course|direction){_ENDS}", "turn around"),
+        (r"turn (?:fully|completely|entirely|all the way) around\b", "turn around"),
+        (r"(?:make your way|betake yourself|convey yourself|direct yourself|take yourself|proceed|"
+         rf"advance|navigate|transition|journey){_BEFORE_WAY}", "go"),
+        (r"(?:egress|depart) through\b", "go out through"),
+        (r"(?:egress|depart)(?= (?:the|this|your)\b)", "leave"),
+        (r"traverse(?= (?:the|this|that) (?:door|doorway|archway|gate|opening)\b)", "go through"),
+        (r"enter into\b", "enter"),
+        (r"continue on your way\b", "continue"),
+        (r"carry on(?= (?:straight|past|along|through|into|down|up|ahead|forward)\b)", "continue"),
+        (r"maintain (?:a|your) (?:course|heading) (?=straight|ahead|forward)", "go "),
+        (r"(?:come|draw) to an? (?:(?:complete|full|gentle) )?(?:halt|stop|standstill)\b", "stop"),
+        (r"(?:cease|terminate) (?:all )?(?:movement|motion)(?: and (?:halt|stop))?\b", "stop"),
+        (r"halt\b(?! (?:sign|line))", "stop"),
+        (r"(?:washroom|restroom|lavatory)\b", "bathroom"),
+        (r"sitting room\b", "living room"),
+        (r"settee\b", "sofa"),
+    )
+)  # fmt: skip
+
+
+def plainer(text: str) -> str:
+    """Return a text with its orders in plain words; ``text`` itself if they are plain."""
+    said = text
+    for sentence in sentences(text):
+        plain = _plain(sentence)
+        if plain != sentence and not gate.rewrite_refused(sentence, plain):
+            said = said.replace(sentence, plain, 1)
+    return said
+
+
+def _plain(sentence: str) -> str:
+    """Return a sentence without what stands before its verbs, and without verbs in many words."""
+    frame = _FRAME.match(sentence)
+    told = frame is not None and frame["verb"].lower() in _VERBS
+    said = sentence[frame.start("rest") :] if frame and told else sentence
+    said = _INSIDE.sub(lambda m: m["join"] if m["verb"].lower() in _VERBS else m[0], said)
+    said = _TURN.sub(lambda m: f"turn {_ADVERBS[(m['how'] or '').lower()]}{m['side']}", said)
+    for pattern, plain in _SAYINGS:
+        said = pattern.sub(plain, said)
+    return said[:1].upper() + said[1:] if sentence[:1].isupper() else said
