@@ -88,7 +88,10 @@ class Draft:
         return whether that one changed any."""
         if len(words(self.repaired)) > TOO_LONG:
             return False
-        if self.styled and (plain := plainer(self.repaired)) != self.repaired:
+        if (
+            rules.style_marks(self.repaired) >= MARKS
+            and (plain := plainer(self.repaired)) != self.repaired
+        ):
             self.reasons.append("orders said in plain words")
             self.repaired, self.same = plain, False
         if self.tagger is None:

@@ -152,6 +152,7 @@ _KNOWN = (
     _GREETINGS | _POLITE | _TALK | _ORDERS | _PLACES | _SMALL | _VERBS | STOPS | _EMPTY
     | bag("towards toward another") | {_MASK}
 )  # fmt: skip
+_MANNERED = (_GREETINGS | _POLITE | _TALK | _ORDERS) - bag("and then or but so once until")
 # what is told beside a thing: denials, conditions, where it stands, what is over or begins there
 _TELLS = re.compile(
     r"\b(?:not|no|never|n't|without|except|instead|avoid|ignore|unless|if|\w+n't|look(?:ing)? at|"
@@ -178,7 +179,8 @@ def object_goal(heard: str) -> str | None:
         return None
     found = tag(text)
     things = _things(found)
-    if not things or not any(token.lower in _VERBS for token in found):
+    mannered = _MASK in text or any(token.lower in _MANNERED for token in found)
+    if not mannered or not things or not any(token.lower in _VERBS for token in found):
         return None
     named = [[token.lower for token in found[thing.start : thing.stop]] for thing in things]
     longest = max(range(len(things)), key=lambda n: len(named[n]))
