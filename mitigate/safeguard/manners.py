@@ -14,7 +14,7 @@ from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
 from mitigate.safeguard.neighbours import SEEKS, STOPS
 from mitigate.safeguard.steps import MOVES, STEP
-from mitigate.safeguard.text import sentences
+from mitigate.safeguard.text import sentences, words
 
 _GREETS = (
     r"(?:(?:(?:dear|esteemed|honou?red|valued|respected) \w+(?: (?:or|and) \w+)?|hello|hi|hey|"
@@ -62,6 +62,8 @@ _BEFORE_WAY = (
     r"(?= (?:to|towards?|into|in|past|through|along|down|up|across|around|round|out|over|onto|"
     r"beyond|between|straight|forwards?|ahead|inside|outside|beneath|under|via|by)\b)"
 )
+_ASKED = re.compile(r"\b(?:kindly|(?:requested|asked|advised|invited) to)\b", re.IGNORECASE)
+_PLAIN_JOINS = bag("and then next now first finally after that this so")
 _ADVERBS = {"slight": "slightly ", "sharp": "sharply ", "hard": "sharply ", "": ""}
 _TURN = re.compile(
     r"\b(?:make|effect|execute|perform|complete|undertake|take) an? "
@@ -98,12 +100,23 @@ _SAYINGS = tuple(
 
 def plainer(text: str) -> str:
     """Return a text with its orders in plain words; ``text`` itself if they are plain."""
-    said = text
-    for sentence in sentences(text):
+    said, found = text, sentences(text)
+    if not any(_mannered(sentence) for sentence in found):
+        return text
+    for sentence in found:
         plain = _plain(sentence)
         if plain != sentence and not gate.rewrite_refused(sentence, plain):
             said = said.replace(sentence, plain, 1)
     return said
+
+
+def _mannered(sentence: str) -> bool:
+    """Return whether more stands before an order than what joins it in plain routes."""
+    if _ASKED.search(sentence):
+        return True
+    frame = _FRAME.match(sentence)
+    before = words(frame["before"]) if frame and frame["verb"].lower() in _VERBS else []
+    return any(word not in _PLAIN_JOINS for word in before)
 
 
 def _plain(sentence: str) -> str:

@@ -22,8 +22,8 @@ from mitigate.safeguard.manners import plainer
             "After passing the chair, you are asked to turn right and to wait beside the door.",
             "After passing the chair, turn right and wait beside the door.",
         ),
-        ("Reverse your course.", "Turn around."),
-        ("Proceed past the bed, and halt.", "Go past the bed, and stop."),
+        ("Kindly reverse your course.", "Turn around."),
+        ("Please proceed past the bed, and halt.", "Go past the bed, and stop."),
     ],
 )
 def test_an_order_is_said_plainly(heard, plain):
@@ -34,6 +34,7 @@ def test_an_order_is_said_plainly(heard, plain):
     "heard",
     [
         "Turn left at the lamp.",
+        "Then proceed past the bed, and halt.",
         "You should not turn left.",  # a denial
         "You'll find yourself in the hallway.",  # what is seen, no order
         "You should see a red door.",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,6 +15,7 @@ from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.safeguard import gate, judgement, rules, trials
 from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.manners import plainer
 from mitigate.safeguard.routes import draw_route
 from mitigate.worlds.apartments.furniture import CATEGORIES
 from tests.r2r_ce import FOLDER, needs_r2r_ce
@@ -101,14 +104,22 @@ def test_an_attack_alone_is_not_emptied_and_a_goal_in_an_attack_stays_there():
 def test_near_misses_of_the_tuning_half_stay():
     from mitigate.safeguard.banks import same_words
 
+    def changed(text: str) -> bool:  # but for orders that are said in plain words
+        return not any(same_words(one, given_on(text)) for one in (text, plainer(text)))
+
     found = [line["text"] for line in trials.half("near_misses", "tune")]
-    assert sum(not same_words(text, given_on(text)) for text in found) <= 0.03 * len(found)
+    assert sum(changed(text) for text in found) <= 0.03 * len(found)
 
 
 def test_styled_texts_of_the_tuning_voices_keep_their_parts():
     from mitigate.safeguard.banks import lost_parts
 
-    lost = [x for told in trials.told("tune")[::8] for x in lost_parts(told, given_on(told.text))]
+    lost = []
+    for told in trials.told("tune")[::8]:
+        given = given_on(told.text)
+        plain = replace(told, parts=tuple(plainer(part) for part in told.parts))
+        both = zip(lost_parts(told, given), lost_parts(plain, given), strict=True)
+        lost += [heard and said for heard, said in both]  # a part may be said in plain words
     assert sum(lost) <= 0.02 * len(lost)
 
 
