@@ -57,6 +57,7 @@ table2: $(VENV)/.stamp ## train and evaluate the paper's Table II: ARGS="seeds=[
 export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/a NAME=mine
 	$(BIN)/python -m mitigate.export $(RUN) $(NAME) $(ARGS)
 
+# bytecode is kept even where the environment says otherwise: each process of the tests reads the same modules
 test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
 	PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist loadgroup $(ARGS)
 

@@ -67,12 +67,14 @@ class Draft:
         self.same = done.text == self.original
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.styled = done.marks >= MARKS
-        self.tagged = not self._say_goal() and self._say_plainly()
+        self.tagged, self.passages = False, [self.repaired]
         if len(words(self.repaired)) > TOO_LONG:
-            self.passages = [self.repaired]
             self.reasons.append(f"over {TOO_LONG} words: rules alone")
-        else:
-            self.passages = passages(self.repaired, PASSAGE)
+            return
+        if not self._say_goal():
+            self._say_orders()
+            self.tagged = self._say_speech()
+        self.passages = passages(self.repaired, PASSAGE)
 
     def _say_goal(self) -> bool:
         """Say a request for one thing in plain words; return whether it was one."""
@@ -83,21 +85,19 @@ class Draft:
         self.repaired, self.same = goal, False
         return True
 
-    def _say_plainly(self) -> bool:
-        """Say orders of a manner of speaking in plain words, then let the tagger say speech so;
-        return whether that one changed any."""
-        if len(words(self.repaired)) > TOO_LONG:
-            return False
-        if (
-            rules.style_marks(self.repaired) >= MARKS
-            and (plain := plainer(self.repaired)) != self.repaired
-        ):
+    def _say_orders(self) -> None:
+        """Say orders of a manner of speaking in plain words."""
+        if rules.style_marks(self.repaired) < MARKS:
+            return
+        plain = plainer(self.repaired)
+        if plain != self.repaired:
             self.reasons.append("orders said in plain words")
             self.repaired, self.same = plain, False
-        if self.tagger is None:
-            return False
-        tagged = self.tagger.tag(self.repaired)
-        if not is_speech(tagged):
+
+    def _say_speech(self) -> bool:
+        """Let the tagger say speech in plain words; return whether it changed any."""
+        tagged = self.tagger.tag(self.repaired) if self.tagger else None
+        if tagged is None or not is_speech(tagged):
             return False
         said, kept = plainly_said(self.repaired, tagged)
         self.reasons += kept

@@ -33,7 +33,8 @@ _IDIOMS = re.compile(
 MOVES = re.compile(
     r"\b(?:past|through|into|onto|out of|along|towards?|across|around|between|beside|next to|"
     r"in front of|in the direction of|behind|until|reach|down|up|at|by|near|from|on)\s+"
-    r"(?:the|a|an|your|that|this|two|both|some|another)\s+(?!way\b|same\b|other\b|opposite\b|text\b|order\b)[a-z]+"
+    r"(?:the|a|an|your|that|this|two|both|some|another)\s+"
+    r"(?!way\b|same\b|other\b|opposite\b|text\b|order\b)[a-z]+"
 )
 _ROLE = re.compile(
     r"\b(?:you are|you're|you were|you have become|be|as|like|become|you'll be)\s+"

@@ -150,8 +150,9 @@ _VERBS = _SOUGHT | (MOVES - TURN_VERBS) | bag(
 )  # fmt: skip
 _KNOWN = (
     _GREETINGS | _POLITE | _TALK | _ORDERS | _PLACES | _SMALL | _VERBS | STOPS | _EMPTY
-    | bag("towards toward another") | {_MASK}
+    | bag("towards toward another")
 )  # fmt: skip
+_ASKS_FOR = _DETERMINERS | _BEFORE | _VERBS | {_MASK, ":"}  # may stand before a thing
 _MANNERED = (_GREETINGS | _POLITE | _TALK | _ORDERS) - bag("and then or but so once until")
 # what is told beside a thing: denials, conditions, where it stands, what is over or begins there
 _TELLS = re.compile(
@@ -175,7 +176,7 @@ def object_goal(heard: str) -> str | None:
         return None
     stops = "stop" in facts(heard).directions or "await" in text
     text = _SAYINGS.sub(lambda saying: " " * len(saying.group()), text)
-    if _TELLS.search(text.replace(_MASK, " " * len(_MASK))) or gate.route_turns(heard):
+    if _TELLS.search(text.replace(_MASK, " ")) or gate.route_turns(heard):
         return None
     found = tag(text)
     things = _things(found)
@@ -213,9 +214,7 @@ def _things(found: Sequence[Token]) -> list[range]:
 
 
 def _is_told(token: Token) -> bool:
-    if token.is_word or token.lower == _MASK:
-        return token.lower not in _KNOWN
-    return False
+    return token.is_word and token.lower not in _KNOWN
 
 
 def _is_thing(found: Sequence[Token], run: range) -> bool:
@@ -230,7 +229,7 @@ def _is_thing(found: Sequence[Token], run: range) -> bool:
     before = found[first].lower if first >= 0 else ""
     if behind < len(found) and found[behind].lower in _NOUNS_BEHIND:
         return False
-    return before in _DETERMINERS | _BEFORE | _VERBS | {_MASK, ":"}
+    return before in _ASKS_FOR
 
 
 def _article(thing: str) -> str:
