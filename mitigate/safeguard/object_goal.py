@@ -153,7 +153,12 @@ _KNOWN = (
     | bag("towards toward another")
 )  # fmt: skip
 _ASKS_FOR = _DETERMINERS | _BEFORE | _VERBS | {_MASK, ":"}  # may stand before a thing
-_MANNERED = (_GREETINGS | _POLITE | _TALK | _ORDERS) - bag("and then or but so once until")
+# what a plain request does not say
+_MANNERED = (
+    (_GREETINGS | _POLITE | _TALK | _ORDERS)
+    - (_VERBS | STOPS | _PLACES | _SMALL)
+    - bag("and then or but so once until")
+)
 # what is told beside a thing: denials, conditions, where it stands, what is over or begins there
 _TELLS = re.compile(
     r"\b(?:not|no|never|n't|without|except|instead|avoid|ignore|unless|if|\w+n't|look(?:ing)? at|"

@@ -17,7 +17,7 @@ from mitigate.safeguard.object_goal import object_goal
         ("Please find an armchair, and come to a halt beside it.", "Go to an armchair and stop."),
         ("I'm not sure, but I think you look for the nearest sink.", "Look for the nearest sink."),
         ("Could you please look for a plant in the house?", "Look for a plant."),
-        ("So you get to the side table. And then you stop.", "Go to the side table and stop."),
+        ("Um, you get to the side table. And then you stop.", "Go to the side table and stop."),
         ("Look [MASK] [MASK] painting.", "Look for a painting."),
     ],
 )  # fmt: skip
@@ -45,6 +45,8 @@ def test_a_request_for_one_thing_keeps_the_thing_and_what_it_is_like(heard, plai
         "Hey, could you please find the stop sign? Thanks!",  # part of a name
         "Look for a chair.",  # plain
         "Walk to the bed and wait.",
+        "Look for the bed and wait next to it.",
+        "Find a sofa, go to it and stop there.",
         "Hello there, and thank you very much!",  # no thing
         "Look for a [MASK], please.",
         "",
