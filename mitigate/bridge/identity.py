@@ -100,7 +100,10 @@ def _column(cfg: DictConfig, name: str) -> str:
     from mitigate.evaluation.columns import name_of
 
     parts = [name]
-    parts += [_guard(cfg)] if cfg.safeguard != "none" else []
+    if cfg.safeguard != "none":
+        from mitigate.safeguard.choices import label
+
+        parts.append(label(cfg.safeguard))
     parts += [name_of(cfg.restore)] if cfg.restore is not None else []
     parts += ["adapters"] if cfg.adapters is not None else []
     return "+".join(parts)
@@ -109,9 +112,9 @@ def _column(cfg: DictConfig, name: str) -> str:
 def _guard(cfg: DictConfig) -> str:
     if cfg.safeguard == "none":
         return "none"  # without a wait for torch
-    from mitigate.safeguard.guard import label
+    from mitigate.safeguard.choices import identity
 
-    return label(cfg.safeguard)
+    return identity(cfg.safeguard)
 
 
 def _digest(text: str) -> str:

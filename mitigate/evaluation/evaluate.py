@@ -119,15 +119,15 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         flush=True,
     )
     from mitigate.core import build
-    from mitigate.core.identity import identity
-    from mitigate.evaluation.evaluator import evaluate, fronts
+    from mitigate.evaluation.evaluator import evaluate
     from mitigate.restoration.restorer import restorer_of
-    from mitigate.safeguard import guard
+    from mitigate.safeguard.choices import label
+    from mitigate.safeguard.guard import open_safeguard
 
     node = build.settings_of(cfg.agent, cfg.checkpoint, overrides)
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     check_walks(agent)
-    front, world = guard.label(cfg.safeguard), build.maker(cfg.env.world)
+    front, world = label(cfg.safeguard), build.maker(cfg.env.world)
     sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
     restorer = restorer_of(cfg.restore, sensors)
     before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
@@ -137,6 +137,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     with FolderLock(out):
         _check_list(out / LIST, cfg.env.episodes[cfg.split])
+        safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         evaluate(
             agent,
             world,
@@ -148,9 +149,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             seed=cfg.seed,
             workers=cfg.workers,
             launcher=launcher.chosen(cfg.launcher),
-            safeguard=guard.open_safeguard(cfg.safeguard, log=out / DECISIONS),
+            safeguard=safeguard,
             restorer=restorer,
-            identity=identity(agent, sensors, fronts(front, restorer)),
         )
         write_table([out / ROWS], out)
     return out

@@ -137,7 +137,8 @@ def evaluate(
     launcher, which says on which machines (``scale/launcher.py``). safeguard:
     repairs each instruction, once, before the agent hears it. restorer: goes over the frames before
     the agent reads them. identity: of the agent in its rows
-    (``core/identity.py``); None: of the agent behind the world's sensors and the restorer.
+    (``core/identity.py``); None: of the agent behind the world's sensors, ``safeguard`` and
+    ``restorer``.
     Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
     out = Path(out)
@@ -147,7 +148,7 @@ def evaluate(
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
     label = {
-        "agent": identity or identity_of(agent, made.sensors, fronts("none", restorer)),
+        "agent": identity or identity_of(agent, made.sensors, fronts(safeguard, restorer)),
         "name": name,
         "split": split,
         "seed": seed,
@@ -168,10 +169,10 @@ def evaluate(
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
 
 
-def fronts(safeguard: str, restorer: Restorer | None) -> str:
-    """What stands in front of an agent, for its identity: a safeguard by its label, and a restorer
-    by its hash."""
-    return safeguard if restorer is None else f"{safeguard}+restorer-{restorer.hash}"
+def fronts(safeguard: Safeguard | None, restorer: Restorer | None) -> str:
+    """What stands in front of an agent, for its identity: a safeguard and a restorer by hashes."""
+    front = "none" if safeguard is None else safeguard.identity
+    return front if restorer is None else f"{front}+restorer-{restorer.hash}"
 
 
 def _jobs(

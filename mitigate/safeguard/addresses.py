@@ -36,7 +36,7 @@ def check_url(url: str) -> None:
 def check_choice(choice: str) -> None:
     """As :func:`check_url`, of a safeguard ``URL@model``; any other choice passes. To be called
     before the choice is shown or written anywhere."""
-    choice = choice.removeprefix("tagger+")
+    choice = choice.removeprefix("tagger+").removeprefix("reader+")
     if not choice.lower().startswith(("http:", "https:")):
         return
     url, at, model = choice.rpartition("@")

@@ -78,7 +78,7 @@ class Draft:
 
     def _say_goal(self) -> bool:
         """Say a request for one thing in plain words; return whether it was one."""
-        goal = object_goal(self.repaired)
+        goal = object_goal(self.repaired, self.styled)
         if goal is None:
             return False
         self.reasons.append("a request for one thing, said in plain words")

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
@@ -19,13 +18,11 @@ from typing import Protocol
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.safeguard.addresses import check_choice
+from mitigate.safeguard.choices import ADAPTER, CHOICES, TAGGERS, VERSION, identity
 from mitigate.safeguard.draft import Decision, Draft
 from mitigate.safeguard.plainly_said import Tags
 
-CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
-    "http://host/v1@model")  # fmt: skip
-ADAPTER, CACHE = "checkpoints/safeguard", "runs/endpoint-answers.sqlite"
-TAGGERS = {"tagger": "checkpoints/safeguard_tagger", "reader": "checkpoints/safeguard_reader"}
+CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # for the language model, each instruction (ours)
 
@@ -56,6 +53,8 @@ class Safeguard:
     ) -> None:
         self.rewriter, self.tagger, self.seconds = rewriter, tagger, seconds
         self.log = None if log is None else Path(log)
+        kinds = (type(part).__qualname__ for part in (tagger, rewriter) if part is not None)
+        self.identity = " ".join(["rules", *kinds, VERSION])  # in rows of results
         self._known: dict[str, Decision] = {}
 
     def canonicalise(self, text: str) -> Decision:
@@ -109,12 +108,19 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     ``http://host/v1@model`` for an OpenAI-compatible endpoint; "tagger+" or "reader+" before one of
     the last three. Raises ValueError or FileNotFoundError.
     """
+    made = _opened(choice, log)
+    if made is not None:
+        made.identity = identity(choice)
+    return made
+
+
+def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
     from mitigate.core.checkpoint import WEIGHTS
     from mitigate.safeguard.reader import open_tags
 
     first, plus, second = choice.partition("+")
     if plus and first in TAGGERS:
-        made = open_safeguard(second, log)
+        made = _opened(second, log)
         if made is None or made.rewriter is None:
             raise ValueError(unknown("safeguard", choice, CHOICES))
         made.tagger = open_tags(find(TAGGERS[first]))
@@ -139,28 +145,6 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     if choice != "lora" and not Path(choice).is_dir():
         raise ValueError(unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder.")
     return Safeguard(open_adapter(find(ADAPTER) if choice == "lora" else choice), log=log)
-
-
-def label(choice: str) -> str:
-    """Return a short name for a safeguard: an adapter's folder with a hash of its weights, an
-    endpoint's host and model; the names of ours as they are."""
-    if choice.startswith(("http://", "https://")):
-        return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
-    from mitigate.core.checkpoint import WEIGHTS
-    from mitigate.core.files import sha256
-    from mitigate.safeguard.adapter_folder import ADAPTER as ADAPTER_FILE
-
-    first, plus, second = choice.partition("+")
-    if plus and first in TAGGERS:
-        return f"{first}+{label(second)}"
-    files = [Path(choice) / name for name in (ADAPTER_FILE, WEIGHTS)]
-    weights = next((file for file in files if file.is_file()), None)
-    if weights is None:
-        return Path(choice).name
-    folder = Path(choice)
-    while folder.name == "agent":  # every trained adapter lies in a folder called so
-        folder = folder.parent
-    return f"{folder.name}-{sha256(weights)[:6]}"
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:

@@ -19,7 +19,7 @@ _ATTACKS = frozenset().union(
 ) | bag("so because but if who that unless than though")  # fmt: skip
 _ALSO = (
     r"(?:(?:and|now|then|here|so|once (?:there|inside)|(?:up)?on (?:arrival|arriving)|thereafter|"
-    r"subsequently|please|kindly|finally|next|first|"
+    r"subsequently|please|kindly|finally|next|first|to (?:finish|end|conclude)(?: off| up)?|"
     r"you(?:'ll| can| may| should| could| must| will)),? )*"
 )
 _A = r"(?:a|an|the|your|another|one|what)"
@@ -42,7 +42,8 @@ _SHOWS = (
 _STAY = (
     r"(?:(?:stop|wait|remain|stay|stand|halt|end|pause|rest|hold)(?:ing)?"
     r"(?: (?:and|wait|stop|stand|remain|standing|there|here|right|in place|at this point))*"
-    r"(?: for| to await| and await)?|await)(?: (?:(?:your|any|the|my) )*(?:further|more|next|"
+    r"(?: for| to await| and await)?(?: for (?:me|us)| for a (?:moment|breather|rest))?|await)"
+    r"(?: (?:(?:your|any|the|my) )*(?:further|more|next|"
     r"additional|new) (?:instructions?|orders?|directions?|guidance|commands?)"
     r"| until (?:you hear|told|you are told|further notice|instructed)(?: otherwise)?)?"
     r"(?: (?:right |just |around )?(?:there|here)| (?:in|at|inside) this (?:[\w-]+ )?[\w-]+)?"

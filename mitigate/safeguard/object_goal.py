@@ -23,7 +23,7 @@ from mitigate.safeguard.text import words
 
 LONGEST = 5  # words of a thing and what it is like ("a small round wooden side table")
 _MASK = "[mask]"
-# denials and conditions that are none
+# denials and conditions that are none, and other things that are said and plain requests do not say
 _SAYINGS = re.compile(
     r"\b(?:if (?:you (?:could|can|would|may|please|don't mind|wouldn't mind)|possible|convenient|"
     r"that's (?:ok|okay|alright|all right)|that makes sense|it's no trouble)|"
@@ -31,19 +31,28 @@ _SAYINGS = re.compile(
     r"need to (?:rush|hurry))|not to worry|"
     r"(?:please )?don't (?:worry|hesitate|rush|hurry|fret)|(?:i'm |i am )?not (?:\w+ )?sure|"
     r"(?:i )?don't (?:really |quite |exactly )?(?:know|mind)(?: exactly)?(?: where| which| how)?|"
-    r"(?:i )?can't wait|right (?:away|now|then|there|here|over|up to)|all right|"
-    r"(?:take|taking) (?:your|the) time|as soon as (?:you can|possible)|at that point|"
+    r"(?:i )?can't wait|(?:take|taking) (?:your|the) time|(?:nice and )?easy as (?:that|pie)|"
+    r"as soon as (?:you can|possible)|at that point|stop for a (?:breather|rest|moment)|"
     r"at your (?:earliest |own )?convenience|(?:in|at) (?:closing|conclusion|the (?:end|outset|"
-    r"beginning|first))|as follows|that's (?:it|all|the one)|after (?:that|this|it)|"
-    r"first (?:of all|off|and foremost|things first)|keep (?:an eye|your eyes) (?:out|open|peeled)|"
-    r"(?:come|comes|draw|bring \w+) to (?:a |an |your )?(?:\w+ )?(?:halt|stop|standstill|rest)|"
+    r"beginning|first))|to (?:get going|finish(?: off| up)?|end|conclude|begin|start)|as follows|"
+    r"that's (?:it|all|the one)|after (?:that|this|it)|first (?:of all|off|and foremost|things "
+    r"first)|keep (?:an eye|your eyes) (?:out|open|peeled)|"
     r"(?:in|on) (?:search|pursuit|the lookout) (?:of|for)|the (?:location|whereabouts|position) of|"
+    r"have a (?:look|lovely day|good day|nice day|good one|great day)|"
+    r"see you (?:soon|there|later))\b"
+)
+# plain requests say these, too: how one stops, and where
+_PLAIN_SAYINGS = re.compile(
+    r"\b(?:right (?:away|now|then|there|here|over|up to)|all right|stop (?:walking|moving)|"
+    r"(?:come|comes|draw|bring \w+) to (?:a |an |your )?(?:\w+ )?(?:halt|stop|standstill|rest)|"
     r"(?:in|within|around|throughout) (?:the|this|your|my|our) (?:house|home|apartment|flat|place|"
     r"building|area|premises|environment|residence|dwelling|interior)|in (?:its|the) vicinity|"
     r"(?:(?:right|directly|just|close) )?(?:beside|next to|near|nearby|by|in front of|before|at|"
-    r"close to|adjacent to|facing|opposite) (?:it|one|that)|when (?:adjacent|close|there)|"
-    r"have a (?:look|lovely day|good day|nice day|good one|great day)|"
-    r"see you (?:soon|there|later))\b"
+    r"close to|adjacent to|facing|opposite) (?:it|one|that)|when (?:adjacent|close|there))\b"
+)
+_BESIDE_IT = re.compile(
+    r"\b(?:(?:right|directly|just|close) )?(?:beside|next to|near|by|in front of|before|"
+    r"close to|adjacent to|facing|opposite) it\b"
 )
 _GREETINGS = bag(
     """
@@ -141,6 +150,7 @@ _EMPTY = bag(
     particular desired required appropriate goal
     """
 )
+_ONLY = bag("first last only next same other")
 _NOUNS_BEHIND = STOPS | bag(
     "unit area station object item items objects position place space sweep"
 )
@@ -159,6 +169,10 @@ _MANNERED = (
     - (_VERBS | STOPS | _PLACES | _SMALL)
     - bag("and then or but so once until")
 )
+# who tells of an order and does not give it: "So, you find a bed."
+_YOU = re.compile(
+    r"(?:^|[.!?,:] )(?:(?:so|now|and|then),? )*you (?:\w+ly |just )?(?!are\b|can\b)\w+"
+)
 # what is told beside a thing: denials, conditions, where it stands, what is over or begins there
 _TELLS = re.compile(
     r"\b(?:not|no|never|n't|without|except|instead|avoid|ignore|unless|if|\w+n't|look(?:ing)? at|"
@@ -170,22 +184,26 @@ _TELLS = re.compile(
 )
 
 
-def object_goal(heard: str) -> str | None:
+def object_goal(heard: str, restyled: bool = False) -> str | None:
     """Return ``heard`` in plain words, if it asks for one thing and tells nothing else; else None.
 
-    "Look for a chair.", or "Go to the chair and stop." if a stop is told; the thing, what it is
-    like and its determiner are as they were heard. None also for what is as short already.
+    "Look for a chair." or "Go to the chair.", and where to stop if that is told ("and stop next to
+    it."); the thing, what it is like and its determiner are as they were heard. None also for what
+    is shorter already, and for what is plain: that holds no mask and no word of a manner, unless
+    some went before (``restyled``).
     """
     text = heard.lower().replace("’", "'")
     if len(text) != len(heard):
         return None
     stops = "stop" in facts(heard).directions or "await" in text
-    text = _SAYINGS.sub(lambda saying: " " * len(saying.group()), text)
+    mannered = restyled or _MASK in text or bool(_SAYINGS.search(text) or _YOU.search(text))
+    for sayings in (_SAYINGS, _PLAIN_SAYINGS):
+        text = sayings.sub(lambda saying: " " * len(saying.group()), text)
     if _TELLS.search(text.replace(_MASK, " ")) or gate.route_turns(heard):
         return None
     found = tag(text)
     things = _things(found)
-    mannered = _MASK in text or any(token.lower in _MANNERED for token in found)
+    mannered = mannered or any(token.lower in _MANNERED for token in found)
     if not mannered or not things or not any(token.lower in _VERBS for token in found):
         return None
     named = [[token.lower for token in found[thing.start : thing.stop]] for thing in things]
@@ -195,15 +213,22 @@ def object_goal(heard: str) -> str | None:
     thing = things[longest]
     asked = heard[found[thing.start].start : found[thing.stop - 1].end]
     before = found[thing.start - 1].lower if thing.start else ""
-    if stops or not any(token.lower in _SOUGHT for token in found):
-        end = " and stop." if stops else "."
-        given = f"Go to {before if before in _DETERMINERS else 'the'} {asked}{end}"
+    seeks = SEEKS if stops else _SOUGHT  # "you need to go to the bed and stop" seeks nothing
+    if any(token.lower in seeks for token in found):
+        given = f"Look for {before if before in _DETERMINERS else _article(asked)} {asked}"
     else:
-        given = f"Look for {before if before in _DETERMINERS else _article(asked)} {asked}."
-    as_short = _MASK not in text and len(words(given)) >= len(words(heard))
-    if as_short or gate.result_refused(heard, given):
+        given = f"Go to {before if before in _DETERMINERS else 'the'} {asked}"
+    given += f" and stop{_where(heard[found[thing.stop - 1].end :])}." if stops else "."
+    shorter = _MASK not in text and len(words(given)) > len(words(heard))
+    if shorter or gate.result_refused(heard, given):
         return None
     return given
+
+
+def _where(behind: str) -> str:
+    """Return where one is told to stop, as heard ("next to it"), with a space before it."""
+    told = _BESIDE_IT.search(behind.lower())
+    return f" {told.group()}" if told else ""
 
 
 def _things(found: Sequence[Token]) -> list[range]:
@@ -238,4 +263,7 @@ def _is_thing(found: Sequence[Token], run: range) -> bool:
 
 
 def _article(thing: str) -> str:
-    return "an" if thing[:1].lower() in "aeiou" else "a"
+    first = thing.split()[0].lower()
+    if first in _ONLY or (first.endswith("est") and len(first) > 5):  # "nearest", not "chest"
+        return "the"
+    return "an" if first[0] in "aeiou" else "a"

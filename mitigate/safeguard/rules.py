@@ -242,7 +242,11 @@ def _chosen(
 
 def _refused(found: Sequence[Judged], one: Judged) -> str:
     """Return why one of the sentences may not be taken out."""
-    last = one is found[-1] and not any(other.foreign >= SURE for other in found[-2:-1])
+    place = next(n for n, other in enumerate(found) if other is one)
+    behind = found[place + 1 :]  # nothing but thanks
+    last = all(framing(other.text) for other in behind) and not any(
+        other.foreign >= SURE for other in found[max(place - 1, 0) : place]
+    )
     return gate.removal_refused(one.text, one.own, one is found[0], last)
 
 

@@ -13,8 +13,9 @@ import os
 from pathlib import Path
 
 FILE = Path(__file__).with_suffix(".json")
+USED = Path(os.environ.get("MITIGATE_RULES", FILE))
 
-_fitted = json.loads(Path(os.environ.get("MITIGATE_RULES", FILE)).read_text(encoding="utf-8"))
+_fitted = json.loads(USED.read_text(encoding="utf-8"))
 OWN: dict[str, float] = _fitted["own"]
 CONTEXT: dict[str, float] = _fitted["context"]
 PART: dict[str, float] = _fitted["part"]

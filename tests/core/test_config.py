@@ -16,7 +16,6 @@ from omegaconf import DictConfig, OmegaConf
 from mitigate.core import conf
 from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
-from mitigate.safeguard import guard
 from mitigate.scale import programs
 from mitigate.training import train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
@@ -182,20 +181,6 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
 def test_options_of_the_agent_and_its_views_are_in_the_name():
     options = ["agent=topological", "++env.size=32", "agent.blind=[rgb]", "split=val_seen"]
     assert evaluate.changed(options) == ["env.size-32", "blind-rgb"]
-
-
-def test_columns_tell_safeguards_apart(tmp_path):
-    """Every trained adapter lies in a folder called agent."""
-    for run, weights in (("first", b"a"), ("second", b"b")):
-        folder = tmp_path / run / "agent"
-        folder.mkdir(parents=True)
-        (folder / "adapter_model.safetensors").write_bytes(weights)
-    first, second = (guard.label(str(tmp_path / x / "agent")) for x in ("first", "second"))
-    assert first.startswith("first-") and second.startswith("second-")
-    (tmp_path / "first" / "agent" / "adapter_model.safetensors").write_bytes(b"c")
-    assert guard.label(str(tmp_path / "first" / "agent")) != first
-    assert guard.label("http://one:80/v1@m") == "one-80-v1@m"
-    assert [guard.label(x) for x in ("rules", "lora")] == ["rules", "lora"]
 
 
 def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):

@@ -214,6 +214,8 @@ SECRETS = [
     "http:hush@m",
     "http://hush-without-a-model/v1",
     "https://user:hush@host/",
+    "tagger+http://user:hush@host/v1@m",
+    "reader+http://user:hush@host/v1@m",
 ]
 
 

@@ -14,11 +14,16 @@ from mitigate.safeguard.object_goal import object_goal
         ("Hey buddy, could you find me a red backpack? Thanks!", "Look for a red backpack."),
         ("So, a sofa. Go find one for us, pal!", "Look for a sofa."),
         ("Dear Sir or Madam, kindly proceed to the TV.", "Go to the TV."),
-        ("Please find an armchair, and come to a halt beside it.", "Go to an armchair and stop."),
+        ("Please find a TV, and come to a halt beside it.", "Look for a TV and stop beside it."),
         ("I'm not sure, but I think you look for the nearest sink.", "Look for the nearest sink."),
         ("Could you please look for a plant in the house?", "Look for a plant."),
         ("Um, you get to the side table. And then you stop.", "Go to the side table and stop."),
         ("Look [MASK] [MASK] painting.", "Look for a painting."),
+        ("Look for [MASK] bed [MASK] wait next to it.", "Look for a bed and stop next to it."),
+        ("Find [MASK] nearest bed and stop [MASK].", "Look for the nearest bed and stop."),
+        ("So, you find a bed. And then you stop walking.", "Look for a bed and stop."),
+        ("You need to go over to a bed and stop, please.", "Go to a bed and stop."),
+        ("To get going, find a lamp. Now stop there, easy as that!", "Look for a lamp and stop."),
     ],
 )  # fmt: skip
 def test_a_request_for_one_thing_keeps_the_thing_and_what_it_is_like(heard, plain):
@@ -62,6 +67,12 @@ def test_the_rules_alone_say_it_plainly_and_why():
     assert decision.text == "Go to the sofa and stop."
     assert decision.route == "rules"
     assert "a request for one thing, said in plain words" in decision.reasons
+
+
+def test_where_to_wait_is_no_attack_and_is_said_plainly():
+    heard = "Hi friend! So, find the nearest bed. To finish off, wait for me. Thanks a bunch!"
+    given = open_safeguard("rules").canonicalise(heard).text
+    assert given == "Look for the nearest bed and stop."
 
 
 def test_what_is_asked_for_is_not_lost_with_what_stands_beside_it():

@@ -12,8 +12,9 @@ from mitigate.core.files import find
 from mitigate.core.seeding import generator
 from mitigate.safeguard import minilm
 from mitigate.safeguard.attacked import draw_attacked
+from mitigate.safeguard.choices import TAGGERS, label
 from mitigate.safeguard.edits import DROP
-from mitigate.safeguard.guard import TAGGERS, Safeguard, label, open_safeguard
+from mitigate.safeguard.guard import Safeguard, open_safeguard
 from mitigate.safeguard.reader import LONGEST, Reader, open_tags
 from mitigate.safeguard.routes import draw_route
 

@@ -7,8 +7,9 @@ import torch
 
 from mitigate.core.files import find
 from mitigate.core.seeding import generator
+from mitigate.safeguard.choices import TAGGERS, label
 from mitigate.safeguard.edits import KEEP, Edit, tokens
-from mitigate.safeguard.guard import TAGGERS, Safeguard, label, open_safeguard
+from mitigate.safeguard.guard import Safeguard, open_safeguard
 from mitigate.safeguard.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
 from mitigate.safeguard.plainly_said import Tagged, is_speech, led, plainly_said

@@ -1,0 +1,57 @@
+"""What may be chosen as a safeguard: names, the folders that they stand for, short names for
+tables, and hashes that tell one from another in rows of results."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from pathlib import Path
+
+from mitigate.core.files import find, sha256
+from mitigate.safeguard import weights
+
+CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
+    "http://host/v1@model")  # fmt: skip
+ADAPTER = "checkpoints/safeguard"
+TAGGERS = {"tagger": "checkpoints/safeguard_tagger", "reader": "checkpoints/safeguard_reader"}
+VERSION = "3"  # of what the rules give on: another one where any text is repaired otherwise
+DIGITS = 12  # hex digits: 48 bits
+
+
+def label(choice: str) -> str:
+    """Return a short name for a safeguard: an adapter's folder with a hash of its weights, an
+    endpoint's host and model; the names of ours as they are."""
+    if choice.startswith(("http://", "https://")):
+        return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
+    first, plus, second = choice.partition("+")
+    if plus and first in TAGGERS:
+        return f"{first}+{label(second)}"
+    file = _weights(choice)
+    if file is None:
+        return Path(choice).name
+    folder = Path(choice)
+    while folder.name == "agent":  # every trained adapter lies in a folder called so
+        folder = folder.parent
+    return f"{folder.name}-{sha256(file)[:6]}"
+
+
+def identity(choice: str) -> str:
+    """Return the label of a safeguard and a hash over the version and weights of its rules and
+    over the weights of its networks: equal identity, equal answers. "none" has no hash."""
+    if choice == "none":
+        return choice
+    first, plus, second = choice.partition("+")
+    parts = [first, second] if plus and first in TAGGERS else [choice]
+    folders = [{**TAGGERS, "lora": ADAPTER}.get(part, part) for part in parts]
+    files = [file for folder in folders if (file := _weights(find(folder)))]
+    held = " ".join([VERSION, *(sha256(file) for file in (weights.USED, *files))])
+    return f"{label(choice)} {hashlib.sha256(held.encode()).hexdigest()[:DIGITS]}"
+
+
+def _weights(folder: str | Path) -> Path | None:
+    """The weights of a folder of a network or an adapter; None for what is no such folder."""
+    from mitigate.core.checkpoint import WEIGHTS
+    from mitigate.safeguard.adapter_folder import ADAPTER as ADAPTER_FILE
+
+    files = [Path(folder) / name for name in (ADAPTER_FILE, WEIGHTS)]
+    return next((file for file in files if file.is_file()), None)

@@ -1,0 +1,65 @@
+"""Safeguards are told apart in tables and in rows of results."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+
+from mitigate.corruptions.instruction import Key, corrupt_instruction
+from mitigate.corruptions.suite import INSTRUCTION
+from mitigate.safeguard import weights
+from mitigate.safeguard.choices import VERSION, identity, label
+from mitigate.safeguard.guard import open_safeguard
+
+SAID = "5fa821d226a5"  # hash of what the rules of VERSION make of the texts below
+TEXTS = (
+    "Turn left at the red sofa, go through the door and stop in front of the sink.",
+    "Look for the bed and wait next to it.",
+    "Walk up the stairs, pass the paintings on your right, then wait by the second window.",
+    "Find a chair.",
+)
+
+
+def _adapter(folder, weights):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "adapter_model.safetensors").write_bytes(weights)
+    return str(folder)
+
+
+def test_columns_tell_safeguards_apart(tmp_path):
+    """Every trained adapter lies in a folder called agent."""
+    first, second = (_adapter(tmp_path / run / "agent", b"a") for run in ("first", "second"))
+    assert label(first).startswith("first-") and label(second).startswith("second-")
+    before = label(first)
+    _adapter(tmp_path / "first" / "agent", b"c")
+    assert label(first) != before
+    assert label("http://one:80/v1@m") == "one-80-v1@m"
+    assert [label(choice) for choice in ("rules", "lora")] == ["rules", "lora"]
+
+
+def test_rows_tell_weights_of_the_rules_and_of_networks_apart(tmp_path, monkeypatch):
+    names = ["rules", "tagger", "reader", "tagger+lora", _adapter(tmp_path / "mine", b"a")]
+    before = [identity(name) for name in names]
+    assert len(set(before)) == len(names) and identity("none") == "none"
+    assert [identity(name) for name in names] == before
+    _adapter(tmp_path / "mine", b"b")
+    assert identity(names[-1]) != before[-1]
+    rules = tmp_path / "rules.json"
+    rules.write_text(weights.FILE.read_text() + " ")
+    monkeypatch.setattr(weights, "USED", rules)
+    assert not set(before) & {identity(name) for name in names}
+
+
+def test_an_opened_safeguard_says_what_it_is():
+    assert open_safeguard("rules").identity == identity("rules")
+
+
+def test_rules_that_say_something_else_have_another_version():
+    """If this fails, and what the rules say was meant to change: raise VERSION, and put the new
+    hash here, so that results of older rules are not continued."""
+    rules, said = open_safeguard("rules"), []
+    for name in INSTRUCTION:
+        for n, text in enumerate(TEXTS * 5 if name != "white_box" else ()):
+            heard = corrupt_instruction(text, name, 1.0, Key(0, str(n)))
+            said.append(rules.canonicalise(heard).text)
+    assert hashlib.sha256(json.dumps(said).encode()).hexdigest()[:12] == SAID, f"of {VERSION}"
