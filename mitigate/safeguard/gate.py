@@ -6,6 +6,7 @@ Whoever wants to change a text, a rule or a model, asks here; each function says
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 
 from mitigate.corruptions.language.fidelity import facts
@@ -14,9 +15,11 @@ from mitigate.corruptions.language.tagger import tag
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import LANDMARKS, MOVES, VERBS
+from mitigate.safeguard.goal_words import told_of_goal
 from mitigate.safeguard.honest import belongs
 from mitigate.safeguard.losses import unproven
 from mitigate.safeguard.meaning import CATEGORIES, differs
+from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.text import MASK, words
 from mitigate.safeguard.written import written
 
@@ -26,6 +29,7 @@ _HUNTS = re.compile(
     r"in search)",
     re.IGNORECASE,
 )
+_GOAL = re.compile(r"\b(?:target|goal|objective|destination)s? (?:is|are|will be)\b", re.IGNORECASE)
 _TRACKED = re.compile(r"(\b(?:track|hunt|chas)\w*\b[^.;:!?]{0,40}?) down\b", re.IGNORECASE)
 _SEEKS = re.compile(
     r"\b(?:find|finding|look(?:ing|ed)? for|locate|locating|"
@@ -154,6 +158,15 @@ def rewrite_refused(heard: str, said: str, last: bool = False) -> str:
     if wanted and found and wanted.isdisjoint(found) and not route_turns(heard):
         return f"another thing is to be found: {', '.join(sorted(found))}"
     return differs(heard, said)
+
+
+def goal_refused(heard: str, said: str) -> str:
+    """Return why ``said`` may not stand for the whole of ``heard``, if that asks to find something
+    and tells no turn: all that may be told of the thing is to stay."""
+    if route_turns(heard) or not (_HUNTS.search(heard) or _GOAL.search(heard)):
+        return ""
+    lost = Counter(told_of_goal(heard)) - Counter(plain_form(word) for word in words(said))
+    return f"what is told of what is to be found would be lost ({', '.join(lost)})" if lost else ""
 
 
 def edit_refused(heard: str, said: str, aside: Sequence[str]) -> str:

@@ -58,6 +58,11 @@ _NO_FURTHER = (
 )
 _THANKS = r"(?:,? (?:and )?(?:thanks|thank you)(?: (?:so|very|much|again|a lot|for your help))*)?"
 _ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_ARRIVED}|{_NO_FURTHER}){_THANKS}")
+_NEED_NOT = re.compile(
+    rf"{_ALSO}you (?:don't|do not|won't|needn't|need not)(?: (?:need|have) to)? "
+    r"(?:go|walk|head|step|enter|climb|turn)(?: (?:in|into|inside|through|up|down|out|there|it|"
+    r"that far|all the way))*"
+)
 _GOES_ON = re.compile(
     rf"{_ALSO}(?:keep|continue)(?: on)? (?:walking|going|moving|straight|forward)"
     r"(?: (?:straight|forward|ahead|on))*"
@@ -87,6 +92,8 @@ def belongs(sentence: str, first: bool, last: bool) -> str:
         return "it tells to turn around"
     if not first and (shows_place(sentence) or _KEEPS.fullmatch(said) and not _attacks(said)):
         return "it tells what a place is"
+    if not first and _NEED_NOT.fullmatch(said):
+        return "it tells where not to go"
     if not (first or last) and _GOES_ON.fullmatch(said):
         return "it tells to go on"
     if last and not first and _ENDS.fullmatch(said):

@@ -11,127 +11,34 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from mitigate.corruptions.language.directions import TURN_VERBS
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.tagger import Token, tag
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
+from mitigate.safeguard.goal_words import (
+    ACTS,
+    GREETINGS,
+    KNOWN,
+    ORDERS,
+    PLACES,
+    PLAIN_SAYINGS,
+    POLITE,
+    SAYINGS,
+    SMALL,
+    STAYS,
+    TALK,
+    TELLS_NOTHING,
+    VERBS,
+)
 from mitigate.safeguard.meaning import CATEGORIES
 from mitigate.safeguard.neighbours import SEEKS, STOPS
-from mitigate.safeguard.steps import MOVES
 from mitigate.safeguard.text import words
 
 LONGEST = 5  # words of a thing and what it is like ("a small round wooden side table")
 _MASK = "[mask]"
-# denials and conditions that are none, and other things that are said and plain requests do not say
-_SAYINGS = re.compile(
-    r"\b(?:if (?:you (?:could|can|would|may|please|don't mind|wouldn't mind)|possible|convenient|"
-    r"that's (?:ok|okay|alright|all right)|that makes sense|it's no trouble)|"
-    r"(?:there's |there is )?no (?:rush|hurry|worries|pressure|problem|trouble|idea|"
-    r"need to (?:rush|hurry))|not to worry|"
-    r"(?:please )?don't (?:worry|hesitate|rush|hurry|fret)|(?:i'm |i am )?not (?:\w+ )?sure|"
-    r"(?:i )?don't (?:really |quite |exactly )?(?:know|mind)(?: exactly)?(?: where| which| how)?|"
-    r"(?:i )?can't wait|(?:take|taking) (?:your|the) time|(?:nice and )?easy as (?:that|pie)|"
-    r"as soon as (?:you can|possible)|at that point|stop for a (?:breather|rest|moment)|"
-    r"at your (?:earliest |own )?convenience|(?:in|at) (?:closing|conclusion|the (?:end|outset|"
-    r"beginning|first))|to (?:get going|finish(?: off| up)?|end|conclude|begin|start)|as follows|"
-    r"that's (?:it|all|the one)|after (?:that|this|it)|first (?:of all|off|and foremost|things "
-    r"first)|keep (?:an eye|your eyes) (?:out|open|peeled)|"
-    r"(?:in|on) (?:search|pursuit|the lookout) (?:of|for)|the (?:location|whereabouts|position) of|"
-    r"have a (?:look|lovely day|good day|nice day|good one|great day)|"
-    r"see you (?:soon|there|later))\b"
-)
-# plain requests say these, too: how one stops, and where
-_PLAIN_SAYINGS = re.compile(
-    r"\b(?:right (?:away|now|then|there|here|over|up to)|all right|stop (?:walking|moving)|"
-    r"(?:come|comes|draw|bring \w+) to (?:a |an |your )?(?:\w+ )?(?:halt|stop|standstill|rest)|"
-    r"(?:in|within|around|throughout) (?:the|this|your|my|our) (?:house|home|apartment|flat|place|"
-    r"building|area|premises|environment|residence|dwelling|interior)|in (?:its|the) vicinity|"
-    r"(?:(?:right|directly|just|close) )?(?:beside|next to|near|nearby|by|in front of|before|at|"
-    r"close to|adjacent to|facing|opposite) (?:it|one|that)|when (?:adjacent|close|there))\b"
-)
 _BESIDE_IT = re.compile(
     r"\b(?:(?:right|directly|just|close) )?(?:beside|next to|near|by|in front of|before|"
     r"close to|adjacent to|facing|opposite) it\b"
-)
-_GREETINGS = bag(
-    """
-    hey hi hello hiya howdy greetings welcome good morning afternoon evening day dear sir madam
-    ma'am miss friend buddy pal mate champ folks there robot robo bot agent assistant operator
-    unit helper
-    """
-)
-_POLITE = bag(
-    """
-    please pls kindly thanks thank cheers thx ta bunch much many very so really truly greatly
-    highly most ever appreciate appreciated appreciates grateful obliged cooperation assistance
-    help helping helpful kind kindness mind love glad happy delighted pleasure pleased lovely
-    great nice super awesome wonderful perfect amazing fantastic brilliant sweet cool fun enjoy
-    luck lucky excited ready easy peasy simple simply best wishes regards sincerely respectfully
-    humbly request requested requesting requests ask asked asking invited instructed advised
-    directed required obligated wish desire desired would could can may might shall should must
-    will ought favor favour bless esteemed colleague colleagues valued respected honoured
-    honored sincere gratitude permission granted convenience good afternoon patience attention
-    consideration hesitate you'd thankful gracious graciously gently carefully care hug high
-    five woohoo yay teamwork proud pop rock rocking star superstar rooting believe got cheerful
-    joy delight splendid marvellous marvelous invite dear heart sweetheart sweetie whenever
-    million time darling honey hero legend job work well done nicely
-    """
-)
-_TALK = bag(
-    """
-    um uh er erm hm hmm oh ah well ok okay alright alrighty yeah yep yes yup so like just only
-    maybe perhaps probably basically actually honestly kinda sorta sort kind guess think thinks
-    thought believe suppose supposed hope hopes hopefully know knows mean means say said tell
-    told explain try trying tries let let's lets want wants wanna wanted need needs needed gotta
-    got get gets getting have has having had do does doing did is are was were be been being am
-    i'm i'd i'll i've you're you'd you'll you've we'll we're we'd we've it's it'll it'd that's
-    that'll what's where's here's there's new sense makes make goes going gonna go went wonder
-    wondering how what where which who when while once after before until till as soon then now
-    next first firstly finally lastly ultimately eventually last end ends ending afterwards
-    thereafter thereupon subsequently upon also too and or but way ahead breather break moment
-    second seconds minute bit little sec quick quickly bother trouble possible able begin
-    beginning initially whatever whichever else anyway anyhow though because since look looking
-    looks thingy whoever together about even really literally give gives take takes taking put
-    call called named sorry excuse pardon wherever ready set whereabouts situated happen happens
-    hiding writing should lead off
-    """
-)
-_ORDERS = bag(
-    """
-    task briefing brief procedure procedures route guidance navigation navigate navigating
-    instruction instructions instructed objective objectives mission assignment order orders
-    command commands execute executing execution perform performing commence commencing begin
-    beginning start starting initiate initiating initiated initialise initialize conduct
-    conducting carry out complete completes completed completing completion conclude concludes
-    concluded concluding conclusion report reporting confirm confirmed confirming upon arrival
-    arrive arrives arriving arrived reach reached reaching approach approaching acquire
-    acquisition identify identified identifying identification locate located locating location
-    detect detection search sweep scan scanning survey proceed proceeding following follows
-    below operation destination goal goals target targets item items object objects thing
-    position standby terminate termination cease over copy steps movement motion halt advance
-    advancing transit relocate relocation affirm affirmative acknowledge acknowledged visual
-    contact status verify verified verification ensure designated parameters primary current
-    sector perimeter traverse traversal immediately promptly accordingly thereafter maintain
-    hold stationary remain await category instance acceptable required requirement
-    episode success successfully distance clearance minimum maximum path length optimal
-    efficient efficiently autonomously autonomous perception explore exploring exploration until
-    detected found seek undertake effect
-    """
-)
-_PLACES = bag(
-    """
-    here there around nearby somewhere anywhere house home apartment flat place building area
-    premises environment vicinity residence dwelling surroundings space household interior
-    within wherever
-    """
-)
-_SMALL = bag(
-    """
-    i me we us you your yourself it its this that these those them they one ones he she to for
-    of at by near in on with over up about the a an my our his her any some out off away along
-    down itself
-    """
 )
 _DETERMINERS = bag(
     """
@@ -143,30 +50,16 @@ _BEFORE = bag(
     to for at by near towards toward upon me us out up over track find need want is are
     """
 )
-# what may stand between the determiner and the thing, and tells nothing of it
-_EMPTY = bag(
-    """
-    good nice lovely suitable designated target specified requested aforementioned said
-    particular desired required appropriate goal
-    """
-)
 _ONLY = bag("first last only next same other")
 _NOUNS_BEHIND = STOPS | bag(
     "unit area station object item items objects position place space sweep"
 )
 _SOUGHT = SEEKS | bag("locating need needs want wants require get see where")
-_VERBS = _SOUGHT | (MOVES - TURN_VERBS) | bag(
-    "navigate proceed approach approaching reach make betake stroll wander mosey amble advance"
-)  # fmt: skip
-_KNOWN = (
-    _GREETINGS | _POLITE | _TALK | _ORDERS | _PLACES | _SMALL | _VERBS | STOPS | _EMPTY
-    | bag("towards toward another")
-)  # fmt: skip
-_ASKS_FOR = _DETERMINERS | _BEFORE | _VERBS | {_MASK, ":"}  # may stand before a thing
+_ASKS_FOR = _DETERMINERS | _BEFORE | VERBS | {_MASK, ":"}  # may stand before a thing
 # what a plain request does not say
 _MANNERED = (
-    (_GREETINGS | _POLITE | _TALK | _ORDERS)
-    - (_VERBS | STOPS | _PLACES | _SMALL)
+    (GREETINGS | POLITE | TALK | ORDERS)
+    - (VERBS | STOPS | PLACES | SMALL)
     - bag("and then or but so once until")
 )
 # who tells of an order and does not give it: "So, you find a bed."
@@ -178,8 +71,11 @@ _TELLS = re.compile(
     r"\b(?:not|no|never|n't|without|except|instead|avoid|ignore|unless|if|\w+n't|look(?:ing)? at|"
     r"(?:in|on|over|up|down|out|off|along|with|within|away|around|about|of|as|like|than|till|"
     r"until|before|after|when|while|once|where|or|but) (?:it|them|that|the|an?|this|these|those|my|"
-    r"your|our|his|her|any|some|another)|(?:stop|cease|quit|finish|done|terminate|end)s? \w+ing|"
-    r"(?:is|are) over|(?:has|have|had) been|was|were|(?:start|begin)\w* (?:at|near))\b"
+    r"your|our|his|her|any|some|another)|"
+    r"(?:until|till|before|after|when|while|once|if) (?:i|we|he|she|they|someone|told|further)|"
+    r"(?:that|which) (?:is|are|stands?|lies)|"
+    r"(?:stop|cease|quit|finish|done|terminate|end)s? \w+ing|(?:is|are) over|"
+    r"(?:has|have|had) been|was|were|(?:start|begin)\w* (?:at|near))\b"
     r"|[\"“”()<>{}\[\]/\\|=#*`]"
 )
 
@@ -195,24 +91,26 @@ def object_goal(heard: str, restyled: bool = False) -> str | None:
     text = heard.lower().replace("’", "'")
     if len(text) != len(heard):
         return None
-    stops = "stop" in facts(heard).directions or "await" in text
-    mannered = restyled or _MASK in text or bool(_SAYINGS.search(text) or _YOU.search(text))
-    for sayings in (_SAYINGS, _PLAIN_SAYINGS):
+    stops = "stop" in facts(heard).directions or bool(STAYS.search(text))
+    mannered = restyled or _MASK in text or bool(SAYINGS.search(text) or _YOU.search(text))
+    for sayings in (SAYINGS, PLAIN_SAYINGS):
         text = sayings.sub(lambda saying: " " * len(saying.group()), text)
     if _TELLS.search(text.replace(_MASK, " ")) or gate.route_turns(heard):
         return None
     found = tag(text)
     things = _things(found)
     mannered = mannered or any(token.lower in _MANNERED for token in found)
-    if not mannered or not things or not any(token.lower in _VERBS for token in found):
+    if not mannered or not things or not any(token.lower in VERBS for token in found):
         return None
     named = [[token.lower for token in found[thing.start : thing.stop]] for thing in things]
     longest = max(range(len(things)), key=lambda n: len(named[n]))
     if any(named[longest][-len(name) :] != name for name in named):
         return None
     thing = things[longest]
+    if _acts(found[thing.stop :]):
+        return None  # something else is to be done then
     asked = heard[found[thing.start].start : found[thing.stop - 1].end]
-    before = found[thing.start - 1].lower if thing.start else ""
+    before = _before(found, thing.start)
     seeks = SEEKS if stops else _SOUGHT  # "you need to go to the bed and stop" seeks nothing
     if any(token.lower in seeks for token in found):
         given = f"Look for {before if before in _DETERMINERS else _article(asked)} {asked}"
@@ -223,6 +121,13 @@ def object_goal(heard: str, restyled: bool = False) -> str | None:
     if shorter or gate.result_refused(heard, given):
         return None
     return given
+
+
+def _acts(behind: Sequence[Token]) -> bool:
+    """Return whether something is told to be done but to seek or stop ("and bring it to me")."""
+    told = [token.lower for token in behind if token.is_word]
+    pairs = zip(told, [*told[1:], ""], strict=True)
+    return any(one in ACTS and not (other in SEEKS or other == "for") for one, other in pairs)
 
 
 def _where(behind: str) -> str:
@@ -244,7 +149,7 @@ def _things(found: Sequence[Token]) -> list[range]:
 
 
 def _is_told(token: Token) -> bool:
-    return token.is_word and token.lower not in _KNOWN
+    return token.is_word and token.lower not in KNOWN
 
 
 def _is_thing(found: Sequence[Token], run: range) -> bool:
@@ -253,13 +158,15 @@ def _is_thing(found: Sequence[Token], run: range) -> bool:
     thing = last.tag in ("NOUN", "PROPN") or last.lower in CATEGORIES
     if not thing or len(run) > LONGEST or any(found[p].tag == "NUM" for p in run):
         return False
-    first, behind = run.start - 1, run.stop
-    while first >= 0 and found[first].lower in _EMPTY:
-        first -= 1
-    before = found[first].lower if first >= 0 else ""
-    if behind < len(found) and found[behind].lower in _NOUNS_BEHIND:
+    if run.stop < len(found) and found[run.stop].lower in _NOUNS_BEHIND:
         return False
-    return before in _ASKS_FOR
+    return _before(found, run.start) in _ASKS_FOR
+
+
+def _before(found: Sequence[Token], place: int) -> str:
+    """Return the word before ``place``, but for those that tell nothing of a thing; "" for none."""
+    before = (token.lower for token in reversed(found[:place]))
+    return next((word for word in before if word not in TELLS_NOTHING), "")
 
 
 def _article(thing: str) -> str:

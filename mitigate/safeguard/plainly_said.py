@@ -107,7 +107,7 @@ def plainly_said(text: str, tagged: Tagged) -> tuple[str, list[str]]:
     reasons: list[str] = []
     for tries in (TRIES, TRIES[-1:]):
         said, kept = _all_said(text, tagged, tries)
-        problem = gate.result_refused(text, said)
+        problem = gate.result_refused(text, said) or gate.goal_refused(text, said)
         reasons += [*kept, *([f"kept all: {problem}"] if problem else [])]
         if not problem:
             return said, reasons

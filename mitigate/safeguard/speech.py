@@ -41,6 +41,7 @@ STOP = re.compile(
     r"(?:motion|movement|travel|progress|advance|walking|journey) (?:is|should|shall|must|may|"
     r"will|can|has|have|are)(?: to)?(?: be)? (?:discontinue|cease|stop|halt|terminate|end|arrest|"
     r"conclude)(?:d|ped|ed)?|"
+    r"freeze(?= (?:right|there|here|by|at|in|next|near|beside|before)\b)|"
     r"(?:hang|sit|hold) tight|stay put|stand still|stand ?by|call it a day|"
     r"(?:plant|rest) your feet|(?:park|plant|station) yourself|"
     r"(?:hang|hold) on(?= (?:right |just )?(?:there|here|by|at|in|next|near|beside|outside|inside|"

@@ -24,6 +24,7 @@ from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.clauses import clauses_told
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.lexicon import FUNCTION
+from mitigate.safeguard.marks import marks_kept
 from mitigate.safeguard.neighbours import SEEKS, STOPS, parted
 from mitigate.safeguard.phrases import unbacked
 from mitigate.safeguard.speech import SIDE_BACK, STOP
@@ -67,8 +68,6 @@ _NOTHING = re.compile(
 _AT_THAT = bag("upon once when after")
 # words that are told together or not at all
 _WHEN = bag("until till before prior after upon once when")  # tells when, of what comes then
-_BRACKETS = frozenset("()[]")
-_QUOTES = frozenset("'\"“”‘’`")
 # probability of dropping from which a word may go although it may tell of the way (chosen on the
 # validation voices)
 SURE = 0.9
@@ -114,7 +113,7 @@ def _mended(made: Edited, drop: Sequence[float]) -> None:
         more = [_stops(made), parted(made), turns_told(made), clauses_told(made)]
         if not any([*mended, *more]):
             break
-    _marks(made)
+    marks_kept(made)
 
 
 def _sayings(made: Edited) -> None:
@@ -240,17 +239,3 @@ def _stops(made: Edited) -> bool:
         made.before[span.stop] = NUMBER["stop"]
         return True
     return False
-
-
-def _marks(made: Edited) -> None:
-    """Keep the hyphen of a word of which both parts are kept ("180-degree"), no other, and no
-    single quote or bracket."""
-    for pair in (_QUOTES, _BRACKETS):
-        kept = [p for p, t in enumerate(made.found) if t.text in pair and made.kept(p)]
-        for place in kept if len(kept) % 2 else ():
-            made.acts[place] = DROP
-    for place in range(1, len(made.found) - 1):
-        one, mark, other = made.found[place - 1 : place + 2]
-        if mark.text == "-" and one.end == mark.start and mark.end == other.start:
-            whole = made.kept(place - 1) and made.kept(place + 1)
-            made.acts[place], made.before[place] = KEEP if whole else DROP, 0

@@ -15,6 +15,7 @@ _TOGETHER = re.compile(
     r"(?:above|below|beneath|underneath) (?:it|them|that|those)|"
     r"(?:stop|wait|stay|stand|halt) (?:right |just )?(?:inside|outside|in there|out there|"
     r"(?:on|in|by|under|behind) (?:it|that|them|those))|"
+    r"having \w+ed|having (?:left|gone|come|got|gotten|made|taken|found|been)|"
     r"parallel to|adjacent to|prior to|short of|clear of|next to|close to|on top of|out of|"
     r"away from|instead of|one more|once more|"
     r"at the (?:end|top|bottom|foot|head|center|centre) of|to the (?:left|right) of)(?= )"

@@ -142,3 +142,8 @@ def test_a_turn_around_in_formal_words_stays(told):
 )
 def test_turning_around_what_is_told_is_an_attack(attack):
     assert given_on(f"{attack} {ROUTE}") == ROUTE
+
+
+def test_where_not_to_go_stays():
+    text = "Go past the kitchen. You don't need to go in. Turn right and stop at the stairs."
+    assert given_on(text) == text

@@ -12,6 +12,8 @@ from mitigate.safeguard.object_goal import object_goal
     "heard, plain",
     [
         ("Hey buddy, could you find me a red backpack? Thanks!", "Look for a red backpack."),
+        ("Please find the target chair and remain there.", "Look for the chair and stop."),
+        ("Pretty please find the chaise longue.", "Look for the chaise longue."),
         ("So, a sofa. Go find one for us, pal!", "Look for a sofa."),
         ("Dear Sir or Madam, kindly proceed to the TV.", "Go to the TV."),
         ("Please find a TV, and come to a halt beside it.", "Look for a TV and stop beside it."),
@@ -48,6 +50,13 @@ def test_a_request_for_one_thing_keeps_the_thing_and_what_it_is_like(heard, plai
         "I need you to smash the lamp please, thank you.",  # something else to do
         "Hello! Could you find me two chairs please? Thanks!",  # a number
         "Hey, could you please find the stop sign? Thanks!",  # part of a name
+        "Be a star, find the bedside table, and stay there till I come.",  # until when
+        "Could you find the bed and wait by it until I arrive, please?",
+        "Could you please find the lamp and get it to me?",  # what to do with it
+        "Please find a chair, thank you, and take it away.",
+        "Please find the chair, and then look around, thanks.",
+        "Could you find a bed, please, and after that come back to me?",
+        "Could you please find the clock that is ahead?",
         "Look for a chair.",  # plain
         "Walk to the bed and wait.",
         "Look for the bed and wait next to it.",

@@ -264,3 +264,30 @@ def test_a_stop_in_two_words_with_a_place_is_said():
 )  # fmt: skip
 def test_a_denial_keeps_its_marks_and_a_request_leaves_nothing_behind(marked, said):
     assert given(marked) == said
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("Go in the hallway{,} after you turn on the left.", "Go in the hallway, after you turn"),
+        ("Turn left{, love, you} pass the sofa.", "Turn left, pass the sofa."),
+        ("Go past the sofa{;} stop.", "Go past the sofa; stop."),
+        ("Go past{, er,} the sofa.", "Go past the sofa."),  # stood around what was aside
+        ("Go past the sofa{,} and stop.", "Go past the sofa and stop."),
+        ("Turn left<then>{, } go on.", "Turn left then go on."),
+        ("Walk to the end and{, like,} stop.", "Walk to the end and stop."),
+    ],
+)
+def test_what_parts_two_clauses_stays_unless_something_else_parts_them(marked, said):
+    assert given(marked).startswith(said)
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("{Having} left the kitchen, turn to the right.", "Having left the kitchen, turn"),
+        ("Go past the chairs and {freeze in} front of the lamp.", "and stop in front of the lamp"),
+    ],
+)
+def test_what_was_done_before_and_how_one_stops_stay_told(marked, said):
+    assert said in given(marked)
