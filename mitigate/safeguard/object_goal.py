@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.tagger import Token, tag
@@ -125,9 +126,8 @@ def object_goal(heard: str, restyled: bool = False) -> str | None:
 
 def _acts(behind: Sequence[Token]) -> bool:
     """Return whether something is told to be done but to seek or stop ("and bring it to me")."""
-    told = [token.lower for token in behind if token.is_word]
-    pairs = zip(told, [*told[1:], ""], strict=True)
-    return any(one in ACTS and not (other in SEEKS or other == "for") for one, other in pairs)
+    told = [token.lower for token in behind if token.is_word] + [""]
+    return any(one in ACTS and other not in SEEKS | {"for"} for one, other in pairwise(told))
 
 
 def _where(behind: str) -> str:
