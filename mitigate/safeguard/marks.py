@@ -45,7 +45,7 @@ def _parting(made: Edited) -> None:
         parted = any(made.kept(p) or made.before[p] for p in between) or made.before[place]
         parted = parted or before is None or made.found[before].lower in _JOINS
         marks = [p for p in between if made.found[p].text in _PARTING]
-        if marks and not parted and token.lower not in _JOINS:
-            if len(marks) == 1 or token.lower in _BEGINS:
-                made.acts[marks[-1]] = KEEP
+        begins = len(marks) == 1 or token.lower in _BEGINS
+        if marks and begins and not parted and token.lower not in _JOINS:
+            made.acts[marks[-1]] = KEEP
         before = place
