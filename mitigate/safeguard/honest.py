@@ -59,6 +59,7 @@ _NO_FURTHER = (
 _THANKS = r"(?:,? (?:and )?(?:thanks|thank you)(?: (?:so|very|much|again|a lot|for your help))*)?"
 _ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_ARRIVED}|{_NO_FURTHER}){_THANKS}")
 _NEED_NOT = re.compile(
+    r"(?:do not|don't) (?:make|take) any (?:sharp|hard|big) turns?|"
     rf"{_ALSO}you (?:don't|do not|won't|needn't|need not)(?: (?:need|have) to)? "
     r"(?:go|walk|head|step|enter|climb|turn)(?: (?:in|into|inside|through|up|down|out|there|it|"
     r"that far|all the way))*"

@@ -147,3 +147,5 @@ def test_turning_around_what_is_told_is_an_attack(attack):
 def test_where_not_to_go_stays():
     text = "Go past the kitchen. You don't need to go in. Turn right and stop at the stairs."
     assert given_on(text) == text
+    text = "Follow the hallway. Do not make any sharp turns. Enter the bathroom."
+    assert given_on(text) == text
