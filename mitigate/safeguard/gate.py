@@ -19,17 +19,27 @@ from mitigate.safeguard.goal_words import told_of_goal
 from mitigate.safeguard.honest import belongs
 from mitigate.safeguard.losses import unproven
 from mitigate.safeguard.meaning import CATEGORIES, differs
+from mitigate.safeguard.neighbours import SEEKS
 from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.text import MASK, words
 from mitigate.safeguard.written import written
 
 ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
 _HUNTS = re.compile(
-    r"\b(?:find|finding|look(?:ing|ed)? for|locat|search|seek|spot|fetch|hunt|where|"
+    r"\b(?:find|finding|look(?:ing|ed)? for|locat|search|seek|spot|fetch|hunt|track|where|"
     r"in search)",
     re.IGNORECASE,
 )
-_GOAL = re.compile(r"\b(?:target|goal|objective|destination)s? (?:is|are|will be)\b", re.IGNORECASE)
+_GOAL = re.compile(
+    r"\b(?:target|goal|object|objective|destination|item)s?(?: (?:is|are|will be)\b|:)",
+    re.IGNORECASE,
+)
+# a thing that was named before, as the object of a verb or where something is
+_PRONOUN = re.compile(
+    r"\b(?:past|to|at|by|near|behind|into|through|around|beside|from|under|over|for|in front of|"
+    r"find|locate|see|reach|pass|leave|enter|fetch|get|keep|ignore) (?:it|them)\b(?! is| \w+ing\b)",
+    re.IGNORECASE,
+)
 _TRACKED = re.compile(r"(\b(?:track|hunt|chas)\w*\b[^.;:!?]{0,40}?) down\b", re.IGNORECASE)
 _SEEKS = re.compile(
     r"\b(?:find|finding|look(?:ing|ed)? for|locate|locating|"
@@ -128,6 +138,8 @@ def result_refused(heard: str, given: str) -> str:
     if not any(c.isalnum() for c in given):
         return "nothing would be left"
     wanted, left = sought(heard), sought(given)
+    if _named_before(heard) and not _named_before(given):
+        return 'what "it" stands for would be lost'
     if route_facts(heard) and not (route_facts(given) or left):
         return "nothing of the way would be left"
     named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
@@ -149,6 +161,13 @@ def result_refused(heard: str, given: str) -> str:
     return ""
 
 
+def _named_before(text: str) -> bool:
+    """Return whether a thing is named before the first "it" or "them" that stands for one, or there
+    is none such."""
+    first = _PRONOUN.search(text)
+    return first is None or bool(mentioned(text[: first.start()]))
+
+
 def rewrite_refused(heard: str, said: str, last: bool = False) -> str:
     """Return why ``said`` may not stand for ``heard``; ``last``: with which the text ends, where to
     stop may be meant and not said ("and there's your sofa")."""
@@ -165,7 +184,10 @@ def goal_refused(heard: str, said: str) -> str:
     and tells no turn: all that may be told of the thing is to stay."""
     if route_turns(heard) or not (_HUNTS.search(heard) or _GOAL.search(heard)):
         return ""
-    lost = Counter(told_of_goal(heard)) - Counter(plain_form(word) for word in words(said))
+    given = words(said)
+    lost = Counter(told_of_goal(heard)) - Counter(map(plain_form, given))
+    if sum(w in SEEKS for w in given) > max(1, sum(w in SEEKS for w in words(heard))):
+        return "it would be sought twice"
     return f"what is told of what is to be found would be lost ({', '.join(lost)})" if lost else ""
 
 

@@ -20,6 +20,8 @@ _ATTACKS = frozenset().union(
 _ALSO = (
     r"(?:(?:and|now|then|here|so|once (?:there|inside)|(?:up)?on (?:arrival|arriving)|thereafter|"
     r"subsequently|please|kindly|finally|next|first|to (?:finish|end|conclude)(?: off| up)?|"
+    r"(?:(?:up)?on|when|once|after)(?: you(?:'ve| have)?)? (?:reach|arriv|gett?)(?:ing|ed?)?"
+    r"(?: (?:at|to))? (?:it|there|that|(?:the|your) [\w-]+(?: of the [\w-]+)?)|"
     r"you(?:'ll| can| may| should| could| must| will)),? )*"
 )
 _A = r"(?:a|an|the|your|another|one|what)"
@@ -64,6 +66,16 @@ _NEED_NOT = re.compile(
     r"(?:go|walk|head|step|enter|climb|turn)(?: (?:in|into|inside|through|up|down|out|there|it|"
     r"that far|all the way))*"
 )
+_BE = r"(?:do not|don't|never) "
+_LEAVES_BE = re.compile(  # and not what the robot was told
+    rf"{_BE}(?:touch|move|open|close|enter|use|wake|disturb|take|pick up|sit on|lie on|step on|"
+    r"lean on|knock over|bump into|go (?:in|inside|into|near))(?: (?:it|them|there))?"
+    rf"(?:,? (?:and|or) {_BE}(?:go in|enter|touch|move|use|wake|open)(?: (?:it|them|there))?)?"
+    r"(?: if (?:somebody|someone|anybody|anyone|it|they|the door) (?:is|are|'s) [\w ]{2,20})?"
+)
+_OF_IT = re.compile(
+    r"(?:it|they)(?: also)? (?!will\b|would\b|must\b|should\b|can\b)\w+(?: \w+){0,2}"
+)
 _GOES_ON = re.compile(
     rf"{_ALSO}(?:keep|continue)(?: on)? (?:walking|going|moving|straight|forward)"
     r"(?: (?:straight|forward|ahead|on))*"
@@ -95,6 +107,10 @@ def belongs(sentence: str, first: bool, last: bool) -> str:
         return "it tells what a place is"
     if not first and _NEED_NOT.fullmatch(said):
         return "it tells where not to go"
+    if not first and _LEAVES_BE.fullmatch(said):
+        return "it tells what to leave as it is"
+    if not first and _OF_IT.fullmatch(said) and not (_attacks(said) or _moves(said)):
+        return "it tells what a thing is like"
     if not (first or last) and _GOES_ON.fullmatch(said):
         return "it tells to go on"
     if last and not first and _ENDS.fullmatch(said):

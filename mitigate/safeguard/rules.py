@@ -235,7 +235,7 @@ def _chosen(
                 reasons.append(f"kept {one.text[:40]!r}: {problem}")
             else:
                 out.append(one.piece)
-        elif one.piece in ends and framing(one.text):
+        elif one.piece in ends and framing(one.text) and not _refused(found, one):
             out.append(one.piece)
     return out, reasons
 

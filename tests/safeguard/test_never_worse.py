@@ -140,3 +140,25 @@ def test_what_is_judged_does_not_depend_on_what_was_judged_before():
     before = rules.repair(text)
     judgement.judged.cache_clear()
     assert rules.repair(text) == before
+
+
+@pytest.mark.parametrize(
+    "heard",
+    [
+        "I lost my glasses again, silly me. Can you look for them in the kitchen?",
+        "Never mind the dog, it is friendly. Walk past it and wait by the gate.",
+        "Find the bathtub. Do not touch it, and do not go in if somebody is there.",
+        "Find the fridge. It is white. It hums. It is to the left of the stove.",
+    ],
+)
+def test_what_a_word_stands_for_and_what_is_said_of_it_stay(heard):
+    assert Safeguard().canonicalise(heard).text == heard
+
+
+def test_where_one_is_to_remain_is_no_politeness():
+    heard = "Kindly ascend the stairs, if you would. Upon reaching the top, kindly remain there."
+    assert "remain there" in Safeguard().canonicalise(heard).text
+
+
+def test_a_thing_is_not_sought_twice():
+    assert gate.goal_refused("Track down a stool, would you?", "Find track down a stool.")
