@@ -12,6 +12,7 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -99,7 +100,8 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
     settings = _settings(cfg, paths, agents)
     settings["restorer"] = None if restorer is None else restorer.hash
     _check_earlier(out, settings)
-    recordings = load_recordings(cfg, paths, {agent.views for agent in agents.values()})
+    views = {agent.views for agent in agents.values()}
+    recordings = load_recordings(cfg, paths, views, restorer)
     out.mkdir(parents=True, exist_ok=True)
     for picture in out.glob("*.png"):  # of an earlier run
         picture.unlink()
@@ -168,25 +170,28 @@ def _agent(folder: Path) -> Any:
     return agent.eval()
 
 
-def load_recordings(cfg: DictConfig, paths: Sequence[str], views: set[int]) -> dict[int, list[Any]]:
-    """Every drive, for agents with a panorama (12) and for those with one camera (1)."""
-    from mitigate.worlds.recorded import Step, Topics, load, open_recording
+def load_recordings(
+    cfg: DictConfig, paths: Sequence[str], views: set[int], restorer: Any = None
+) -> dict[int, list[Any]]:
+    """Every drive, for agents with a panorama (12) and for those with one camera (1). Raises
+    ValueError for a drive of which ``restorer`` restores nothing, before any frame is read."""
+    from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
 
     topics, step = Topics(**cfg.topics), Step(**cfg.step)
     how = {"topics": topics, "hfov": cfg.hfov, "unit": cfg.unit, "yaw": cfg.yaw}
     how["cameras"] = None if cfg.cameras is None else list(cfg.cameras)
     found: dict[int, list[Any]] = {count: [] for count in views}
-    for path in paths:
-        for source in open_recording(path, **how):
-            for count in views:
-                drive = load(source, views=count, size=cfg.size, step=step)
-                words = cfg.instruction or drive.instruction
-                if not words:
-                    raise ValueError(
-                        f"{drive.name} says no instruction: give "
-                        "instruction='\"walk to the door\"'."
-                    )
-                found[count].append(replace(drive, instruction=words))
+    sources = [source for path in paths for source in open_recording(path, **how)]
+    for source, count in product(sources if restorer is not None else [], views):
+        restorer.check_shown(kinds(source, count), source.name)
+    for source, count in product(sources, views):
+        drive = load(source, views=count, size=cfg.size, step=step)
+        words = cfg.instruction or drive.instruction
+        if not words:
+            raise ValueError(
+                f"{drive.name} says no instruction: give instruction='\"walk to the door\"'."
+            )
+        found[count].append(replace(drive, instruction=words))
     for drives in found.values():
         twice = {drive.name for drive in drives if sum(d.name == drive.name for d in drives) > 1}
         if twice:

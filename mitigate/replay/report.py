@@ -34,7 +34,10 @@ def table(
     the frames went through."""
     agents = list(found)
     conditions = [name for name in _conditions(found) if name != "clean"]
-    behind = f" Frames went through the restorer `{restorer.hash}`." if restorer else ""
+    behind = ""
+    if restorer is not None:
+        kinds = " and ".join(restorer.nets)
+        behind = f" Frames of {kinds} went through the restorer `{restorer.hash}`."
     lines = [
         f"Decisions that a corruption of severity {severity:g} changes, in %, of {steps} steps in "
         f"{drives} drive{'s' * (drives > 1)}, against the same agent on clean frames. Brackets are "

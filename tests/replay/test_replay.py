@@ -75,7 +75,7 @@ def test_the_table_says_which_restorer_the_frames_went_through():
     answers = {made.name: walk(ByBrightness(), made, CLEAN, 0)}
     found = {"mine": {"clean": compare([made], answers, answers)}}
     restorer = Restorer(sensors=[RGB], width=4)
-    said = f"Frames went through the restorer `{restorer.hash}`."
+    said = f"Frames of rgb went through the restorer `{restorer.hash}`."
     assert said in report.table(found, 0.6, T, 1, restorer)
     assert "restorer" not in report.table(found, 0.6, T, 1)
 
@@ -199,6 +199,20 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
     assert (out / "changes.png").is_file() and (out / "table.md").is_file()
     assert json.loads((out / "replay.json").read_text())["drives"] == [str(bag)]
     assert "Foreign object" in printed
+
+
+def test_a_restorer_of_what_a_drive_does_not_show_is_refused_before_a_frame_is_read(
+    tmp_path, mitigate
+):
+    colours = tmp_path / "lab/rgb"
+    colours.mkdir(parents=True)
+    for number in range(3):
+        (colours / f"{number:06d}.png").write_bytes(b"not even a picture")
+    Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
+    options = (f"restore={tmp_path}/mine", "agents=[checkpoints/recurrent/base]")
+    status, _, wrong = mitigate("replay", str(colours.parent), *options, f"out={tmp_path}/out")
+    assert status == 1 and "is for depth, but lab shows rgb: leave restore= out" in wrong
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize(

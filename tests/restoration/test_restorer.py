@@ -198,7 +198,7 @@ def shipped(tmp_path_factory):
 
 def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
     Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
-    with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose"):
+    with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose: leave"):
         restorer_of(str(tmp_path / "mine"), (RGB, "pose"))
     assert restorer_of(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
     assert restorer_of(None, (RGB,)) is None
