@@ -130,7 +130,7 @@ def gather(paths: Iterable[Path | str]) -> list[Row]:
     """
     held: dict[tuple, Row] = {}
     other: list[Row] = []
-    for row in chain.from_iterable(read(file) for path in paths for file in _files(Path(path))):
+    for row in chain.from_iterable(read(file) for path in paths for file in files(path)):
         before = held.get(identity(row), row)
         other += [row] if any(before[key] != row[key] for key in ("success", "spl")) else []
         held[identity(row)] = row
@@ -144,7 +144,10 @@ def gather(paths: Iterable[Path | str]) -> list[Row]:
     return list(held.values())
 
 
-def _files(path: Path) -> list[Path]:
+def files(path: Path | str) -> list[Path]:
+    """Return ``path``, or of a folder all row files in and below it. Raises FileNotFoundError if
+    there is none."""
+    path = Path(path)
     if not path.is_dir():
         return [path]
     named = (p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and not p.is_dir())

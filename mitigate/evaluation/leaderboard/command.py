@@ -44,12 +44,18 @@ def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
     """Return the rows in the file that ``entry`` names, of other agents, too. Raises
-    FileNotFoundError if they are not at hand, ValueError if they are damaged."""
+    FileNotFoundError if they are not at hand, ValueError if they are damaged or no file."""
     file = entry.rows["file"]
     if not file or not find(file).exists():
         raise FileNotFoundError(
             f"The rows of {entry.name} are not at hand ({file or 'no file is named'}): fetch them "
             f"to {file or 'a file'}, from the folder in which you run this."
+        )
+    if not find(file).is_file():
+        raise ValueError(
+            f"The rows of {entry.name} are said to be in {file}, which is "
+            f"{'a folder' if find(file).is_dir() else 'no plain file'}: an entry names one file "
+            "of rows. Name it with `mitigate leaderboard add`."
         )
     return result_rows.gather([find(file)])
 
@@ -163,9 +169,9 @@ def add(
 
 def _named(paths: Sequence[Path | str]) -> str:
     """Return the one file of the rows, if it is one and lies below this folder."""
-    path = Path(paths[0])
-    inside = len(paths) == 1 and not path.is_absolute() and ".." not in path.parts
-    return path.as_posix() if inside else ""
+    files = [file for path in paths for file in result_rows.files(path)]
+    inside = len(files) == 1 and not files[0].is_absolute() and ".." not in files[0].parts
+    return files[0].as_posix() if inside else ""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

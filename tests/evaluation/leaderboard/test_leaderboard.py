@@ -119,6 +119,27 @@ def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, m
     assert "not at hand" in capsys.readouterr().out
 
 
+def test_an_entry_names_one_file_of_rows_and_no_folder(rows, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("mine/rows.jsonl", rows)
+    add = ["add", "mine", "--name", "base", "--folder", "entries"]
+    assert command.main(add) == 0 and command.main(["check", "entries"]) == 0
+    entry = load("entries/base.json")
+    assert entry.rows["file"] == "mine/rows.jsonl"
+    os.mkfifo("pipe.jsonl")
+    for file, words in (
+        ("mine", "said to be in mine, which is a folder"),
+        (".", "said to be in ., which is a folder"),
+        ("pipe.jsonl", "said to be in pipe.jsonl, which is no plain file"),
+    ):
+        replace(entry, rows=entry.rows | {"file": file}).save("entries/base.json")
+        assert command.main(["check", "entries"]) == 1
+        assert words in capsys.readouterr().out
+    result_rows.write("mine/more.jsonl", rows)
+    assert command.main([*add, "--overwrite"]) == 0
+    assert load("entries/base.json").rows["file"] == ""  # of several
+
+
 def test_the_page_ranks_entries_and_takes_no_name_as_html(rows, tmp_path):
     evil = "</script><script>alert(1)</script>"
     low = entry_of(rows, "base", severity=0.6)
