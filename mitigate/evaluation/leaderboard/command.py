@@ -15,6 +15,8 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from mitigate.core import conf
+from mitigate.core.build import maker
 from mitigate.core.files import find
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
@@ -34,12 +36,16 @@ def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
 
     Raises as ``entry.load``; FileNotFoundError if there is none.
     """
+    return [load(file) for file in _files(paths)]
+
+
+def _files(paths: Sequence[Path | str]) -> list[Path]:
     files: list[Path] = []
     for path in [Path(path) for path in paths] or [find(FOLDER)]:
         files += sorted(path.glob("*.json")) if path.is_dir() else [path]
     if not files:
         raise FileNotFoundError("There is no entry (*.json) in the folders named.")
-    return [load(file) for file in files]
+    return files
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
@@ -116,14 +122,21 @@ def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
 
 
 def check(paths: Sequence[Path | str] = ()) -> list[str]:
-    """Print of each entry whether its rows say the same; return what is wrong, a line each."""
+    """Print of each entry whether its rows say the same, and which files are none; return what is
+    wrong, a line each. Raises FileNotFoundError if there is none."""
     wrong = []
-    for entry in entries_of(paths):
+    for file in _files(paths):
+        try:
+            entry = load(file)
+        except (OSError, ValueError) as error:
+            print(f"{file}: NO entry", flush=True)
+            wrong.append(conf.said(error))
+            continue
         try:
             found = differences(entry, rows_of(entry))
-        except (FileNotFoundError, ValueError) as error:
-            found = [str(error)]
-        print(f"{entry.name}: {'as its rows say' if not found else 'NOT as its rows say'}")
+        except (OSError, ValueError) as error:
+            found = [conf.said(error)]
+        print(f"{entry.name}: {'NOT as' if found else 'as'} its rows say", flush=True)
         wrong += [f"{entry.name}: {line}" for line in found]
     return wrong
 
@@ -145,9 +158,6 @@ def add(
     The sensors are those of the world of ``options`` (of ``mitigate evaluate``). Raises ValueError
     if the file is there already, and as ``entry_of``.
     """
-    from mitigate.core import conf
-    from mitigate.core.build import maker
-
     place = Path(folder) / f"{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('.-') or 'entry'}.json"
     if place.exists() and not overwrite:
         raise ValueError(f"{place} exists already: replace it with --overwrite.")

@@ -119,6 +119,28 @@ def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, m
     assert "not at hand" in capsys.readouterr().out
 
 
+def test_check_goes_on_behind_an_entry_that_is_broken(rows, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("rows.jsonl", rows)
+    entry = entry_of(rows, "base", severity=0.6, file="rows.jsonl")
+    entry.save("entries/whole.json")
+    replace(entry, name="lost", rows=entry.rows | {"file": "é" * 180}).save("entries/lost.json")
+    Path("entries/cut.json").write_text("{")
+    Path("entries/folder.json").mkdir()
+    Path("entries/old.json").write_text(json.dumps({**entry.__dict__, "format": 1}))
+    assert command.main(["check", "entries", "nowhere.json"]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert said[:6] == [
+        *("entries/cut.json: NO entry", "entries/folder.json: NO entry"),
+        *("lost: NOT as its rows say", "entries/old.json: NO entry"),
+        *("base: as its rows say", "nowhere.json: NO entry"),
+    ]
+    wrong = "entries/cut.json is cut short", "entries/folder.json", "lost: File name too long"
+    for line, words in zip(said[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
+        assert words in line
+    assert command.main(["check", "entries/whole.json"]) == 0
+
+
 def test_an_entry_names_one_file_of_rows_and_no_folder(rows, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     result_rows.write("mine/rows.jsonl", rows)
