@@ -46,6 +46,7 @@ _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights")
 _SHARES = ("severity", "success", "spl", "ndtw")  # numbers from 0 to 1
 _ROUNDING = 1e-9
+_MARK = "\ufeff"  # the byte order mark of editors of Windows; joined files have it in the middle
 
 
 def identity(row: Row) -> tuple:
@@ -174,7 +175,7 @@ def _holds_rows(path: Path) -> bool:
 
 def _parse(line: str) -> Any:
     try:
-        return parse_json(line) if len(line) <= LONGEST_LINE else None
+        return parse_json(line.removeprefix(_MARK)) if len(line) <= LONGEST_LINE else None
     except (ValueError, RecursionError):
         return None
 

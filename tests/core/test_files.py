@@ -88,3 +88,13 @@ def test_json_of_anybody_is_plain_data_or_a_value_error(tmp_path, raw):
     assert "\n" not in str(error.value) and len(str(error.value)) < 600
     path.write_text(json.dumps({"a": [1, 0.5, None, True, "x"]}))
     assert json_files.read_json(path, "") == {"a": [1, 0.5, None, True, "x"]}
+
+
+def test_the_byte_order_mark_of_an_editor_is_passed_over(tmp_path):
+    path = tmp_path / "a.json"
+    for raw in (b'\xef\xbb\xbf{"a": 1}', gzip.compress(b'\xef\xbb\xbf{"a": 1}')):
+        path.write_bytes(raw)
+        assert read(path) == '{"a": 1}'
+        assert dict(json_files.json_members(path, "none")) == {"a": 1}
+    path.write_bytes(b'\xef\xbb\xbf{"a": 1}')
+    assert json_files.read_json(path, "") == {"a": 1}

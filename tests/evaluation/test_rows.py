@@ -46,6 +46,17 @@ def test_a_whole_last_line_without_its_end_is_kept(tmp_path):
     assert [r["episode_id"] for r in rows.read(path)] == ["0", "1"]
 
 
+@pytest.mark.parametrize("packed", [False, True])
+def test_the_byte_order_mark_of_an_editor_is_no_part_of_a_row(tmp_path, packed):
+    path = tmp_path / ("rows.jsonl.gz" if packed else "rows.jsonl")
+    raw = "".join(f"\ufeff{json.dumps(row(n, True))}\n" for n in (0, 1))  # two files, joined
+    raw = raw.rstrip("\n").encode()
+    path.write_bytes(gzip.compress(raw) if packed else raw)
+    assert rows.read(path) == rows.gather([tmp_path]) == [row(0, True), row(1, True)]
+    rows.append(path, [row(2, False)])
+    assert [r["episode_id"] for r in rows.read(path)] == ["0", "1", "2"]
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
