@@ -45,6 +45,7 @@ _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + is betwee
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights")
 _SHARES = ("severity", "success", "spl", "ndtw")  # numbers from 0 to 1
+_NUMBERS = ("severity", "seed", *MEASURES)
 _ROUNDING = 1e-9
 _MARK = "\ufeff"  # the byte order mark of editors of Windows; joined files have it in the middle
 
@@ -198,6 +199,8 @@ def _problem(row: Any) -> str:
 
 def _allowed(key: str, value: Any) -> str:
     """Return what ``value`` may be in place of what it is; empty if it is good."""
+    if key in _NUMBERS and isinstance(value, bool):  # which Python takes for one
+        return "a number: 1 for true, 0 for false"
     if key in _SHARES and value is not None and not _number(value, 0, 1):
         return "a number from 0 to 1"
     if key == "corruption" and not _NAME.fullmatch(value):
