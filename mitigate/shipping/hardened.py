@@ -49,10 +49,10 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
             return fill(agent, folder, base=base).eval()
         agent = build(folder / CONFIG)
         if card["vocabulary"] != vocabulary_sha(agent):
+            made = f" (commit {card['commit']})" if card["commit"] else ""
             raise ValueError(
                 f"{folder} was exported with another vocabulary than its {CONFIG} gives the agent, "
-                f"so its words would be misread. Use the version that made it (commit "
-                f"{card['commit']})."
+                f"so its words would be misread. Use the version that made it{made}."
             )
         return fill(agent, folder, base=base).eval()
 
