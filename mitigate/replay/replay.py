@@ -22,6 +22,9 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find
+from mitigate.core.json_files import read_json
+from mitigate.core.locks import FolderLock
+from mitigate.core.names import short
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
 
@@ -102,14 +105,14 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
     _check_earlier(out, settings)
     views = {agent.views for agent in agents.values()}
     recordings = load_recordings(cfg, paths, views, restorer)
-    out.mkdir(parents=True, exist_ok=True)
-    for picture in out.glob("*.png"):  # of an earlier run
-        picture.unlink()
-    with atomic_text(out / SETTINGS) as file:
-        json.dump(settings, file, indent=1)
-    return replay(
-        agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, restorer=restorer
-    )
+    with FolderLock(out):
+        for name, corruption in product(agents, met):  # of an earlier run
+            _picture_file(out, name, corruption.name).unlink(missing_ok=True)
+        with atomic_text(out / SETTINGS) as file:
+            json.dump(settings, file, indent=1)
+        return replay(
+            agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, restorer=restorer
+        )
 
 
 def _name(paths: Sequence[str]) -> str:
@@ -132,15 +135,19 @@ def _settings(cfg: DictConfig, paths: Sequence[str], agents: Mapping[str, Any]) 
 
 
 def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
-    """Raise ValueError if ``out`` holds another report."""
+    """Raise ValueError if ``out`` is no folder, or holds another report."""
+    again = "Name another folder (out=...), or delete this one."
+    if out.exists() and not out.is_dir():
+        raise ValueError(f"{out} is no folder, in which a replay is written. {again}")
     if not (out / SETTINGS).is_file():
         return
-    held = json.loads((out / SETTINGS).read_text(encoding="utf-8"))
+    held = read_json(out / SETTINGS, again)
+    if not isinstance(held, dict):
+        raise ValueError(f"{out / SETTINGS} is not what a replay writes. {again}")
     other = [name for name, value in settings.items() if held.get(name) != value]
     if other:
         raise ValueError(
-            f"{out} holds a replay with another {other[0]} ({held.get(other[0])!r:.60}). Name "
-            "another folder (out=...), or delete this one."
+            f"{out} holds a replay with another {other[0]} ({short(held.get(other[0]))}). {again}"
         )
 
 
@@ -301,8 +308,12 @@ def _picture(
         return []
     clean = answers["clean"][drive.name]
     again = walk(agent, drive, worst, seed, keep=steps, clean=clean, restorer=restorer)
-    path = out / f"{name.replace('/', '-')}-{worst.name}.png"
+    path = _picture_file(out, name, worst.name)
     return [report.picture(drive, worst, clean, again, path)]
+
+
+def _picture_file(out: Path, name: str, condition: str) -> Path:
+    return out / f"{name.replace('/', '-')}-{condition}.png"
 
 
 _paths: list[str] = []  # the drives of the command line

@@ -9,6 +9,8 @@ import cv2
 import numpy as np
 from matplotlib.figure import Figure
 
+from mitigate.core.files import write_atomically, write_bytes
+from mitigate.core.names import markdown_of
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 from mitigate.core.pictures import strip
 from mitigate.corruptions import Corruption
@@ -43,7 +45,7 @@ def table(
         f"{drives} drive{'s' * (drives > 1)}, against the same agent on clean frames. Brackets are "
         f"95 % bootstrap intervals over runs of ten steps.{behind}",
         "",
-        "| condition | " + " | ".join(agents) + " |",
+        "| condition | " + " | ".join(map(markdown_of, agents)) + " |",
         "|---|" + "---:|" * len(agents),
     ]
     for name in conditions:
@@ -77,7 +79,7 @@ def _others(found: Found) -> list[str]:
         for name, changes in of.items():
             aim = "–" if changes.aim is None else _percent(changes.aim)
             agrees = "–" if changes.agreement is None else _percent(changes.agreement)
-            cells = (agent, label(name), changes.stops, changes.missed, aim, agrees)
+            cells = (markdown_of(agent), label(name), changes.stops, changes.missed, aim, agrees)
             lines.append(f"| {' | '.join(map(str, cells))} |")
     return lines
 
@@ -107,8 +109,9 @@ def heatmap(found: Found, severity: float, path: Path) -> Path:
     axes.set_xticks(range(len(agents)), agents, rotation=25, ha="right", fontsize=9)
     axes.set_yticks(range(len(names)), [label(name) for name in names], fontsize=9)
     axes.set_title(f"changed decisions, %, severity {severity:g}", fontsize=10)
-    figure.savefig(path, dpi=DPI, facecolor="white")
-    return path
+    return write_atomically(
+        path, lambda draft: figure.savefig(draft, dpi=DPI, facecolor="white", format="png")
+    )
 
 
 def spread(changed: Sequence[int]) -> list[int]:
@@ -140,7 +143,7 @@ def picture(
     holes = "; white: no reading" if shown == DEPTH else ""
     about = f"{recording.name}: {shown} clean, and under {corruption.name}{holes}"
     whole = np.concatenate([_title(about, rows[0].shape[1]), *rows])
-    cv2.imwrite(str(path), whole[..., ::-1])
+    write_bytes(path, cv2.imencode(".png", whole[..., ::-1])[1].tobytes())
     return path
 
 

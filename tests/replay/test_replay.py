@@ -11,10 +11,12 @@ import pytest
 
 from mitigate import cli
 from mitigate.agents.recurrent.odometer import Odometer
-from mitigate.core.observation import DEPTH, FORWARD, LEFT, RGB, RIGHT, STOP
+from mitigate.core.locks import FolderLock
+from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.replay import report
 from mitigate.replay.changes import compare
+from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
 from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.recorded import Recording
@@ -215,12 +217,70 @@ def test_a_restorer_of_what_a_drive_does_not_show_is_refused_before_a_frame_is_r
     assert not (tmp_path / "out").exists()
 
 
+@pytest.fixture
+def lab(tmp_path):
+    """A short drive in a folder."""
+    rng, path = np.random.default_rng(0), tmp_path / "lab"
+    frames = {RGB: rng.integers(0, 255, (16, 16, 3), np.uint8), DEPTH: np.ones((16, 16, 1))}
+    write_frames(path, [frames | {POSE: np.array([0, n, 0])} for n in range(3)], "go on")
+    return str(path)
+
+
+def test_what_is_in_a_folder_stays_there_but_what_a_replay_wrote(tmp_path, lab, mitigate):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "mine.png").write_text("a picture of mine")
+    options = ("agents=[checkpoints/recurrent/base]", "conditions=[flare]", f"out={out}")
+    for _ in range(2):
+        status, _, wrong = mitigate("replay", lab, *options)
+        assert status == 0, wrong
+        assert (out / "mine.png").read_text() == "a picture of mine"
+        (out / "recurrent-flare.png").write_text("of the run before")
+    status, _, wrong = mitigate("replay", lab, *options)
+    kept = out / "recurrent-flare.png"
+    assert status == 0 and (not kept.exists() or kept.read_bytes()[1:4] == b"PNG"), wrong
+    assert not (out / ".lock").exists()
+
+
+def test_a_folder_that_is_none_or_in_use_is_refused(tmp_path, lab, mitigate):
+    out = tmp_path / "out"
+    options = ("agents=[checkpoints/recurrent/base]", "conditions=[flare]", f"out={out}")
+    out.write_text("a file")
+    status, printed, wrong = mitigate("replay", lab, *options)
+    assert status == 1 and "out is no folder" in wrong and "read lab" not in printed + wrong
+    out.unlink()
+    out.mkdir()
+    for text, words in (("[1]", "is not what a replay writes"), ("{", "is cut short or damaged")):
+        (out / "replay.json").write_text(text)
+        status, _, wrong = mitigate("replay", lab, *options)
+        assert status == 1 and words in wrong and "Name another folder (out=...)" in wrong
+    (out / "replay.json").unlink()
+    with FolderLock(out):
+        status, _, wrong = mitigate("replay", lab, *options)
+    assert status == 1 and "is in use" in wrong
+
+
+def test_a_picture_that_cannot_be_written_is_no_picture_and_is_told(tmp_path):
+    made = drive()
+    clean = walk(ByBrightness(), made, CLEAN, 0)
+    dark = walk(ByBrightness(), made, Corruption("low_light", 0.9), 0, keep=[4])
+    (tmp_path / "a.png").mkdir()
+    with pytest.raises(OSError, match="a.png"):
+        report.picture(made, Corruption("low_light", 0.9), clean, dark, tmp_path / "a.png")
+    found = {"a|b": {"low_light": compare([made], {"lab": clean}, {"lab": dark})}}
+    with pytest.raises(OSError, match="a.png"):
+        report.heatmap(found, 0.6, tmp_path / "a.png")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+    assert "| a\\|b |" in report.table(found, 0.6, T, 1)
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [
         ([], "FOLDER_OR_BAG"),
         (["none"], "no recording"),
         (["tests", "agents=[checkpoints/nothing]"], "nothing"),
+        (["tests", "agents=[checkpoints/restorer]"], "the card of another kind of folder"),
         (["tests", "conditions=[fog2]"], "fog2"),
         (["tests", "suite=clean"], "nothing to compare"),
         (["tests", "colour=red"], "colour"),
