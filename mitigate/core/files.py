@@ -106,6 +106,19 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
         temporary.unlink(missing_ok=True)
 
 
+def put_folder(draft: Path, target: Path, old: Path) -> None:
+    """Rename ``draft`` to ``target``. What was there becomes ``old``, and comes back if that fails;
+    the three are on one disk."""
+    if target.exists():
+        target.rename(old)
+    try:
+        draft.rename(target)
+    except BaseException:
+        if old.exists() and not target.exists():
+            old.rename(target)
+        raise
+
+
 def sha256(path: Path | str) -> str:
     """Return the sha256 of a file, as hex."""
     digest = hashlib.sha256()

@@ -422,6 +422,25 @@ def test_the_commit_is_that_of_this_checkout_or_not_stated(monkeypatch, tmp_path
     assert cards.commit() is None  # installed below a repository that is another's
 
 
+def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(place, tmp_path):
+    """As ``export`` says it when neither weights nor programs may grow beyond some size."""
+    weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
+    for most in (weights // 2, weights + 1000):
+        code = (
+            "import resource, signal, sys; from mitigate.shipping.export import main; "
+            f"resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most})); main()"
+        )
+        done = subprocess.run(
+            [sys.executable, "-c", code, str(place / "runs/whole"), "mine", "--out", str(tmp_path)],
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 1 and "File too large" in done.stderr, done.stderr
+        assert "Traceback" not in done.stderr and "frame #" not in done.stderr
+        assert not [*tmp_path.iterdir()]
+
+
 def git(folder, *words):
     named = ["-c", "user.name=a", "-c", "user.email=a@b"]
     subprocess.run(["git", *named, *words], cwd=folder, check=True, capture_output=True)
