@@ -29,6 +29,7 @@ from mitigate.evaluation.rows import Row
 FOLDER = "docs/leaderboard"
 OUT = Path("runs/leaderboard.html")
 CLOSE = 1e-5  # of figures that entries round to six digits (ours)
+_OTHERS = re.compile(r"[^\w.-]+")  # signs that the name of an entry's file does not have
 
 
 def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
@@ -158,9 +159,12 @@ def add(
     The sensors are those of the world of ``options`` (of ``mitigate evaluate``). Raises ValueError
     if the file is there already, and as ``entry_of``.
     """
-    place = Path(folder) / f"{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('.-') or 'entry'}.json"
+    place = Path(folder) / f"{_OTHERS.sub('-', name).strip('.-') or 'entry'}.json"
     if place.exists() and not overwrite:
-        raise ValueError(f"{place} exists already: replace it with --overwrite.")
+        raise ValueError(
+            f"{place} exists already: replace it with --overwrite, or name another folder "
+            "(--folder) if it is another agent's."
+        )
     cfg = conf.load_config("evaluate", options)
     entry = entry_of(
         result_rows.gather(paths),

@@ -162,6 +162,19 @@ def test_an_entry_names_one_file_of_rows_and_no_folder(rows, tmp_path, monkeypat
     assert load("entries/base.json").rows["file"] == ""  # of several
 
 
+def test_agents_with_names_in_any_script_have_files_of_their_own(rows, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = ["基準", "強化", "Größe +"]
+    for name in names:
+        result_rows.write(f"{name}.jsonl", [row | {"name": name} for row in rows])
+        add = ["add", f"{name}.jsonl", "--name", name, "--folder", "entries"]
+        assert command.main(add) == 0
+    files = sorted(Path("entries").iterdir())
+    assert [file.name for file in files] == ["Größe.json", "基準.json", "強化.json"]
+    assert [load(file).name for file in files] == ["Größe +", "基準", "強化"]
+    assert command.main(["check", "entries"]) == 0
+
+
 def test_the_page_ranks_entries_and_takes_no_name_as_html(rows, tmp_path):
     evil = "</script><script>alert(1)</script>"
     low = entry_of(rows, "base", severity=0.6)
