@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mitigate import cli
 from mitigate.agents.recurrent.odometer import Odometer
+from mitigate.core.conf import load_config
 from mitigate.core.locks import FolderLock
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.corruptions import CLEAN, Corruption
-from mitigate.replay import report
+from mitigate.evaluation import episode_lists
+from mitigate.replay import export_drive, report
 from mitigate.replay.changes import compare
 from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
 from mitigate.restoration.restorer import Restorer
-from mitigate.worlds.recorded import Recording
+from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.recorded import Recording, open_recording
 from mitigate.worlds.recorded.steps import NONE, answered
 
 T = 30
@@ -215,6 +220,38 @@ def test_a_restorer_of_what_a_drive_does_not_show_is_refused_before_a_frame_is_r
     status, _, wrong = mitigate("replay", str(colours.parent), *options, f"out={tmp_path}/out")
     assert status == 1 and "is for depth, but lab shows rgb: leave restore= out" in wrong
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("form", ["frames", "bag", "mcap"])
+def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
+    tmp_path, form, monkeypatch
+):
+    cfg = load_config("export_drive", [f"form={form}", "env.size=16", "episodes=2"])
+    listed = [
+        replace(e, episode_id=f"../../é.{n}") for n, e in enumerate(load_episodes("val_seen")[:2])
+    ]
+    monkeypatch.setattr(episode_lists, "episodes", lambda *_: listed)
+    out = tmp_path / "a/b"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(export_drive, "write_bytes", full)
+        patch.setattr(export_drive, "write_bag", full)
+        with pytest.raises(OSError, match="No space left"):
+            export_drive.run(cfg, out)
+    assert [*out.iterdir()] == []
+    written = export_drive.run(cfg, out)
+    assert [path.stem for path in written] == ["é-0", "é-1"]
+    assert [*tmp_path.iterdir()] == [tmp_path / "a"] and [*(tmp_path / "a").iterdir()] == [out]
+    found = [open_recording(path)[0] for path in written]
+    assert [drive.instruction for drive in found] == [e.instruction.text for e in listed]
+    with pytest.raises(ValueError, match="is there already: name another folder"):
+        export_drive.run(cfg, out)
+    listed[:] = [replace(listed[0], episode_id=name) for name in ("a/b", "a.b")]
+    with pytest.raises(ValueError, match="Two episodes would be the drive .*'a/b' and 'a.b'"):
+        export_drive.run(cfg, tmp_path / "other")
+
+
+def full(*_):
+    raise OSError(errno.ENOSPC, "No space left on device")
 
 
 @pytest.fixture
