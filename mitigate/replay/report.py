@@ -16,7 +16,7 @@ from mitigate.core.pictures import strip
 from mitigate.corruptions import Corruption
 from mitigate.corruptions.gallery import depth_picture
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.plots import COLOURS, DPI
+from mitigate.evaluation.plots import COLOURS, DPI, plain
 from mitigate.evaluation.sections import label
 from mitigate.replay.changes import Changes
 from mitigate.replay.walk import ACTIONS, Answers
@@ -106,7 +106,7 @@ def heatmap(found: Found, severity: float, path: Path) -> Path:
         dark = abs(1 - value - 0.5) > 0.35  # both ends of the colour map
         colour = "white" if dark else "black"
         axes.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=colour, fontsize=9)
-    axes.set_xticks(range(len(agents)), agents, rotation=25, ha="right", fontsize=9)
+    axes.set_xticks(range(len(agents)), [*map(plain, agents)], rotation=25, ha="right", fontsize=9)
     axes.set_yticks(range(len(names)), [label(name) for name in names], fontsize=9)
     axes.set_title(f"changed decisions, %, severity {severity:g}", fontsize=10)
     return write_atomically(

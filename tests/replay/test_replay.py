@@ -304,11 +304,12 @@ def test_a_picture_that_cannot_be_written_is_no_picture_and_is_told(tmp_path):
     (tmp_path / "a.png").mkdir()
     with pytest.raises(OSError, match="a.png"):
         report.picture(made, Corruption("low_light", 0.9), clean, dark, tmp_path / "a.png")
-    found = {"a|b": {"low_light": compare([made], {"lab": clean}, {"lab": dark})}}
+    found = {"a|b$\\frac{$": {"low_light": compare([made], {"lab": clean}, {"lab": dark})}}
     with pytest.raises(OSError, match="a.png"):
         report.heatmap(found, 0.6, tmp_path / "a.png")
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
-    assert "| a\\|b |" in report.table(found, 0.6, T, 1)
+    assert "| a\\|b$" in report.table(found, 0.6, T, 1)
+    assert report.heatmap(found, 0.6, tmp_path / "b.png").is_file()  # a name is no formula
 
 
 @pytest.mark.parametrize(
