@@ -12,7 +12,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from mitigate.core.files import sha256
+from mitigate.core.conf import said
+from mitigate.core.files import put_folder, sha256
 from mitigate.shipping import hardened
 from mitigate.shipping.card import readme
 
@@ -30,8 +31,7 @@ def renew(folder: Path) -> None:
         text = json.dumps(card, indent=2, allow_nan=False) + "\n"
         (draft / hardened.CARD).write_text(text, encoding="utf-8")
         hardened.check(draft)
-        folder.rename(Path(aside) / "old")
-        draft.rename(folder)
+        put_folder(draft, folder, Path(aside) / "old")
 
 
 def main() -> None:
@@ -42,8 +42,8 @@ def main() -> None:
     for folder in folders:
         try:
             renew(folder)
-        except (FileNotFoundError, ValueError) as error:
-            sys.exit(f"error: {error}")
+        except (OSError, ValueError) as error:
+            sys.exit(f"error: {said(error)}")
         print(f"wrote {folder / hardened.README}")
 
 

@@ -9,7 +9,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import cv2
 import numpy as np
@@ -21,6 +21,9 @@ from mitigate.bridge.results import Told
 from mitigate.bridge.sheet import HEADING, of, sheet
 from mitigate.core.files import write_atomically
 from mitigate.core.observation import DEPTH, RGB
+
+if TYPE_CHECKING:  # it needs torch, which a check without one does not wait for
+    from mitigate.restoration.restorer import Restorer
 
 NEAR = 1.01  # metres: depth that reads no more may be normalised (ours)
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
@@ -81,7 +84,7 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
         frames = dict(held)
     seen = [camera for camera in told.cameras if of(camera["name"]) in frames]
     rig = Rig(seen, cfg.missing, cfg.turn)
-    print("\n".join(described(told, rig, frames)))
+    print("\n".join(described(told, rig, frames, cell.condition.restorer)))
     fitting = []
     for other in made[1:]:
         reason = applicable(other.corruption, told)
@@ -115,8 +118,10 @@ def _wait(cell: Any, file: Path) -> None:
             print(f"check: no frame after {spoke - began:.0f} s", flush=True)
 
 
-def described(told: Told, rig: Rig, frames: Mapping[str, np.ndarray]) -> list[str]:
-    """Return lines that say what the program is, sees and hears."""
+def described(
+    told: Told, rig: Rig, frames: Mapping[str, np.ndarray], restorer: Restorer | None = None
+) -> list[str]:
+    """Return lines that say what the program is, sees and hears, and what of it is restored."""
     hello = told.hellos[0] if told.hellos else {}
     versions = {"Python": hello.get("python"), "numpy": hello.get("numpy")}
     versions |= {n: hello.get(n.replace("-", "_")) for n in ("habitat", "habitat-sim", "torch")}
@@ -134,6 +139,11 @@ def described(told: Told, rig: Rig, frames: Mapping[str, np.ndarray]) -> list[st
         if episode.get("category"):
             said.append(f"goal category {episode['category']!r}")
         said.append(f"instruction {episode['text']!r}" if episode.get("text") else "no instruction")
+    if restorer is not None:
+        shown = dict.fromkeys(group.cameras[0].kind for group in rig.groups)
+        own = [kind for kind in shown if kind in restorer.nets]
+        nothing = f"nothing of these, the restorer is for {', '.join(restorer.nets)}"
+        lines.append(f"restored: {', '.join(own) or nothing}")
     return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(said), "conditions:"]
 
 

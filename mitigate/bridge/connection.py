@@ -294,7 +294,8 @@ class Connection:
         return {}
 
     def _check_kinds(self) -> None:
-        """Raise ValueError if no call of the episode had a camera of a kind that is corrupted."""
+        """Raise ValueError if no call of the episode had a camera of a kind that is corrupted, or
+        none that the restorer is for."""
         for part in self.condition.corruption.parts:
             if part.modality in CHANNELS and part.modality not in self.kinds:
                 raise ValueError(
@@ -303,6 +304,8 @@ class Connection:
                     f"{', '.join(sorted(self.kinds)) or 'none'}). Leave it out: suite=rgb, or "
                     "conditions=[clean,...]."
                 )
+        if self.condition.restorer is not None:
+            self.condition.restorer.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """The episodes of an environment: answer which it is to keep, all if None; ``least`` so

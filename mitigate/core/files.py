@@ -31,7 +31,8 @@ def find(path: str | Path) -> Path:
 
 
 def open_text(path: Path | str) -> TextIO:
-    """Open ``path`` for reading as UTF-8; gzip is told by the first two bytes, not by the name.
+    """Open ``path`` for reading as UTF-8, behind the byte order mark that editors of Windows put
+    first; gzip is told by the first two bytes, not by the name.
 
     Raises FileNotFoundError, with the nearest names in the folder, if there is no such file.
     Reading raises BadGzipFile for a gzip file that is damaged, cut short or a bomb (``RATIO``).
@@ -42,8 +43,8 @@ def open_text(path: Path | str) -> TextIO:
     with open(path, "rb") as file:
         gzipped = file.read(2) == GZIP_MAGIC
     if gzipped:
-        return io.TextIOWrapper(_Unpacked(path, "rb"), encoding="utf-8")
-    return open(path, encoding="utf-8")
+        return io.TextIOWrapper(_Unpacked(path, "rb"), encoding="utf-8-sig")
+    return open(path, encoding="utf-8-sig")
 
 
 class _Unpacked(gzip.GzipFile):
@@ -103,6 +104,19 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def put_folder(draft: Path, target: Path, old: Path) -> None:
+    """Rename ``draft`` to ``target``. What was there becomes ``old``, and comes back if that fails;
+    the three are on one disk."""
+    if target.exists():
+        target.rename(old)
+    try:
+        draft.rename(target)
+    except BaseException:
+        if old.exists() and not target.exists():
+            old.rename(target)
+        raise
 
 
 def sha256(path: Path | str) -> str:

@@ -25,7 +25,7 @@ def read_json(path: Path, again: str) -> Any:
     try:
         if len(raw) > LARGEST_JSON:
             raise ValueError(f"more than {LARGEST_JSON} bytes")
-        return parse_json(raw.decode("utf-8"))
+        return parse_json(raw.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path} is cut short or damaged ({error!s:.200}). {again}") from error
 

@@ -101,6 +101,7 @@ class _Walk:
 
     def measures(self) -> dict[str, Any]:
         found = {**self.met.measures(), "decisions": self.met.looks}
+        found = {n: int(value) if isinstance(value, bool) else value for n, value in found.items()}
         return {name: found.pop(name) for name in MEASURES if name in found} | found
 
 

@@ -37,9 +37,9 @@ def heatmap(section: Section, path: Path | str) -> Path:
         _panel(axis, section, block, names)
     grid = section.grid
     figure.suptitle(
-        f"SR (%) / SPL on {_plain(grid.heading)}, severity {section.severity:g}, "
+        f"SR (%) / SPL on {plain(grid.heading)}, severity {section.severity:g}, "
         f"N = {len(grid.episodes)}\n"
-        f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
+        f"{plain(grid.rule)}; suite {plain(grid.suite)}",
         fontsize=9,
     )
     return _save(figure, path)
@@ -68,12 +68,12 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
         axis.tick_params(labelbottom=True)
     figure.supylabel("SR (%)", fontsize=9)
     figure.suptitle(
-        f"SR against severity on {_plain(grid.heading)}, N = {len(grid.episodes)}; "
-        f"{_plain(grid.rule)}; suite {_plain(grid.suite)}",
+        f"SR against severity on {plain(grid.heading)}, N = {len(grid.episodes)}; "
+        f"{plain(grid.rule)}; suite {plain(grid.suite)}",
         fontsize=9,
     )
     drawn = {line.get_label(): line for axis in axes for line in axis.get_lines()}
-    handles = [drawn[x] for x in map(_plain, grid.columns) if x in drawn]
+    handles = [drawn[x] for x in map(plain, grid.columns) if x in drawn]
     figure.legend(handles=handles, loc="outside lower center", ncols=across, fontsize=8)
     return _save(figure, path)
 
@@ -102,7 +102,7 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
         )
     axis.axhline(1.5, color="black", linewidth=1.5)
     axis.set_xticks(
-        range(shape[1]), map(_plain, section.columns), rotation=25, ha="right", fontsize=8
+        range(shape[1]), map(plain, section.columns), rotation=25, ha="right", fontsize=8
     )
     axis.set_yticks(range(shape[0]), rows, fontsize=8)
     axis.set_title(block, fontsize=9)
@@ -126,7 +126,7 @@ def _curves(axis: Axes, found: dict[str, Curve]) -> None:
     """Draw the curves of one panel; a piece on which later ones lie is wider than they are."""
     for index, (column, curve) in enumerate(found.items()):
         colour, later = LINES[index % len(LINES)], list(found.values())[index + 1 :]
-        _line(axis, curve, colour, label=_plain(column))
+        _line(axis, curve, colour, label=plain(column))
         for piece in [curve[i : i + 2] for i in range(len(curve) - 1)] or [curve]:
             wider = RIM * sum(_lies_on(other, piece) for other in later)
             if wider:
@@ -155,7 +155,7 @@ def _lies_on(other: Curve, piece: Curve) -> bool:
     )
 
 
-def _plain(name: str) -> str:
+def plain(name: str) -> str:
     """A name that rows bring, as matplotlib shows it as it is: no formula, in the legend too."""
     return name.replace("$", r"\$").replace("_", " _", name.startswith("_"))
 

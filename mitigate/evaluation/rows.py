@@ -45,7 +45,9 @@ _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + is betwee
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights")
 _SHARES = ("severity", "success", "spl", "ndtw")  # numbers from 0 to 1
+_NUMBERS = ("severity", "seed", *MEASURES)
 _ROUNDING = 1e-9
+_MARK = "\ufeff"  # the byte order mark of editors of Windows; joined files have it in the middle
 
 
 def identity(row: Row) -> tuple:
@@ -130,7 +132,7 @@ def gather(paths: Iterable[Path | str]) -> list[Row]:
     """
     held: dict[tuple, Row] = {}
     other: list[Row] = []
-    for row in chain.from_iterable(read(file) for path in paths for file in _files(Path(path))):
+    for row in chain.from_iterable(read(file) for path in paths for file in files(path)):
         before = held.get(identity(row), row)
         other += [row] if any(before[key] != row[key] for key in ("success", "spl")) else []
         held[identity(row)] = row
@@ -144,7 +146,10 @@ def gather(paths: Iterable[Path | str]) -> list[Row]:
     return list(held.values())
 
 
-def _files(path: Path) -> list[Path]:
+def files(path: Path | str) -> list[Path]:
+    """Return ``path``, or of a folder all row files in and below it. Raises FileNotFoundError if
+    there is none."""
+    path = Path(path)
     if not path.is_dir():
         return [path]
     named = (p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and not p.is_dir())
@@ -171,7 +176,7 @@ def _holds_rows(path: Path) -> bool:
 
 def _parse(line: str) -> Any:
     try:
-        return parse_json(line) if len(line) <= LONGEST_LINE else None
+        return parse_json(line.removeprefix(_MARK)) if len(line) <= LONGEST_LINE else None
     except (ValueError, RecursionError):
         return None
 
@@ -194,6 +199,8 @@ def _problem(row: Any) -> str:
 
 def _allowed(key: str, value: Any) -> str:
     """Return what ``value`` may be in place of what it is; empty if it is good."""
+    if key in _NUMBERS and isinstance(value, bool):  # which Python takes for one
+        return "a number: 1 for true, 0 for false"
     if key in _SHARES and value is not None and not _number(value, 0, 1):
         return "a number from 0 to 1"
     if key == "corruption" and not _NAME.fullmatch(value):

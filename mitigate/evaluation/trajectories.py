@@ -15,6 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mitigate.agents.agent import Agent
+from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import draw_path, strip
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
@@ -141,7 +142,7 @@ def contact_sheet(pictures: Sequence[Path], out: Path, across: int = 2) -> Path:
     blank = np.full_like(halves[0], 255)
     halves += [blank] * (-len(halves) % across)
     lines = [np.hstack(halves[i : i + across]) for i in range(0, len(halves), across)]
-    cv2.imwrite(str(out), np.vstack(lines))
+    write_bytes(out, cv2.imencode(".png", np.vstack(lines))[1].tobytes())
     return out
 
 

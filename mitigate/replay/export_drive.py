@@ -6,7 +6,9 @@ recorded it: a folder of frames, or a bag of ROS 1 or of ROS 2 (MCAP).
 
 from __future__ import annotations
 
+import re
 import sys
+import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +26,7 @@ from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 
 FORMS = ("frames", "bag", "mcap")
+_OTHERS = re.compile(r"[^\w-]+")  # signs that the name of a drive does not have
 SECOND = 1_000_000_000  # nanoseconds; a step takes one
 TOPICS = {
     RGB: "/camera/color/image_raw",
@@ -50,8 +53,9 @@ ConfigStore.instance().store(name="export_drive_schema", node=DriveConfig)
 def run(cfg: DictConfig, out: Path) -> list[Path]:
     """Write the drives of ``cfg`` into ``out`` and return their paths.
 
-    Raises ValueError for an unknown form or split, and for a world without an expert or with more
-    than one camera.
+    Each is there whole or not at all. Raises ValueError for an unknown form or split, for a world
+    without an expert or with more than one camera, and, before any walk, for a drive that is there
+    already.
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress
@@ -63,18 +67,39 @@ def run(cfg: DictConfig, out: Path) -> list[Path]:
     if len(world.sensors[RGB].shape) != 3:
         raise ValueError("A drive has one camera: set env.views=1.")
     chosen, written = episodes(cfg.env, cfg.split, cfg.episodes), []
+    paths = _paths(out, [episode.episode_id for episode in chosen], cfg.form)
     with Progress("export_drive", len(chosen), unit="drive") as progress:
-        for episode in chosen:
-            path = out / episode.episode_id.replace("/", "-")
-            steps = list(oracle(world, episode))
-            if cfg.form == "frames":
-                write_frames(path, steps, episode.instruction.text)
-            else:
-                path = write_bag(path, steps, cfg.form)
-                write_bytes(path.with_suffix(".txt"), episode.instruction.text.encode())
+        for episode, path in zip(chosen, paths, strict=True):
+            steps, words = list(oracle(world, episode)), episode.instruction.text
+            out.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryDirectory(prefix=".drive.", dir=out) as aside:
+                draft = Path(aside) / path.stem
+                if cfg.form == "frames":
+                    write_frames(draft, steps, words)
+                else:
+                    draft = write_bag(draft, steps, cfg.form)
+                    write_bytes(path.with_suffix(".txt"), words.encode())
+                draft.rename(path)
             written.append(path)
             progress.advance(note=path.name)
     return written
+
+
+def _paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
+    """Where the drives of episodes are written: what an id says is no path, and no suffix. Raises
+    ValueError for two that would be one, and for what is there."""
+    suffix = ".bag" if form == "bag" else ""
+    plain = [_OTHERS.sub("-", name).strip("-") or "unnamed" for name in names]
+    paths = [out / f"{name}{suffix}" for name in plain]
+    for place, path in enumerate(paths):
+        if path.exists():
+            raise ValueError(f"{path} is there already: name another folder, or delete it.")
+        if path in paths[:place]:
+            raise ValueError(
+                f"Two episodes would be the drive {path}, {names[paths.index(path)]!r} and "
+                f"{names[place]!r}: give them ids that differ in letters or digits."
+            )
+    return paths
 
 
 def oracle(world: Any, episode: Any) -> Iterator[dict[str, np.ndarray]]:

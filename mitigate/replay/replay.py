@@ -12,6 +12,7 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,9 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, find
+from mitigate.core.json_files import read_json
+from mitigate.core.locks import FolderLock
+from mitigate.core.names import short
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
 
@@ -99,15 +103,16 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
     settings = _settings(cfg, paths, agents)
     settings["restorer"] = None if restorer is None else restorer.hash
     _check_earlier(out, settings)
-    recordings = load_recordings(cfg, paths, {agent.views for agent in agents.values()})
-    out.mkdir(parents=True, exist_ok=True)
-    for picture in out.glob("*.png"):  # of an earlier run
-        picture.unlink()
-    with atomic_text(out / SETTINGS) as file:
-        json.dump(settings, file, indent=1)
-    return replay(
-        agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, restorer=restorer
-    )
+    views = {agent.views for agent in agents.values()}
+    recordings = load_recordings(cfg, paths, views, restorer)
+    with FolderLock(out):
+        for name, corruption in product(agents, met):  # of an earlier run
+            _picture_file(out, name, corruption.name).unlink(missing_ok=True)
+        with atomic_text(out / SETTINGS) as file:
+            json.dump(settings, file, indent=1)
+        return replay(
+            agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, restorer=restorer
+        )
 
 
 def _name(paths: Sequence[str]) -> str:
@@ -130,15 +135,19 @@ def _settings(cfg: DictConfig, paths: Sequence[str], agents: Mapping[str, Any]) 
 
 
 def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
-    """Raise ValueError if ``out`` holds another report."""
+    """Raise ValueError if ``out`` is no folder, or holds another report."""
+    again = "Name another folder (out=...), or delete this one."
+    if out.exists() and not out.is_dir():
+        raise ValueError(f"{out} is no folder, in which a replay is written. {again}")
     if not (out / SETTINGS).is_file():
         return
-    held = json.loads((out / SETTINGS).read_text(encoding="utf-8"))
+    held = read_json(out / SETTINGS, again)
+    if not isinstance(held, dict):
+        raise ValueError(f"{out / SETTINGS} is not what a replay writes. {again}")
     other = [name for name, value in settings.items() if held.get(name) != value]
     if other:
         raise ValueError(
-            f"{out} holds a replay with another {other[0]} ({held.get(other[0])!r:.60}). Name "
-            "another folder (out=...), or delete this one."
+            f"{out} holds a replay with another {other[0]} ({short(held.get(other[0]))}). {again}"
         )
 
 
@@ -168,25 +177,28 @@ def _agent(folder: Path) -> Any:
     return agent.eval()
 
 
-def load_recordings(cfg: DictConfig, paths: Sequence[str], views: set[int]) -> dict[int, list[Any]]:
-    """Every drive, for agents with a panorama (12) and for those with one camera (1)."""
-    from mitigate.worlds.recorded import Step, Topics, load, open_recording
+def load_recordings(
+    cfg: DictConfig, paths: Sequence[str], views: set[int], restorer: Any = None
+) -> dict[int, list[Any]]:
+    """Every drive, for agents with a panorama (12) and for those with one camera (1). Raises
+    ValueError for a drive of which ``restorer`` restores nothing, before any frame is read."""
+    from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
 
     topics, step = Topics(**cfg.topics), Step(**cfg.step)
     how = {"topics": topics, "hfov": cfg.hfov, "unit": cfg.unit, "yaw": cfg.yaw}
     how["cameras"] = None if cfg.cameras is None else list(cfg.cameras)
     found: dict[int, list[Any]] = {count: [] for count in views}
-    for path in paths:
-        for source in open_recording(path, **how):
-            for count in views:
-                drive = load(source, views=count, size=cfg.size, step=step)
-                words = cfg.instruction or drive.instruction
-                if not words:
-                    raise ValueError(
-                        f"{drive.name} says no instruction: give "
-                        "instruction='\"walk to the door\"'."
-                    )
-                found[count].append(replace(drive, instruction=words))
+    sources = [source for path in paths for source in open_recording(path, **how)]
+    for source, count in product(sources if restorer is not None else [], views):
+        restorer.check_shown(kinds(source, count), source.name)
+    for source, count in product(sources, views):
+        drive = load(source, views=count, size=cfg.size, step=step)
+        words = cfg.instruction or drive.instruction
+        if not words:
+            raise ValueError(
+                f"{drive.name} says no instruction: give instruction='\"walk to the door\"'."
+            )
+        found[count].append(replace(drive, instruction=words))
     for drives in found.values():
         twice = {drive.name for drive in drives if sum(d.name == drive.name for d in drives) > 1}
         if twice:
@@ -296,8 +308,12 @@ def _picture(
         return []
     clean = answers["clean"][drive.name]
     again = walk(agent, drive, worst, seed, keep=steps, clean=clean, restorer=restorer)
-    path = out / f"{name.replace('/', '-')}-{worst.name}.png"
+    path = _picture_file(out, name, worst.name)
     return [report.picture(drive, worst, clean, again, path)]
+
+
+def _picture_file(out: Path, name: str, condition: str) -> Path:
+    return out / f"{name.replace('/', '-')}-{condition}.png"
 
 
 _paths: list[str] = []  # the drives of the command line

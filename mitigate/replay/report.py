@@ -9,12 +9,14 @@ import cv2
 import numpy as np
 from matplotlib.figure import Figure
 
+from mitigate.core.files import write_atomically, write_bytes
+from mitigate.core.names import markdown_of
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 from mitigate.core.pictures import strip
 from mitigate.corruptions import Corruption
 from mitigate.corruptions.gallery import depth_picture
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.plots import COLOURS, DPI
+from mitigate.evaluation.plots import COLOURS, DPI, plain
 from mitigate.evaluation.sections import label
 from mitigate.replay.changes import Changes
 from mitigate.replay.walk import ACTIONS, Answers
@@ -34,13 +36,16 @@ def table(
     the frames went through."""
     agents = list(found)
     conditions = [name for name in _conditions(found) if name != "clean"]
-    behind = f" Frames went through the restorer `{restorer.hash}`." if restorer else ""
+    behind = ""
+    if restorer is not None:
+        kinds = " and ".join(restorer.nets)
+        behind = f" Frames of {kinds} went through the restorer `{restorer.hash}`."
     lines = [
         f"Decisions that a corruption of severity {severity:g} changes, in %, of {steps} steps in "
         f"{drives} drive{'s' * (drives > 1)}, against the same agent on clean frames. Brackets are "
         f"95 % bootstrap intervals over runs of ten steps.{behind}",
         "",
-        "| condition | " + " | ".join(agents) + " |",
+        "| condition | " + " | ".join(map(markdown_of, agents)) + " |",
         "|---|" + "---:|" * len(agents),
     ]
     for name in conditions:
@@ -74,7 +79,7 @@ def _others(found: Found) -> list[str]:
         for name, changes in of.items():
             aim = "–" if changes.aim is None else _percent(changes.aim)
             agrees = "–" if changes.agreement is None else _percent(changes.agreement)
-            cells = (agent, label(name), changes.stops, changes.missed, aim, agrees)
+            cells = (markdown_of(agent), label(name), changes.stops, changes.missed, aim, agrees)
             lines.append(f"| {' | '.join(map(str, cells))} |")
     return lines
 
@@ -101,11 +106,12 @@ def heatmap(found: Found, severity: float, path: Path) -> Path:
         dark = abs(1 - value - 0.5) > 0.35  # both ends of the colour map
         colour = "white" if dark else "black"
         axes.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=colour, fontsize=9)
-    axes.set_xticks(range(len(agents)), agents, rotation=25, ha="right", fontsize=9)
+    axes.set_xticks(range(len(agents)), [*map(plain, agents)], rotation=25, ha="right", fontsize=9)
     axes.set_yticks(range(len(names)), [label(name) for name in names], fontsize=9)
     axes.set_title(f"changed decisions, %, severity {severity:g}", fontsize=10)
-    figure.savefig(path, dpi=DPI, facecolor="white")
-    return path
+    return write_atomically(
+        path, lambda draft: figure.savefig(draft, dpi=DPI, facecolor="white", format="png")
+    )
 
 
 def spread(changed: Sequence[int]) -> list[int]:
@@ -137,7 +143,7 @@ def picture(
     holes = "; white: no reading" if shown == DEPTH else ""
     about = f"{recording.name}: {shown} clean, and under {corruption.name}{holes}"
     whole = np.concatenate([_title(about, rows[0].shape[1]), *rows])
-    cv2.imwrite(str(path), whole[..., ::-1])
+    write_bytes(path, cv2.imencode(".png", whole[..., ::-1])[1].tobytes())
     return path
 
 

@@ -141,8 +141,9 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 
 def sheet(
     restorer: Restorer, clean: dict[str, np.ndarray], met: Sequence[Corruption], seed: int
-) -> np.ndarray:
-    """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean."""
+) -> np.ndarray | None:
+    """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean. None if
+    no corruption is of a sensor that there is."""
     rows = []
     for corruption in met:
         sensor = next((s for s in corruption.modalities if s in restorer.nets and s in clean), None)
@@ -157,7 +158,7 @@ def sheet(
         cv2.putText(name, title(corruption.name)[:18], place, font, 0.42, (0, 0, 0), 1, cv2.LINE_AA)
         gap = np.full((SIDE, 6, 3), 255, np.uint8)
         rows.append(np.hstack([name, shown[0], gap, shown[1], gap, shown[2]]))
-    return np.vstack(rows)
+    return np.vstack(rows) if rows else None
 
 
 def _views(sensor: str, frames: np.ndarray) -> np.ndarray:
@@ -176,17 +177,20 @@ def write(
     folder: Path,
     about: str,
 ) -> None:
-    """Measure, print, and write the table and the picture into ``folder``."""
+    """Measure, print, and write the table and the picture into ``folder``; no picture where
+    nothing is corrupted."""
     scores = measure(restorer.eval(), seen, met, seed)
     about = f"{len(seen)} instants of {about}, seed {seed}, restorer {restorer.hash}"
     text = table(scores, about)
     folder.mkdir(parents=True, exist_ok=True)
     with atomic_text(folder / "restoration.md") as file:
         file.write(text)
+    print(f"{text}\nwrote {folder / 'restoration.md'}")
     drawn = sheet(restorer, seen[0], [c for c in met if c is not CLEAN], seed)
-    encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
-    write_bytes(folder / "restoration.jpg", encoded.tobytes())
-    print(f"{text}\nwrote {folder / 'restoration.md'}\nwrote {folder / 'restoration.jpg'}")
+    if drawn is not None:
+        encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
+        write_bytes(folder / "restoration.jpg", encoded.tobytes())
+        print(f"wrote {folder / 'restoration.jpg'}")
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -98,6 +98,15 @@ class Restorer(nn.Module):
         changed, made = net.judged(torch.from_numpy(views))
         return made.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
 
+    def check_shown(self, sensors: Iterable[str], where: str) -> None:
+        """Raise ValueError if it restores none of ``sensors``, which are what ``where`` shows."""
+        shown = [*sensors]
+        if not any(sensor in self.nets for sensor in shown):
+            raise ValueError(
+                f"The restorer of restore= is for {', '.join(self.nets)}, but {where} shows "
+                f"{', '.join(shown) or 'no frames'}: leave restore= out, or train one for these."
+            )
+
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
         """How far the gate's logit lies above its threshold; above 0 the frame is restored."""
         net, views = self._net(sensor), self._views(sensor, np.asarray(frame))
@@ -144,12 +153,9 @@ class Restorer(nn.Module):
 def restorer_of(folder: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
     """The restorer of an option ``restore=``: none for None; else as :func:`load_restorer`.
     ValueError if it restores none of ``sensors``, which are what a world shows."""
-    made, shown = None if folder is None else load_restorer(folder), [*sensors]
-    if made is not None and not any(name in made.nets for name in shown):
-        raise ValueError(
-            f"The restorer {folder} is for {', '.join(made.nets)}, but the world shows "
-            f"{', '.join(shown)}: leave restore= out, or train one for these."
-        )
+    made = None if folder is None else load_restorer(folder)
+    if made is not None:
+        made.check_shown(sensors, "the world")
     return made
 
 

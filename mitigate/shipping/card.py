@@ -21,6 +21,7 @@ from mitigate.shipping import hardened
 from mitigate.shipping.front_matter import front_matter
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
+CODE = ("mitigate", "conf", "recipes", "pyproject.toml")  # of a checkout: what makes a folder
 LICENCE, UNKNOWN = "Apache-2.0", "other"  # of our agents; Hugging Face's word where it is not said
 
 
@@ -45,6 +46,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
         "teachers": [reference(path) for path in teachers],
         "vocabulary": hardened.vocabulary_sha(agent),
         "commit": commit(),
+        "uncommitted": uncommitted(),
         "versions": {package: _version(package) for package in VERSIONS},
         "class": kind,
         "license": LICENCE if hardened.is_ours(kind) else UNKNOWN,
@@ -60,14 +62,23 @@ def reference(weights: str) -> dict[str, str]:
 
 def commit() -> str | None:
     """Return the git commit of the checkout; None outside one, and without git."""
+    return _git("rev-parse", "HEAD") or None
+
+
+def uncommitted() -> bool:
+    """Whether the checkout's code or configs are not those of its commit."""
+    return bool(_git("--no-optional-locks", "status", "--porcelain", "--", *CODE))
+
+
+def _git(*words: str) -> str:
+    """What git says of the checkout; empty outside one, and without git."""
     if not (ROOT / ".git").exists():  # installed: a repository around it is another's
-        return None
-    command = ["git", "rev-parse", "HEAD"]
+        return ""
     try:
-        found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
+        found = subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True)
     except OSError:
-        return None
-    return found.stdout.strip() or None if found.returncode == 0 else None
+        return ""
+    return found.stdout.strip() if found.returncode == 0 else ""
 
 
 def weights_of(row: Row) -> str:
@@ -149,8 +160,14 @@ def _origin(card: dict[str, Any]) -> str:
     return (
         f"Recipe `{card['recipe']}`, severity {severities}, seed {card['seed']}{computed}, "
         f"corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent `{card['agent']}`, "
-        f"{licence}, exported at commit `{card['commit']}`."
+        f"{licence}{_exported(card)}."
     )
+
+
+def _exported(card: dict[str, Any]) -> str:
+    """At which commit, where that is known."""
+    changed = ", with uncommitted changes" if card.get("uncommitted") else ""
+    return f", exported at commit `{card['commit']}`{changed}" if card["commit"] else ""
 
 
 def _span(severity: float | list[float]) -> str:

@@ -27,7 +27,7 @@ from torch import Tensor
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import build, checkpoint, conf, settings
-from mitigate.core.files import find, sha256
+from mitigate.core.files import find, put_folder, sha256
 from mitigate.evaluation import evaluate
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.rows import Row
@@ -79,9 +79,7 @@ def export(
         draft = Path(aside) / name
         draft.mkdir()
         _write(draft, run, cfg, agent, name, list(rows), onnx, walks)
-        if target.exists():
-            target.rename(Path(aside) / "old")
-        draft.rename(target)
+        put_folder(draft, target, Path(aside) / "old")
     return target
 
 
@@ -310,8 +308,8 @@ def main() -> None:
         if chosen:
             given["walks"] = _walks_of(given["run"], chosen, configs)
         folder = export(given.pop("run"), given.pop("name"), **given)
-    except (ValueError, FileNotFoundError) as error:
-        sys.exit(f"error: {error}")
+    except (ValueError, OSError) as error:
+        sys.exit(f"error: {conf.said(error)}")
     card = hardened.read_card(folder)
     if card["latency_ms"]:
         print(f"latency in ms: {json.dumps(card['latency_ms'])}")

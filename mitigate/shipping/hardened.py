@@ -49,10 +49,10 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
             return fill(agent, folder, base=base).eval()
         agent = build(folder / CONFIG)
         if card["vocabulary"] != vocabulary_sha(agent):
+            made = f" (commit {card['commit']})" if card["commit"] else ""
             raise ValueError(
                 f"{folder} was exported with another vocabulary than its {CONFIG} gives the agent, "
-                f"so its words would be misread. Use the version that made it (commit "
-                f"{card['commit']})."
+                f"so its words would be misread. Use the version that made it{made}."
             )
         return fill(agent, folder, base=base).eval()
 
@@ -176,7 +176,12 @@ def read_card(folder: Path) -> dict[str, Any]:
     card = read_json(file, _AGAIN)
     if not isinstance(card, dict) or card.get("format") != FORMAT:
         raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {_AGAIN}")
-    if card.get("sha256") != card_sha(card):
+    if "sha256" not in card:
+        raise ValueError(
+            f"{file} is the card of another kind of folder, such as a restorer (restore=...): name "
+            "a hardened checkpoint (checkpoints/hardened/...)."
+        )
+    if card["sha256"] != card_sha(card):
         raise ValueError(
             f"{file} does not have the sha256 that it states: it was changed. {_AGAIN}"
         )

@@ -8,6 +8,7 @@ map to logits over [stop], nodes and ghosts). :data:`INPUTS` describes every ten
 
 from __future__ import annotations
 
+import io
 import statistics
 import time
 from collections.abc import Callable
@@ -24,6 +25,7 @@ from mitigate.agents.text import MAX_WORDS
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS
 from mitigate.agents.topological.planner import DecisionBatch
+from mitigate.core.files import write_bytes
 from mitigate.core.observation import VIEWS
 from mitigate.core.seeding import torch_generator
 
@@ -141,8 +143,11 @@ def free_dimensions(name: str) -> tuple[dict[int, Any], ...]:
 
 
 def save_programs(programs: dict[str, ExportedProgram], file: Path) -> None:
-    """Write both programs to one ``.pt2`` file."""
-    package_pt2(file, exported_programs=programs)
+    """Write both programs to one ``.pt2`` file. Raises OSError if that cannot be written: torch,
+    which would end the process then, writes to memory."""
+    with io.BytesIO() as packed:
+        package_pt2(packed, exported_programs=programs)
+        write_bytes(file, packed.getvalue())
 
 
 def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 import torch
 
 from mitigate.bridge.cameras import Rig
+from mitigate.bridge.check import described
+from mitigate.bridge.results import Told
+from mitigate.bridge.sheet import of
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.restoration.restorer import Restorer
 
@@ -71,3 +76,31 @@ def test_a_program_sees_restored_frames_even_where_nothing_is_corrupted(command,
     for look, entry in plain.items():
         shown = entry["frames"]
         assert any(restored[look]["frames"][name] != digest for name, digest in shown.items())
+
+
+def test_a_restorer_of_what_no_camera_shows_is_refused_at_the_end_of_the_first_episode(
+    run, tmp_path
+):
+    program = tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook, numpy\n"
+        "episode = mitigate_hook.connect('one')\n"
+        "episode.corrupt({'rgb': numpy.full((8, 8, 3), 90, 'uint8')})\n"
+        "episode.finish(success=1)\n"
+    )
+    Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
+    options = f"conditions=[spatter] restore={tmp_path}/mine"
+    ended = run(tmp_path / "out", options, f"{sys.executable} {program}")
+    assert "is for depth, but episode one shows rgb: leave restore= out" in ended.stderr
+    assert "spatter-s0.6: started" not in ended.stdout
+
+
+def test_a_check_says_what_is_restored(restorer):
+    rig = Rig([camera("rgb")])
+    frames = {of("rgb"): np.zeros((16, 16, 3), np.uint8)}
+    assert "restored: rgb" in described(Told(), rig, frames, restorer)
+    only = Restorer(sensors=[DEPTH], depth_width=4)
+    assert "restored: nothing of these, the restorer is for depth" in described(
+        Told(), rig, frames, only
+    )
+    assert not any("restored" in line for line in described(Told(), rig, frames))

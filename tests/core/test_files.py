@@ -88,3 +88,27 @@ def test_json_of_anybody_is_plain_data_or_a_value_error(tmp_path, raw):
     assert "\n" not in str(error.value) and len(str(error.value)) < 600
     path.write_text(json.dumps({"a": [1, 0.5, None, True, "x"]}))
     assert json_files.read_json(path, "") == {"a": [1, 0.5, None, True, "x"]}
+
+
+def test_the_byte_order_mark_of_an_editor_is_passed_over(tmp_path):
+    path = tmp_path / "a.json"
+    for raw in (b'\xef\xbb\xbf{"a": 1}', gzip.compress(b'\xef\xbb\xbf{"a": 1}')):
+        path.write_bytes(raw)
+        assert read(path) == '{"a": 1}'
+        assert dict(json_files.json_members(path, "none")) == {"a": 1}
+    path.write_bytes(b'\xef\xbb\xbf{"a": 1}')
+    assert json_files.read_json(path, "") == {"a": 1}
+
+
+def test_a_folder_takes_the_place_of_another_or_that_stays(tmp_path):
+    draft, target, old = (tmp_path / name for name in ("draft", "target", "old"))
+    target.mkdir()
+    (target / "a").write_text("before")
+    with pytest.raises(FileNotFoundError):
+        files.put_folder(draft, target, old)  # there is no draft
+    assert (target / "a").read_text() == "before" and not old.exists()
+    draft.mkdir()
+    (draft / "a").write_text("behind")
+    files.put_folder(draft, target, old)
+    assert (target / "a").read_text() == "behind" and (old / "a").read_text() == "before"
+    assert not draft.exists()

@@ -26,6 +26,7 @@ from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
+from tests.evaluation.straight import Straight
 
 CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]
 SIZE = 16
@@ -91,6 +92,20 @@ def test_a_row_says_what_it_measured(finished):
         assert row["success"] in (0, 1) and 0 <= row["spl"] <= row["success"]
         assert 0 <= row["ndtw"] <= 1 and row["decisions"] <= 15 and row["steps"] <= 500
         assert "STOP" in row["rule"] and "2.0 m" in row["rule"]
+
+
+class Won(ApartmentsWorld):
+    """Says that it went well by true."""
+
+    def measures(self) -> dict:
+        return super().measures() | {"success": True, "spl": 1.0}
+
+
+def test_a_world_may_say_success_by_true_and_its_row_says_1(tmp_path):
+    episodes = load_episodes("val_seen")[:1]
+    options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
+    (made,) = evaluate(Straight(1), partial(Won, SIZE), episodes, [CLEAN], **options)
+    assert made["success"] == 1 and type(made["success"]) is int
 
 
 def test_corruptions_change_what_the_agent_does(finished):

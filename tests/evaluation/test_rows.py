@@ -46,6 +46,17 @@ def test_a_whole_last_line_without_its_end_is_kept(tmp_path):
     assert [r["episode_id"] for r in rows.read(path)] == ["0", "1"]
 
 
+@pytest.mark.parametrize("packed", [False, True])
+def test_the_byte_order_mark_of_an_editor_is_no_part_of_a_row(tmp_path, packed):
+    path = tmp_path / ("rows.jsonl.gz" if packed else "rows.jsonl")
+    raw = "".join(f"\ufeff{json.dumps(row(n, True))}\n" for n in (0, 1))  # two files, joined
+    raw = raw.rstrip("\n").encode()
+    path.write_bytes(gzip.compress(raw) if packed else raw)
+    assert rows.read(path) == rows.gather([tmp_path]) == [row(0, True), row(1, True)]
+    rows.append(path, [row(2, False)])
+    assert [r["episode_id"] for r in rows.read(path)] == ["0", "1", "2"]
+
+
 @pytest.mark.parametrize(
     ("line", "message"),
     [
@@ -123,6 +134,8 @@ BAD_VALUES = [
     *(("suite", value) for value in ("", "1\x00")),
     *(("episode_id", value) for value in ("", "e\n1", "x" * 500)),
     ("version", 7),
+    *((key, value) for key in ("success", "spl", "severity", "seed") for value in (True, False)),
+    *((key, True) for key in ("ndtw", "steps", "collisions", "path_length")),
 ]
 
 
@@ -136,6 +149,13 @@ def test_a_value_out_of_its_range_is_refused_read_or_written(tmp_path, key, valu
     assert "\n" not in str(error.value) and len(str(error.value)) < 600
     with pytest.raises(ValueError, match="A result row has a wrong"):
         rows.append(path, [bad])
+
+
+def test_true_and_false_are_no_numbers_and_the_message_says_which_to_write(tmp_path):
+    (tmp_path / "rows.jsonl").write_text(json.dumps(row(0, True) | {"success": True}))
+    with pytest.raises(ValueError, match=r"wrong 'success': True \(a number: 1 for true, 0 for f"):
+        rows.read(tmp_path / "rows.jsonl")
+    assert rows._line(row(0, True, fell=True))  # an entry of one's own may be one
 
 
 BAD_LINES = {

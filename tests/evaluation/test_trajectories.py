@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cv2
+import numpy as np
 import pytest
 
 from mitigate.corruptions import Corruption
@@ -73,3 +74,12 @@ def test_one_agent_alone_gets_a_picture_too_and_clean_rows_get_none(tmp_path):
     assert write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path) == []
     rows += cell("x", "black_out", "1", [episode.episode_id])
     assert len(write_pictures({"x": Straight(1)}, world, [episode], rows, tmp_path)) == 2
+
+
+def test_a_sheet_that_cannot_be_written_is_told(tmp_path):
+    (picture := tmp_path / "a.png").write_bytes(
+        cv2.imencode(".png", np.zeros((8, 8, 3), np.uint8))[1].tobytes()
+    )
+    (tmp_path / "sheet.png").mkdir()
+    with pytest.raises(OSError, match=r"sheet\.png"):
+        trajectories.contact_sheet([picture], tmp_path / "sheet.png")

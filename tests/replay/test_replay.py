@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from mitigate import cli
 from mitigate.agents.recurrent.odometer import Odometer
-from mitigate.core.observation import DEPTH, FORWARD, LEFT, RGB, RIGHT, STOP
+from mitigate.core.conf import load_config
+from mitigate.core.locks import FolderLock
+from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.corruptions import CLEAN, Corruption
-from mitigate.replay import report
+from mitigate.evaluation import episode_lists
+from mitigate.replay import export_drive, report
 from mitigate.replay.changes import compare
+from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
 from mitigate.restoration.restorer import Restorer
-from mitigate.worlds.recorded import Recording
+from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.recorded import Recording, open_recording
 from mitigate.worlds.recorded.steps import NONE, answered
 
 T = 30
@@ -75,7 +82,7 @@ def test_the_table_says_which_restorer_the_frames_went_through():
     answers = {made.name: walk(ByBrightness(), made, CLEAN, 0)}
     found = {"mine": {"clean": compare([made], answers, answers)}}
     restorer = Restorer(sensors=[RGB], width=4)
-    said = f"Frames went through the restorer `{restorer.hash}`."
+    said = f"Frames of rgb went through the restorer `{restorer.hash}`."
     assert said in report.table(found, 0.6, T, 1, restorer)
     assert "restorer" not in report.table(found, 0.6, T, 1)
 
@@ -201,12 +208,117 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
     assert "Foreign object" in printed
 
 
+def test_a_restorer_of_what_a_drive_does_not_show_is_refused_before_a_frame_is_read(
+    tmp_path, mitigate
+):
+    colours = tmp_path / "lab/rgb"
+    colours.mkdir(parents=True)
+    for number in range(3):
+        (colours / f"{number:06d}.png").write_bytes(b"not even a picture")
+    Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
+    options = (f"restore={tmp_path}/mine", "agents=[checkpoints/recurrent/base]")
+    status, _, wrong = mitigate("replay", str(colours.parent), *options, f"out={tmp_path}/out")
+    assert status == 1 and "is for depth, but lab shows rgb: leave restore= out" in wrong
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("form", ["frames", "bag", "mcap"])
+def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
+    tmp_path, form, monkeypatch
+):
+    cfg = load_config("export_drive", [f"form={form}", "env.size=16", "episodes=2"])
+    listed = [
+        replace(e, episode_id=f"../../é.{n}") for n, e in enumerate(load_episodes("val_seen")[:2])
+    ]
+    monkeypatch.setattr(episode_lists, "episodes", lambda *_: listed)
+    out = tmp_path / "a/b"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(export_drive, "write_bytes", full)
+        patch.setattr(export_drive, "write_bag", full)
+        with pytest.raises(OSError, match="No space left"):
+            export_drive.run(cfg, out)
+    assert [*out.iterdir()] == []
+    written = export_drive.run(cfg, out)
+    assert [path.stem for path in written] == ["é-0", "é-1"]
+    assert [*tmp_path.iterdir()] == [tmp_path / "a"] and [*(tmp_path / "a").iterdir()] == [out]
+    found = [open_recording(path)[0] for path in written]
+    assert [drive.instruction for drive in found] == [e.instruction.text for e in listed]
+    with pytest.raises(ValueError, match="is there already: name another folder"):
+        export_drive.run(cfg, out)
+    listed[:] = [replace(listed[0], episode_id=name) for name in ("a/b", "a.b")]
+    with pytest.raises(ValueError, match="Two episodes would be the drive .*'a/b' and 'a.b'"):
+        export_drive.run(cfg, tmp_path / "other")
+
+
+def full(*_):
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.fixture
+def lab(tmp_path):
+    """A short drive in a folder."""
+    rng, path = np.random.default_rng(0), tmp_path / "lab"
+    frames = {RGB: rng.integers(0, 255, (16, 16, 3), np.uint8), DEPTH: np.ones((16, 16, 1))}
+    write_frames(path, [frames | {POSE: np.array([0, n, 0])} for n in range(3)], "go on")
+    return str(path)
+
+
+def test_what_is_in_a_folder_stays_there_but_what_a_replay_wrote(tmp_path, lab, mitigate):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "mine.png").write_text("a picture of mine")
+    options = ("agents=[checkpoints/recurrent/base]", "conditions=[flare]", f"out={out}")
+    for _ in range(2):
+        status, _, wrong = mitigate("replay", lab, *options)
+        assert status == 0, wrong
+        assert (out / "mine.png").read_text() == "a picture of mine"
+        (out / "recurrent-flare.png").write_text("of the run before")
+    status, _, wrong = mitigate("replay", lab, *options)
+    kept = out / "recurrent-flare.png"
+    assert status == 0 and (not kept.exists() or kept.read_bytes()[1:4] == b"PNG"), wrong
+    assert not (out / ".lock").exists()
+
+
+def test_a_folder_that_is_none_or_in_use_is_refused(tmp_path, lab, mitigate):
+    out = tmp_path / "out"
+    options = ("agents=[checkpoints/recurrent/base]", "conditions=[flare]", f"out={out}")
+    out.write_text("a file")
+    status, printed, wrong = mitigate("replay", lab, *options)
+    assert status == 1 and "out is no folder" in wrong and "read lab" not in printed + wrong
+    out.unlink()
+    out.mkdir()
+    for text, words in (("[1]", "is not what a replay writes"), ("{", "is cut short or damaged")):
+        (out / "replay.json").write_text(text)
+        status, _, wrong = mitigate("replay", lab, *options)
+        assert status == 1 and words in wrong and "Name another folder (out=...)" in wrong
+    (out / "replay.json").unlink()
+    with FolderLock(out):
+        status, _, wrong = mitigate("replay", lab, *options)
+    assert status == 1 and "is in use" in wrong
+
+
+def test_a_picture_that_cannot_be_written_is_no_picture_and_is_told(tmp_path):
+    made = drive()
+    clean = walk(ByBrightness(), made, CLEAN, 0)
+    dark = walk(ByBrightness(), made, Corruption("low_light", 0.9), 0, keep=[4])
+    (tmp_path / "a.png").mkdir()
+    with pytest.raises(OSError, match="a.png"):
+        report.picture(made, Corruption("low_light", 0.9), clean, dark, tmp_path / "a.png")
+    found = {"a|b$\\frac{$": {"low_light": compare([made], {"lab": clean}, {"lab": dark})}}
+    with pytest.raises(OSError, match="a.png"):
+        report.heatmap(found, 0.6, tmp_path / "a.png")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
+    assert "| a\\|b$" in report.table(found, 0.6, T, 1)
+    assert report.heatmap(found, 0.6, tmp_path / "b.png").is_file()  # a name is no formula
+
+
 @pytest.mark.parametrize(
     ("options", "says"),
     [
         ([], "FOLDER_OR_BAG"),
         (["none"], "no recording"),
         (["tests", "agents=[checkpoints/nothing]"], "nothing"),
+        (["tests", "agents=[checkpoints/restorer]"], "the card of another kind of folder"),
         (["tests", "conditions=[fog2]"], "fog2"),
         (["tests", "suite=clean"], "nothing to compare"),
         (["tests", "colour=red"], "colour"),

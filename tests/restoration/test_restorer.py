@@ -198,7 +198,7 @@ def shipped(tmp_path_factory):
 
 def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
     Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
-    with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose"):
+    with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose: leave"):
         restorer_of(str(tmp_path / "mine"), (RGB, "pose"))
     assert restorer_of(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
     assert restorer_of(None, (RGB,)) is None
@@ -248,3 +248,16 @@ def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):
     seen = corrupt_observation(panorama, CLEAN, Key(0, "test"))
     dark = corrupt_observation(panorama, Corruption("low_light", 0.8), Key(0, "test"))
     assert shipped.doubt(RGB, seen[RGB]) < 0 < shipped.doubt(RGB, dark[RGB])
+
+
+@pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
+def test_a_report_of_what_corrupts_no_sensor_that_there_is_has_a_table_and_no_picture(
+    tmp_path, panorama, met
+):
+    """As at the end of a training with suite=clean, or of RGB alone for a restorer of depth."""
+    only = opened(Restorer([DEPTH], depth_width=4).eval())
+    report.write(only, [panorama], met, 0, tmp_path, "one")
+    assert [path.name for path in tmp_path.iterdir()] == ["restoration.md"]
+    assert "Clean" in (tmp_path / "restoration.md").read_text()
+    report.write(only, [panorama], [*met, Corruption("missing_data", 0.6)], 0, tmp_path, "one")
+    assert (tmp_path / "restoration.jpg").is_file()

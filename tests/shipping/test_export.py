@@ -422,6 +422,60 @@ def test_the_commit_is_that_of_this_checkout_or_not_stated(monkeypatch, tmp_path
     assert cards.commit() is None  # installed below a repository that is another's
 
 
+def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(place, tmp_path):
+    """As ``export`` says it when neither weights nor programs may grow beyond some size."""
+    weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
+    for most in (weights // 2, weights + 1000):
+        code = (
+            "import resource, signal, sys; from mitigate.shipping.export import main; "
+            f"resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most})); main()"
+        )
+        done = subprocess.run(
+            [sys.executable, "-c", code, str(place / "runs/whole"), "mine", "--out", str(tmp_path)],
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 1 and "File too large" in done.stderr, done.stderr
+        assert "Traceback" not in done.stderr and "frame #" not in done.stderr
+        assert not [*tmp_path.iterdir()]
+
+
+def git(folder, *words):
+    named = ["-c", "user.name=a", "-c", "user.email=a@b"]
+    subprocess.run(["git", *named, *words], cwd=folder, check=True, capture_output=True)
+
+
+@pytest.mark.parametrize("change", ["mitigate/agent.py", "conf/new.yaml"])
+def test_a_card_says_that_the_code_was_not_that_of_the_commit(monkeypatch, tmp_path, change):
+    (tmp_path / "mitigate").mkdir()
+    (tmp_path / "conf").mkdir()
+    (tmp_path / "mitigate/agent.py").write_text("a = 1\n")
+    monkeypatch.setattr(cards, "ROOT", tmp_path)
+    assert not cards.uncommitted()  # no checkout
+    git(tmp_path, "init")
+    assert cards.commit() is None  # no commit yet
+    git(tmp_path, "add", ".")
+    git(tmp_path, "commit", "-m", "first")
+    (tmp_path / "checkpoints").mkdir()
+    (tmp_path / "checkpoints/mine").write_text("exported before")
+    assert not cards.uncommitted()
+    (tmp_path / change).write_text("a = 2\n")
+    assert cards.uncommitted()
+    monkeypatch.setenv("PATH", "")
+    assert cards.commit() is None and not cards.uncommitted()
+
+
+def test_a_readme_says_of_the_commit_what_is_known(place):
+    card = hardened.read_card(place / "hardened/whole")
+    end = f"exported at commit `{card['commit']}`"
+    assert "uncommitted" in card
+    assert f"{end}." in cards.readme(card | {"uncommitted": False})
+    assert f"{end}, with uncommitted changes." in cards.readme(card | {"uncommitted": True})
+    assert f"{end}." in cards.readme({n: v for n, v in card.items() if n != "uncommitted"})
+    assert "commit" not in cards.readme(card | {"commit": None}).partition("## ")[0]
+
+
 def test_a_missing_teacher_is_told(place, tmp_path):
     agent = hardened.load_hardened(place / "hardened/whole")
     stages = {"one": {"recipe": {"teacher": "checkpoints/nobody"}}}

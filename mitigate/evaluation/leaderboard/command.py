@@ -15,6 +15,8 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from mitigate.core import conf
+from mitigate.core.build import maker
 from mitigate.core.files import find
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
@@ -27,6 +29,7 @@ from mitigate.evaluation.rows import Row
 FOLDER = "docs/leaderboard"
 OUT = Path("runs/leaderboard.html")
 CLOSE = 1e-5  # of figures that entries round to six digits (ours)
+_OTHERS = re.compile(r"[^\w.-]+")  # signs that the name of an entry's file does not have
 
 
 def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
@@ -34,22 +37,32 @@ def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
 
     Raises as ``entry.load``; FileNotFoundError if there is none.
     """
+    return [load(file) for file in _files(paths)]
+
+
+def _files(paths: Sequence[Path | str]) -> list[Path]:
     files: list[Path] = []
     for path in [Path(path) for path in paths] or [find(FOLDER)]:
         files += sorted(path.glob("*.json")) if path.is_dir() else [path]
     if not files:
         raise FileNotFoundError("There is no entry (*.json) in the folders named.")
-    return [load(file) for file in files]
+    return files
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
     """Return the rows in the file that ``entry`` names, of other agents, too. Raises
-    FileNotFoundError if they are not at hand, ValueError if they are damaged."""
+    FileNotFoundError if they are not at hand, ValueError if they are damaged or no file."""
     file = entry.rows["file"]
     if not file or not find(file).exists():
         raise FileNotFoundError(
             f"The rows of {entry.name} are not at hand ({file or 'no file is named'}): fetch them "
             f"to {file or 'a file'}, from the folder in which you run this."
+        )
+    if not find(file).is_file():
+        raise ValueError(
+            f"The rows of {entry.name} are said to be in {file}, which is "
+            f"{'a folder' if find(file).is_dir() else 'no plain file'}: an entry names one file "
+            "of rows. Name it with `mitigate leaderboard add`."
         )
     return result_rows.gather([find(file)])
 
@@ -110,14 +123,21 @@ def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
 
 
 def check(paths: Sequence[Path | str] = ()) -> list[str]:
-    """Print of each entry whether its rows say the same; return what is wrong, a line each."""
+    """Print of each entry whether its rows say the same, and which files are none; return what is
+    wrong, a line each. Raises FileNotFoundError if there is none."""
     wrong = []
-    for entry in entries_of(paths):
+    for file in _files(paths):
+        try:
+            entry = load(file)
+        except (OSError, ValueError) as error:
+            print(f"{file}: NO entry", flush=True)
+            wrong.append(conf.said(error))
+            continue
         try:
             found = differences(entry, rows_of(entry))
-        except (FileNotFoundError, ValueError) as error:
-            found = [str(error)]
-        print(f"{entry.name}: {'as its rows say' if not found else 'NOT as its rows say'}")
+        except (OSError, ValueError) as error:
+            found = [conf.said(error)]
+        print(f"{entry.name}: {'NOT as' if found else 'as'} its rows say", flush=True)
         wrong += [f"{entry.name}: {line}" for line in found]
     return wrong
 
@@ -139,12 +159,12 @@ def add(
     The sensors are those of the world of ``options`` (of ``mitigate evaluate``). Raises ValueError
     if the file is there already, and as ``entry_of``.
     """
-    from mitigate.core import conf
-    from mitigate.core.build import maker
-
-    place = Path(folder) / f"{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('.-') or 'entry'}.json"
+    place = Path(folder) / f"{_OTHERS.sub('-', name).strip('.-') or 'entry'}.json"
     if place.exists() and not overwrite:
-        raise ValueError(f"{place} exists already: replace it with --overwrite.")
+        raise ValueError(
+            f"{place} exists already: replace it with --overwrite, or name another folder "
+            "(--folder) if it is another agent's."
+        )
     cfg = conf.load_config("evaluate", options)
     entry = entry_of(
         result_rows.gather(paths),
@@ -163,9 +183,9 @@ def add(
 
 def _named(paths: Sequence[Path | str]) -> str:
     """Return the one file of the rows, if it is one and lies below this folder."""
-    path = Path(paths[0])
-    inside = len(paths) == 1 and not path.is_absolute() and ".." not in path.parts
-    return path.as_posix() if inside else ""
+    files = [file for path in paths for file in result_rows.files(path)]
+    inside = len(files) == 1 and not files[0].is_absolute() and ".." not in files[0].parts
+    return files[0].as_posix() if inside else ""
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mitigate.worlds.recorded.bags import Bag
 from mitigate.worlds.recorded.folders import Frames, is_drive, open_folder
-from mitigate.worlds.recorded.recording import RecordedWorld, Recording, load
+from mitigate.worlds.recorded.recording import RecordedWorld, Recording, kinds, load
 from mitigate.worlds.recorded.source import NARROW, WIDE, Source
 from mitigate.worlds.recorded.steps import Driven, Step
 from mitigate.worlds.recorded.topics import Topics
@@ -20,6 +20,7 @@ __all__ = [
     "Source",
     "Step",
     "Topics",
+    "kinds",
     "load",
     "open_recording",
 ]

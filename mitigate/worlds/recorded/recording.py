@@ -95,6 +95,12 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
     return Recording(source.name, source.instruction, frames, times, poses, taken)
 
 
+def kinds(source: Source, views: int) -> list[str]:
+    """Of which kinds ("rgb", "depth") are the frames that :func:`load` would read of ``source``;
+    raises as it does for a source without the cameras."""
+    return sorted({kind for kind, _ in _looks(source, views)}, reverse=True)
+
+
 def _looks(source: Source, views: int) -> dict[tuple[str, int], str]:
     """Which camera gives which (kind, view): the one ahead, or all of the panorama."""
     looks: dict[tuple[str, int], str] = {}

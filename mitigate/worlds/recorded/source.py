@@ -167,4 +167,4 @@ def text(file: Path, most: int = LARGEST_TEXT) -> str:
         raw = held.read(min(most, file.stat().st_size) + 1)  # as much memory is taken for it
     if len(raw) > most:
         raise ValueError(f"{file} has more than {most} bytes: cut the recording.")
-    return raw.decode("utf-8", errors="replace")
+    return raw.decode("utf-8-sig", errors="replace")

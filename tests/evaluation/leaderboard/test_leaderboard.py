@@ -119,6 +119,62 @@ def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, m
     assert "not at hand" in capsys.readouterr().out
 
 
+def test_check_goes_on_behind_an_entry_that_is_broken(rows, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("rows.jsonl", rows)
+    entry = entry_of(rows, "base", severity=0.6, file="rows.jsonl")
+    entry.save("entries/whole.json")
+    replace(entry, name="lost", rows=entry.rows | {"file": "é" * 180}).save("entries/lost.json")
+    Path("entries/cut.json").write_text("{")
+    Path("entries/folder.json").mkdir()
+    Path("entries/old.json").write_text(json.dumps({**entry.__dict__, "format": 1}))
+    assert command.main(["check", "entries", "nowhere.json"]) == 1
+    said = capsys.readouterr().out.splitlines()
+    assert said[:6] == [
+        *("entries/cut.json: NO entry", "entries/folder.json: NO entry"),
+        *("lost: NOT as its rows say", "entries/old.json: NO entry"),
+        *("base: as its rows say", "nowhere.json: NO entry"),
+    ]
+    wrong = "entries/cut.json is cut short", "entries/folder.json", "lost: File name too long"
+    for line, words in zip(said[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
+        assert words in line
+    assert command.main(["check", "entries/whole.json"]) == 0
+
+
+def test_an_entry_names_one_file_of_rows_and_no_folder(rows, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    result_rows.write("mine/rows.jsonl", rows)
+    add = ["add", "mine", "--name", "base", "--folder", "entries"]
+    assert command.main(add) == 0 and command.main(["check", "entries"]) == 0
+    entry = load("entries/base.json")
+    assert entry.rows["file"] == "mine/rows.jsonl"
+    os.mkfifo("pipe.jsonl")
+    for file, words in (
+        ("mine", "said to be in mine, which is a folder"),
+        (".", "said to be in ., which is a folder"),
+        ("pipe.jsonl", "said to be in pipe.jsonl, which is no plain file"),
+    ):
+        replace(entry, rows=entry.rows | {"file": file}).save("entries/base.json")
+        assert command.main(["check", "entries"]) == 1
+        assert words in capsys.readouterr().out
+    result_rows.write("mine/more.jsonl", rows)
+    assert command.main([*add, "--overwrite"]) == 0
+    assert load("entries/base.json").rows["file"] == ""  # of several
+
+
+def test_agents_with_names_in_any_script_have_files_of_their_own(rows, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = ["基準", "強化", "Größe +"]
+    for name in names:
+        result_rows.write(f"{name}.jsonl", [row | {"name": name} for row in rows])
+        add = ["add", f"{name}.jsonl", "--name", name, "--folder", "entries"]
+        assert command.main(add) == 0
+    files = sorted(Path("entries").iterdir())
+    assert [file.name for file in files] == ["Größe.json", "基準.json", "強化.json"]
+    assert [load(file).name for file in files] == ["Größe +", "基準", "強化"]
+    assert command.main(["check", "entries"]) == 0
+
+
 def test_the_page_ranks_entries_and_takes_no_name_as_html(rows, tmp_path):
     evil = "</script><script>alert(1)</script>"
     low = entry_of(rows, "base", severity=0.6)

@@ -64,6 +64,14 @@ def test_a_folder_gives_its_frames_poses_words_and_what_the_driver_did(folder):
     assert found.driven.actions.tolist() == [FORWARD, FORWARD, LEFT, FORWARD, RIGHT, STOP]
 
 
+def test_the_byte_order_mark_of_an_editor_is_no_part_of_a_text(folder):
+    for name in ("instruction.txt", "poses.csv"):
+        file = folder / name
+        file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
+    found = read(folder)
+    assert found.instruction == "walk to the door" and len(found.poses) == len(walk())
+
+
 @pytest.mark.parametrize("form", ["bag", "mcap"])
 def test_a_bag_gives_what_the_folder_gives(folder, tmp_path, form):
     bag = write_bag(tmp_path / "robot", steps(walk()), form)
