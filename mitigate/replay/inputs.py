@@ -1,0 +1,68 @@
+"""What a replay reads: agents from their weights, and recorded drives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+from omegaconf import DictConfig
+
+from mitigate.core.files import find
+
+
+def load_agents(weights: Sequence[str]) -> dict[str, Any]:
+    """The agents of folders of weights, by names that differ."""
+    from mitigate.evaluation.columns import name_of
+
+    if len(set(weights)) < len(weights):
+        raise ValueError(f"agents=[{','.join(weights)}] names one folder twice.")
+    names = [name_of(folder) for folder in weights]
+    if len(set(names)) < len(names):
+        names = [folder.rstrip("/") for folder in weights]
+    return {name: _agent(find(folder)) for name, folder in zip(names, weights, strict=True)}
+
+
+def _agent(folder: Path) -> Any:
+    from mitigate.core import checkpoint
+    from mitigate.shipping import hardened
+
+    if (folder / hardened.CARD).is_file():
+        return hardened.load_hardened(folder)
+    config = checkpoint.weights_file(folder).with_name(hardened.CONFIG)
+    if not config.is_file():
+        raise FileNotFoundError(f"{config} is missing, so nobody knows what agent {folder} is of.")
+    agent = hardened.build(config)
+    checkpoint.load_agent(agent, folder)
+    return agent.eval()
+
+
+def load_recordings(
+    cfg: DictConfig, paths: Sequence[str], views: set[int], restorer: Any = None
+) -> dict[int, list[Any]]:
+    """Every drive, for agents with a panorama (12) and for those with one camera (1). Raises
+    ValueError for a drive of which ``restorer`` restores nothing, before any frame is read."""
+    from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
+
+    topics, step = Topics(**cfg.topics), Step(**cfg.step)
+    how = {"topics": topics, "hfov": cfg.hfov, "unit": cfg.unit, "yaw": cfg.yaw}
+    how["cameras"] = None if cfg.cameras is None else list(cfg.cameras)
+    found: dict[int, list[Any]] = {count: [] for count in views}
+    sources = [source for path in paths for source in open_recording(path, **how)]
+    for source, count in product(sources if restorer is not None else [], views):
+        restorer.check_shown(kinds(source, count), source.name)
+    for source, count in product(sources, views):
+        drive = load(source, views=count, size=cfg.size, step=step)
+        words = cfg.instruction or drive.instruction
+        if not words:
+            raise ValueError(
+                f"{drive.name} says no instruction: give instruction='\"walk to the door\"'."
+            )
+        found[count].append(replace(drive, instruction=words))
+    for drives in found.values():
+        twice = {drive.name for drive in drives if sum(d.name == drive.name for d in drives) > 1}
+        if twice:
+            raise ValueError(f"Two drives are called {twice.pop()!r}: rename one.")
+    return found
