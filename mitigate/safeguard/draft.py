@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mitigate.safeguard import gate, masks, rules
+from mitigate.safeguard.formal_words import FORMAL, formal
 from mitigate.safeguard.manners import plainer
 from mitigate.safeguard.object_goal import object_goal
 from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
@@ -87,7 +88,7 @@ class Draft:
 
     def _say_orders(self) -> None:
         """Say orders of a manner of speaking in plain words."""
-        if rules.style_marks(self.repaired) < MARKS:
+        if rules.style_marks(self.repaired) < MARKS and formal(self.repaired) < FORMAL:
             return
         plain = plainer(self.repaired)
         if plain != self.repaired:
@@ -166,6 +167,7 @@ def _untouched(text: str, tagger: Tags | None) -> bool:
         not MASK.search(text)
         and rules.lower_capitals(text) == text
         and rules.style_marks(text) < MARKS
+        and formal(text) < FORMAL
         and not rules.doubtful(text, judging(tagger, text))
         and rules.repair(text, tags=tagger).text == text
     )

@@ -69,7 +69,8 @@ _NEED_NOT = re.compile(
 _BE = r"(?:do not|don't|never) "
 _LEAVES_BE = re.compile(  # and not what the robot was told
     rf"{_BE}(?:touch|move|open|close|enter|use|wake|disturb|take|pick up|sit on|lie on|step on|"
-    r"lean on|knock over|bump into|go (?:in|inside|into|near))(?: (?:it|them|there))?"
+    r"lean on|knock over|bump into|go (?:in|inside|into|near))"
+    r"(?: (?:it|them|there)|(?<=touch|.move|.wake) the [\w-]+)?"
     rf"(?:,? (?:and|or) {_BE}(?:go in|enter|touch|move|use|wake|open)(?: (?:it|them|there))?)?"
     r"(?: if (?:somebody|someone|anybody|anyone|it|they|the door) (?:is|are|'s) [\w ]{2,20})?"
 )

@@ -12,6 +12,7 @@ import re
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
+from mitigate.safeguard.formal_words import FORMAL, formal, in_plain_words
 from mitigate.safeguard.neighbours import SEEKS, STOPS
 from mitigate.safeguard.steps import MOVES, STEP
 from mitigate.safeguard.text import sentences, words
@@ -57,55 +58,19 @@ _VERBS = MOVES | STEP.keys() | STOPS | SEEKS | bag(
     orient keep reach select choose open locate carry head
     """
 )  # fmt: skip
-_ENDS = r"(?= ?(?:[.,;:!?]|$)| (?:and|then|at|before|after|when|once|into|through|past|as|until)\b)"
-_BEFORE_WAY = (
-    r"(?= (?:to|towards?|into|in|past|through|along|down|up|across|around|round|out|over|onto|"
-    r"beyond|between|straight|forwards?|ahead|inside|outside|beneath|under|via|by)\b)"
-)
 _ASKED = re.compile(r"\b(?:kindly|(?:requested|asked|advised|invited) to)\b", re.IGNORECASE)
 _PLAIN_JOINS = bag("and then next now first finally after that this so")
-_ADVERBS = {"slight": "slightly ", "sharp": "sharply ", "hard": "sharply ", "": ""}
-_TURN = re.compile(
-    r"\b(?:make|effect|execute|perform|complete|undertake|take) an? "
-    r"(?:(?P<how>slight|sharp|hard) )?"
-    r"(?P<side>left|right)(?:-hand)? turn\b",
-    re.IGNORECASE,
-)
-_TO_SIDE = r"(?:to|towards?) (?:the|your) (left|right)"
-_SAYINGS = tuple(
-    (re.compile(rf"\b(?:{pattern})", re.IGNORECASE), said)
-    for pattern, said in (
-        (rf"(?:make|effect|execute|perform) a turn {_TO_SIDE}\b", r"turn \1"),
-        (rf"(?:turn|reorient|pivot|rotate)(?: yourself)? {_TO_SIDE}{_ENDS}", r"turn \1"),
-        (rf"reverse (?:your |the )?(?:course|direction){_ENDS}", "turn around"),
-        (r"turn (?:fully|completely|entirely|all the way) around\b", "turn around"),
-        (r"(?:make your way|betake yourself|convey yourself|direct yourself|take yourself|proceed|"
-         rf"advance|navigate|transition|journey){_BEFORE_WAY}", "go"),
-        (r"(?:egress|depart) through\b", "go out through"),
-        (r"(?:egress|depart)(?= (?:the|this|your)\b)", "leave"),
-        (r"traverse(?= (?:the|this|that) (?:door|doorway|archway|gate|opening)\b)", "go through"),
-        (r"enter into\b", "enter"),
-        (r"continue on your way\b", "continue"),
-        (r"carry on(?= (?:straight|past|along|through|into|down|up|ahead|forward)\b)", "continue"),
-        (r"maintain (?:a|your) (?:course|heading) (?=straight|ahead|forward)", "go "),
-        (r"(?:come|draw) to an? (?:(?:complete|full|gentle) )?(?:halt|stop|standstill)\b", "stop"),
-        (r"(?:cease|terminate) (?:all )?(?:movement|motion)(?: and (?:halt|stop))?\b", "stop"),
-        (r"halt\b(?! (?:sign|line))", "stop"),
-        (r"(?:washroom|restroom|lavatory)\b", "bathroom"),
-        (r"sitting room\b", "living room"),
-        (r"settee\b", "sofa"),
-    )
-)  # fmt: skip
 
 
 def plainer(text: str) -> str:
     """Return a text with its orders in plain words; ``text`` itself if they are plain."""
     said, found = text, sentences(text)
-    if not any(_mannered(sentence) for sentence in found):
+    if not any(_mannered(sentence) for sentence in found) and formal(text) < FORMAL:
         return text
     for sentence in found:
         plain = _plain(sentence)
-        if plain != sentence and not gate.rewrite_refused(sentence, plain):
+        last = sentence is found[-1]
+        if plain != sentence and not gate.rewrite_refused(sentence, plain, last):
             said = said.replace(sentence, plain, 1)
     return said
 
@@ -125,7 +90,5 @@ def _plain(sentence: str) -> str:
     told = frame is not None and frame["verb"].lower() in _VERBS
     said = sentence[frame.start("rest") :] if frame and told else sentence
     said = _INSIDE.sub(lambda m: m["join"] if m["verb"].lower() in _VERBS else m[0], said)
-    said = _TURN.sub(lambda m: f"turn {_ADVERBS[(m['how'] or '').lower()]}{m['side']}", said)
-    for pattern, plain in _SAYINGS:
-        said = pattern.sub(plain, said)
+    said = in_plain_words(said)
     return said[:1].upper() + said[1:] if sentence[:1].isupper() else said

@@ -34,7 +34,7 @@ def test_an_order_is_said_plainly(heard, plain):
     "heard",
     [
         "Turn left at the lamp.",
-        "Then proceed past the bed, and halt.",
+        "Then walk past the bed, and halt.",
         "You should not turn left.",  # a denial
         "You'll find yourself in the hallway.",  # what is seen, no order
         "You should see a red door.",
@@ -49,7 +49,7 @@ def test_what_is_no_order_or_plain_stays_as_it_is(heard):
 
 def test_only_a_text_in_a_manner_of_speaking_is_changed():
     rules = open_safeguard("rules")
-    plain = "Proceed past the bed and halt at the door."
+    plain = "Walk past the bed and halt at the door."
     assert rules.canonicalise(plain).text == plain
     heard = "You are kindly requested to proceed past the bed. Thereafter, kindly halt at the door."
     decision = rules.canonicalise(heard)
