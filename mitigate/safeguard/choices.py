@@ -15,7 +15,6 @@ CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora
 ADAPTER = "checkpoints/safeguard"
 TAGGERS = {"tagger": "checkpoints/safeguard_tagger", "reader": "checkpoints/safeguard_reader"}
 VERSION = "4"  # of what the rules give on: another one where any text is repaired otherwise
-DIGITS = 12  # hex digits: 48 bits
 
 
 def label(choice: str) -> str:
@@ -37,9 +36,11 @@ def label(choice: str) -> str:
 
 def identity(choice: str) -> str:
     """Return the label of a safeguard and a hash over the version and weights of its rules and
-    over the weights of its networks: equal identity, equal answers. "none" has no hash."""
+    over the weights of its networks (an endpoint's stay unknown). "none" has no hash."""
     if choice == "none":
         return choice
+    from mitigate.core.identity import DIGITS
+
     first, plus, second = choice.partition("+")
     parts = [first, second] if plus and first in TAGGERS else [choice]
     folders = [{**TAGGERS, "lora": ADAPTER}.get(part, part) for part in parts]

@@ -88,7 +88,7 @@ class Draft:
 
     def _say_orders(self) -> None:
         """Say orders of a manner of speaking in plain words."""
-        if rules.style_marks(self.repaired) < MARKS and formal(self.repaired) < FORMAL:
+        if not _restyled(self.repaired):
             return
         plain = plainer(self.repaired)
         if plain != self.repaired:
@@ -166,8 +166,12 @@ def _untouched(text: str, tagger: Tags | None) -> bool:
     return (
         not MASK.search(text)
         and rules.lower_capitals(text) == text
-        and rules.style_marks(text) < MARKS
-        and formal(text) < FORMAL
+        and not _restyled(text)
         and not rules.doubtful(text, judging(tagger, text))
         and rules.repair(text, tags=tagger).text == text
     )
+
+
+def _restyled(text: str) -> bool:
+    """Return whether ``text`` shows marks of a manner of speaking, or formal sayings."""
+    return rules.style_marks(text) >= MARKS or formal(text) >= FORMAL

@@ -146,6 +146,12 @@ KNOWN = (
     GREETINGS | POLITE | TALK | ORDERS | PLACES | SMALL | VERBS | STOPS | TELLS_NOTHING
     | bag("towards toward another")
 )  # fmt: skip
+# what a plain request does not say
+MANNERED = (
+    (GREETINGS | POLITE | TALK | ORDERS)
+    - (VERBS | STOPS | PLACES | SMALL)
+    - bag("and then or but so once until")
+)
 # which of several things, when, and what not
 _WHICH = bag(
     """

@@ -67,7 +67,7 @@ _NEED_NOT = re.compile(
     r"that far|all the way))*"
 )
 _BE = r"(?:do not|don't|never) "
-_LEAVES_BE = re.compile(  # and not what the robot was told
+_LEAVES_BE = re.compile(  # what is not to be done to the thing
     rf"{_BE}(?:touch|move|open|close|enter|use|wake|disturb|take|pick up|sit on|lie on|step on|"
     r"lean on|knock over|bump into|go (?:in|inside|into|near))"
     r"(?: (?:it|them|there)|(?<=touch|.move|.wake) the [\w-]+)?"

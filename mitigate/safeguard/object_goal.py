@@ -18,16 +18,11 @@ from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
 from mitigate.safeguard.goal_words import (
     ACTS,
-    GREETINGS,
     KNOWN,
-    ORDERS,
-    PLACES,
+    MANNERED,
     PLAIN_SAYINGS,
-    POLITE,
     SAYINGS,
-    SMALL,
     STAYS,
-    TALK,
     TELLS_NOTHING,
     VERBS,
 )
@@ -57,12 +52,6 @@ _NOUNS_BEHIND = STOPS | bag(
 )
 _SOUGHT = SEEKS | bag("locating need needs want wants require get see where")
 _ASKS_FOR = _DETERMINERS | _BEFORE | VERBS | {_MASK, ":"}  # may stand before a thing
-# what a plain request does not say
-_MANNERED = (
-    (GREETINGS | POLITE | TALK | ORDERS)
-    - (VERBS | STOPS | PLACES | SMALL)
-    - bag("and then or but so once until")
-)
 # who tells of an order and does not give it: "So, you find a bed."
 _YOU = re.compile(
     r"(?:^|[.!?,:] )(?:(?:so|now|and|then),? )*you (?:\w+ly |just )?(?!are\b|can\b)\w+"
@@ -100,7 +89,7 @@ def object_goal(heard: str, restyled: bool = False) -> str | None:
         return None
     found = tag(text)
     things = _things(found)
-    mannered = mannered or any(token.lower in _MANNERED for token in found)
+    mannered = mannered or any(token.lower in MANNERED for token in found)
     if not mannered or not things or not any(token.lower in VERBS for token in found):
         return None
     named = [[token.lower for token in found[thing.start : thing.stop]] for thing in things]
