@@ -23,7 +23,7 @@ import torch
 from mitigate.agents.agent import Agent, SideBySide
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
-from mitigate.core.identity import identity as identity_of
+from mitigate.core.identity import identity
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
@@ -126,7 +126,6 @@ def evaluate(
     launcher: LauncherConfig = LOCAL,
     safeguard: Safeguard | None = None,
     restorer: Restorer | None = None,
-    identity: str | None = None,
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
@@ -136,9 +135,8 @@ def evaluate(
     processes, None: one a core if there is work for them; the rows do not depend on it, nor on the
     launcher, which says on which machines (``scale/launcher.py``). safeguard:
     repairs each instruction, once, before the agent hears it. restorer: goes over the frames before
-    the agent reads them. identity: of the agent in its rows
-    (``core/identity.py``); None: of the agent behind the world's sensors, ``safeguard`` and
-    ``restorer``.
+    the agent reads them. A row's ``agent`` is the hash of the agent behind the world's sensors,
+    ``safeguard`` and ``restorer`` (``core/identity.py``).
     Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
     out = Path(out)
@@ -148,7 +146,7 @@ def evaluate(
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
     label = {
-        "agent": identity or identity_of(agent, made.sensors, fronts(safeguard, restorer)),
+        "agent": identity(agent, made.sensors, _fronts(safeguard, restorer)),
         "name": name,
         "split": split,
         "seed": seed,
@@ -169,7 +167,7 @@ def evaluate(
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
 
 
-def fronts(safeguard: Safeguard | None, restorer: Restorer | None) -> str:
+def _fronts(safeguard: Safeguard | None, restorer: Restorer | None) -> str:
     """What stands in front of an agent, for its identity: a safeguard and a restorer by hashes."""
     front = "none" if safeguard is None else safeguard.identity
     return front if restorer is None else f"{front}+restorer-{restorer.hash}"
