@@ -28,6 +28,10 @@ _PLACE = (
 _ROUTE = (
     r"(?:(?:all|your|the|any) )?(?:movement|motion|navigation|route|journey|progress|transit|walk)"
 )
+_USE_STAIRS = (
+    r"(?:utilize|utilise|employ|use) (the|those|these) (stairs|staircase|stairway|steps|elevator|"
+    r"lift)"
+)
 _VERBS_ING = {
     "ascending": "going up", "descending": "going down", "proceeding": "going",
     "advancing": "going", "bypassing": "passing", "traversing": "going through",
@@ -47,10 +51,8 @@ _FORMAL = (
     (r"(?:egress|depart(?: from)?|vacate)(?= (?:the|this|your|that)\b)", "leave"),
     (r"traverse(?= (?:the|this|that)\b(?! (?:\w+ )?(?:stairs?|staircase|steps)\b))", "go through"),
     (r"circumnavigate(?= (?:the|this|that)\b)", "go around"),
-    (r"(?:utilize|utilise|employ|use) (the|those|these) (stairs|staircase|stairway|steps|elevator|"
-     r"lift) to (?:ascend|go up)\b", r"go up \1 \2"),
-    (r"(?:utilize|utilise|employ|use) (the|those|these) (stairs|staircase|stairway|steps|elevator|"
-     r"lift) to (?:descend|go down)\b", r"go down \1 \2"),
+    (rf"{_USE_STAIRS} to (?:ascend|go up)\b", r"go up \1 \2"),
+    (rf"{_USE_STAIRS} to (?:descend|go down)\b", r"go down \1 \2"),
     (r"ascend(?= (?:the|this|that|those|a|one|two)\b)", "go up"),
     (r"maintain (?:a|your) (?:course|heading) (?=straight|ahead|forward)", "go "),
     (r"maintaining (?=(?:it|the [\w ]+?) (?:on|to) your)", "keeping "),
