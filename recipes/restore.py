@@ -1,8 +1,10 @@
 """Train a restorer from pairs of corrupted and clean frames; no agent, label or action is needed.
 
-    L = mean over scales of |out - clean| + w_grad |their image gradients|     (out, and unrefined)
+    L = mean over scales of |out - clean| + w_grad |their image gradients|
+        + w_right e / (e + RIGHT), e = |out - clean| of a pixel                (out, and unrefined)
 
-RGB counts in [0, 1], depth in metres over the range; pixels of depth that read nothing in the clean
+The last counts how many pixels are wrong rather than by how much: what was seen rightly behind
+drops, stripes or noise is to stay as it was. RGB counts in [0, 1], depth in metres over the range; pixels of depth that read nothing in the clean
 frame do not count. Nothing of an agent enters, so one restorer serves all. Its gate is trained
 afterwards, on maps that no longer change (``restore_gate.py``).
 """
@@ -28,6 +30,7 @@ from mitigate.worlds.world import TrainingEpisodes
 
 SCALES = (1, 4)  # pixels: errors of edges, and of surfaces (ours)
 RESTORER = "This recipe takes a restorer in an agent's place: agent=restorer (docs/restoration.md)."
+RIGHT = 0.02  # of the range: an error that counts half as much as any (ours)
 COARSE = 0.5  # weight of the frames before they are refined (ours)
 
 
@@ -37,7 +40,7 @@ class Restore(Recipe):
     world, training: where poses come from (``training/poses.py``), or a folder of frames.
     schedule: of corruptions; those of the sensor are drawn. panoramas: of 12 views, a step.
     frames: read of a folder, once. single: share of steps whose views are shown one by one.
-    w_grad: of the loss above.
+    w_grad, w_right: of the loss above.
     """
 
     ahead = True
@@ -56,6 +59,7 @@ class Restore(Recipe):
         single: float = 0.25,
         seed: int = 0,
         w_grad: float = 0.5,
+        w_right: float = 0.05,
     ) -> None:
         super().__init__()
         if not 0 <= single <= 1 or panoramas < 1:
@@ -64,7 +68,7 @@ class Restore(Recipe):
                 f"({panoramas}) at least 1."
             )
         self.agent, self.modality, self.single, self.seed = agent, modality, single, seed
-        self.w_grad = w_grad
+        self.w_grad, self.w_right = w_grad, w_right
         agent.requires_grad_(False)
         self.net: SensorRestorer = agent.parts()[modality].requires_grad_(True)
         self.net.gate.requires_grad_(False)
@@ -111,7 +115,7 @@ class Restore(Recipe):
         return {"loss": loss, **values}
 
     def _error(self, out: Tensor, wanted: Tensor, valid: Tensor) -> Tensor:
-        """L1 at all scales, and that of the image gradients."""
+        """L1 at all scales, that of the image gradients, and the share of wrong pixels."""
         total = out.new_zeros(())
         difference, weight = (out - wanted) * valid, valid
         for scale in SCALES:
@@ -124,7 +128,8 @@ class Restore(Recipe):
                 axis, 0, valid.shape[axis] - 1
             )
             total = total + self.w_grad * (difference.diff(dim=axis) * near).abs().mean()
-        return total
+        wrong = difference.abs().mean(1)
+        return total + self.w_right * (wrong / (wrong + RIGHT)).mean()
 
     def _keep(self, frames: Tensor, out: Tensor, clean: Tensor) -> None:
         if not self.training:

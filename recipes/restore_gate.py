@@ -1,8 +1,10 @@
 """Train the gate of a restorer: which frames come nearer to the clean ones by being restored.
 
-    L = BCE(gate, error after < ``BETTER`` error before)
+    L = BCE(gate, error after < ``BETTER`` error before, and no more than ``SPENT`` of the pixels, which
+                  were right, wrong afterwards)
 
-A frame that is neither clearly better afterwards nor clean or worse counts for neither. The maps
+A mean error alone calls it better to blur a frame of which only a part is wrong; who reads that frame
+does not. A frame that is neither clearly better afterwards nor clean or worse counts for neither. The maps
 that the gate reads do not change here, so they are computed once, for ``instants`` random instants,
 and learned from many times. Afterwards the threshold is set on clean frames of the training scenes
 that were held back: ``touched`` of them lie above it.
@@ -21,7 +23,7 @@ from torch import Tensor
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.restore import RESTORER
+from mitigate.recipes.restore import RESTORER, RIGHT
 from mitigate.restoration.frames import SensorRestorer
 from mitigate.restoration.network import texture
 from mitigate.restoration.pairs import Pairs, pairs_of
@@ -31,23 +33,27 @@ from mitigate.worlds.world import TrainingEpisodes
 
 CLEAN_SHARE = 0.35  # of the instants that are learned from (ours)
 BETTER = 0.85  # of the error before: what restoring must get below to be worth it (ours)
+SPENT = 0.15  # of the pixels (ours)
 OFFSETS = {"learned": 0, "held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000}  # steps
 
 
 class Judged(NamedTuple):
     """Of N instants of V views: stats [N, V, s] and textures [N, V, t], which the gate reads;
-    before, after [N]: mean error over the range as they are and as restored."""
+    before, after [N]: mean error over the range as they are and as restored. spent [N]: share of
+    right pixels before less that afterwards (``restore.RIGHT``)."""
 
     stats: Tensor
     textures: Tensor
     before: Tensor
     after: Tensor
+    spent: Tensor
 
     @property
     def wanted(self) -> tuple[Tensor, Tensor]:
         """Which should be restored, and which are to be counted: bool [N] each."""
-        hit = (self.before > 0) & (self.after < BETTER * self.before)
-        return hit, hit | (self.after >= self.before)
+        kept = self.spent <= SPENT
+        hit = (self.before > 0) & (self.after < BETTER * self.before) & kept
+        return hit, hit | (self.after >= self.before) | ~kept
 
 
 class RestoreGate(Recipe):
@@ -148,9 +154,12 @@ class RestoreGate(Recipe):
         read = (self.net.net.encode(self.net.seen(*less), views).stats, texture(*less))
         wanted, valid = self.net.scaled(clean)
         seen, _ = self.net.scaled(frames)
-        errors = [((x - wanted).abs() * valid).mean((1, 2, 3)) for x in (seen, made.out)]
-        rings = [part.unflatten(0, (-1, views)) for part in (*read, *errors)]
-        return rings[0], rings[1], rings[2].mean(1), rings[3].mean(1)
+        wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made.out)]
+        errors = [part.mean((1, 2)) for part in wrong]
+        right = [(part < RIGHT).float().mean((1, 2)) for part in wrong]
+        parts = (*read, *errors, right[0] - right[1])
+        stats, textures, *others = (part.unflatten(0, (-1, views)) for part in parts)
+        return stats, textures, *(part.mean(1) for part in others)
 
     @torch.no_grad()
     def evaluate(self, step: int) -> dict[str, float]:

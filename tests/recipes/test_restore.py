@@ -13,7 +13,7 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import Schedule
 from mitigate.encoders.sources import FolderFrames
 from mitigate.recipes.restore import Restore
-from mitigate.recipes.restore_gate import RestoreGate
+from mitigate.recipes.restore_gate import Judged, RestoreGate
 from mitigate.restoration.restorer import Restorer
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
@@ -29,7 +29,7 @@ def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **giv
     return Restore(restorer, **world, modality=sensor, schedule=schedule, **how)
 
 
-@pytest.mark.parametrize(("sensor", "left"), [(RGB, 0.8), (DEPTH, 0.9)])
+@pytest.mark.parametrize(("sensor", "left"), [(RGB, 0.95), (DEPTH, 0.95)])
 def test_training_takes_a_corruption_away(tmp_path, sensor, left):
     recipe = recipe_of(sensor, panoramas=2, single=0.0)
     Trainer(recipe, steps=16, lr=5e-3, folder=tmp_path, precision="fp32", log_every=0).fit()
@@ -77,6 +77,25 @@ def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
     assert found["helped_found"] > 0.7 > 0.4 > found["clean_touched"]
     changed = [n for n, p in given.agent.named_parameters() if not torch.equal(p, before[n])]
     assert changed and all(name.startswith("nets.rgb.gate.") for name in changed)
+
+
+def test_what_is_better_on_the_mean_but_blurs_right_pixels_is_not_wanted():
+    nothing = torch.zeros(5, 1, 1)
+    before, after = torch.tensor([0.2, 0.2, 0.2, 0.0, 0.2]), torch.tensor([0.1, 0.1, 0.19, 0.1, 0.3])
+    spent = torch.tensor([0.0, 0.5, 0.0, 0.5, 0.0])
+    hit, counted = Judged(nothing, nothing, before, after, spent).wanted
+    assert hit.tolist() == [True, False, False, False, False]
+    assert counted.tolist() == [True, True, False, True, True]
+
+
+def test_of_equal_mean_errors_the_one_with_fewer_wrong_pixels_costs_less():
+    recipe = recipe_of(w_grad=0.0)
+    wanted = torch.full((1, 3, 8, 8), 0.5)
+    valid = torch.ones(1, 1, 8, 8)
+    few, all_ = wanted.clone(), wanted + 0.4 / 16
+    few[:, :, 2:4, 2:4] += 0.4
+    few, all_ = (float(recipe._error(out, wanted, valid)) for out in (few, all_))
+    assert few < all_ and float(recipe._error(wanted, wanted, valid)) == 0
 
 
 def test_a_folder_of_frames_will_do(tmp_path):
