@@ -193,10 +193,12 @@ def help_text(about: str, primary: str) -> str:
 
 
 def options_text(primary: str) -> str:
-    """Every option of ``conf/<primary>.yaml`` with its comment; those that choose a file of
-    ``conf/`` come first, with what there is."""
+    """Every option of ``conf/<primary>.yaml`` with its comment, also those that stand in a comment
+    since the recipes set them; those that choose a file of ``conf/`` come first, with what there
+    is."""
     own, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
-    kept = [line for line in own.splitlines() if re.match(r" *\w+:.*#|\w+: \S", line)]
+    lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in own.splitlines()]
+    kept = [line for line in lines if re.match(r" *\w+:.*#|\w+: \S", line)]
     groups = []
     for name, chosen in _chosen(primary).items():
         there = ", ".join(sorted(path.stem for path in (CONF / name).glob("*.yaml")))

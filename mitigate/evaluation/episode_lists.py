@@ -30,6 +30,8 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
 
     if count is not None and count < 1:
         raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
+    if not env.episodes:
+        raise ValueError(f"env={env.name} has no episodes, so nothing can be walked in it.")
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
     listed = list(read_episodes(find(env.episodes[split])))

@@ -163,7 +163,8 @@ def _check(cfg: DictConfig) -> None:
     if cfg.checkpoint is None:
         raise ValueError(
             "checkpoint is not set, and no weights are shipped for this agent: name a run's agent "
-            "folder (checkpoint=runs/.../agent), or choose another agent."
+            "folder (checkpoint=runs/.../agent), or choose an agent that walks episodes "
+            "(agent=recurrent; docs/agents.md lists them)."
         )
     if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(

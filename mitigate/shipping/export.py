@@ -286,7 +286,11 @@ def _write_json(file: Path, value: Any) -> None:
 
 def main() -> None:
     """Read the command line."""
-    parser = argparse.ArgumentParser(prog="mitigate export", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(
+        prog="mitigate export",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("run", type=Path, help="a finished run folder, such as runs/...")
     parser.add_argument("name", help="name of the folder to write")
     parser.add_argument(
@@ -296,7 +300,7 @@ def main() -> None:
         help="of an agent of your own: agent=policy env=corridor, as for mitigate evaluate",
     )
     parser.add_argument("--config-dir", type=Path, help="where such configs are")
-    parser.add_argument("--out", type=Path, default=HARDENED, help="where to write it")
+    parser.add_argument("--out", type=Path, default=HARDENED, help=f"folder to write it in (default {HARDENED})")
     parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
