@@ -300,7 +300,9 @@ def main() -> None:
         help="of an agent of your own: agent=policy env=corridor, as for mitigate evaluate",
     )
     parser.add_argument("--config-dir", type=Path, help="where such configs are")
-    parser.add_argument("--out", type=Path, default=HARDENED, help=f"folder to write it in (default {HARDENED})")
+    parser.add_argument(
+        "--out", type=Path, default=HARDENED, help=f"folder to write it in (default {HARDENED})"
+    )
     parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
