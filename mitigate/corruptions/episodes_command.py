@@ -3,7 +3,8 @@
 ``python -m mitigate.corrupt_episodes IN OUT family=black_box severity=0.5 [seed=0] [split=test]
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``
 
-Families: friendly, novice, professional, formal, capitalize, mask, black_box (docs/instructions.md).
+Families (docs/instructions.md): friendly, novice, professional, formal, capitalize, mask, black_box
+
 ``instruction_text`` is changed and the old text kept as ``original_text``. Tokens are made again
 for the tokenizer named (``vocabulary``: the file's own ``instruction_vocab``; else a folder or hub
 name for transformers), or removed with a notice: an agent that reads stale tokens hears the clean
