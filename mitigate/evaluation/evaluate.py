@@ -20,6 +20,7 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import conf, seeding
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.locks import FolderLock
+from mitigate.core.names import counted
 from mitigate.evaluation.columns import changed, column_of, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes
@@ -114,8 +115,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     print(
-        f"evaluate: {cfg.checkpoint} on {cfg.split}, {len(chosen)} episodes x {len(names)} "
-        f"conditions at severity {cfg.severity:g}",
+        f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
+        f"{counted(len(names), 'condition')} at severity {cfg.severity:g}",
         flush=True,
     )
     from mitigate.core import build

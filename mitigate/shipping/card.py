@@ -12,7 +12,7 @@ from typing import Any
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
-from mitigate.core.names import markdown_of, short
+from mitigate.core.names import counted, markdown_of, short
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.rows import Row
@@ -196,7 +196,7 @@ def _table(entry: dict[str, Any]) -> str:
     gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
     return (
         f"## {markdown_of(entry['split'])}, severity {entry['severity']:g}\n\n"
-        f"{entry['episodes']} episodes, seed {', '.join(map(str, entry['seeds']))}, "
+        f"{counted(entry['episodes'], 'episode')}, seed {', '.join(map(str, entry['seeds']))}, "
         f"suite {markdown_of(entry['suite'])}. "
         f"Success: {markdown_of(entry['rule'])}.\n\n" + "\n".join(lines) + gaps
     )
