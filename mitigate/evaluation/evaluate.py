@@ -27,7 +27,7 @@ from mitigate.evaluation.episode_lists import episodes
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # registers the kinds of conf/launcher
 
-if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
+if TYPE_CHECKING:  # nothing slow is imported before run() has checked the options
     from torch import nn
 
 ROWS = "rows.jsonl"
@@ -114,11 +114,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     _check(cfg)
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
-    print(
-        f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
-        f"{counted(len(names), 'condition')} at severity {cfg.severity:g}",
-        flush=True,
-    )
+    met = conditions(names, cfg.severity, cfg.severity_depth)
     from mitigate.core import build
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.restoration.restorer import restorer_of
@@ -129,7 +125,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     check_walks(agent)
     front, world = label(cfg.safeguard), build.maker(cfg.env.world)
-    sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
+    sensors = world().sensors
     restorer = restorer_of(cfg.restore, sensors)
     before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
     before = [part for part in before if part != "none"]
@@ -139,6 +135,11 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     with FolderLock(out):
         _check_list(out / LIST, cfg.env.episodes[cfg.split])
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
+        print(  # when all is checked: a mistake is told alone
+            f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
+            f"{counted(len(met), 'condition')} at severity {cfg.severity:g}",
+            flush=True,
+        )
         evaluate(
             agent,
             world,
