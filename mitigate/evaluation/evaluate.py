@@ -23,7 +23,7 @@ from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.evaluation.columns import changed, column_of, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
-from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # registers the kinds of conf/launcher
 
@@ -140,6 +140,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             f"{counted(len(met), 'condition')} at severity {cfg.severity:g}",
             flush=True,
         )
+        warn_of_tasks(agent, chosen, name, cfg.env.split)
         evaluate(
             agent,
             world,
