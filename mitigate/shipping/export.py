@@ -300,6 +300,7 @@ def main() -> None:
     parser.add_argument(
         "overrides",
         nargs="*",
+        default=[],  # or argparse counts them among those that are required
         metavar="key=value",
         help="of an agent of your own: agent=policy env=corridor, as for mitigate evaluate",
     )
