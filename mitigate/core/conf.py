@@ -44,6 +44,7 @@ OURS = (
     "MITIGATE_FULL_ERROR"  # set beside it by main: programs that it starts do not show them whole
 )
 HYDRAS = "Error executing job with overrides"  # hydra.core.utils, JobReturn.return_value
+WHOLE = "# @package _global_"  # Hydra's mark of a file that sets entries beside its own group
 KINDS = {
     "Integer": "a whole number, such as 4",
     "Float": "a number, such as 0.6",
@@ -201,9 +202,26 @@ def options_text(primary: str) -> str:
     kept = [line for line in lines if re.match(r" *\w+:.*#|\w+: \S", line)]
     groups = []
     for name, chosen in _chosen(primary).items():
-        there = ", ".join(sorted(path.stem for path in (CONF / name).glob("*.yaml")))
-        groups.append(f"{name}: {chosen or 'null'}  # {there}")
+        groups.append(f"{name}: {chosen or 'null'}  # {_choices(name, primary)}")
     return "\n".join(groups + kept)
+
+
+def _choices(group: str, primary: str) -> str:
+    """The files of a group; of ``agent`` those that walk episodes, and for a training, which has
+    recipes for them, the others apart."""
+    files = sorted((CONF / group).glob("*.yaml"))
+    if group != "agent":
+        return ", ".join(path.stem for path in files)
+    others = [path.stem for path in files if not walks(path)]
+    text = ", ".join(path.stem for path in files if walks(path))
+    own = f"; walk no episodes, for recipes of their own: {', '.join(others)}"
+    return text + (own if primary == "train" else "")
+
+
+def walks(file: Path) -> bool:
+    """Whether the agent of a ``file`` of ``conf/agent`` walks episodes: such a file also says which
+    weights are shipped and what is asked of the world, so it is one of the whole config."""
+    return file.read_text(encoding="utf-8").startswith(WHOLE)
 
 
 def _chosen(primary: str) -> dict[str, str | None]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -307,6 +308,20 @@ def test_help_says_what_every_option_and_group_means(primary):
     for group in ("suite", "launcher"):
         if group in cfg:
             assert f"{group}: " in shown and ", " in shown.partition(f"{group}: ")[2]
+
+
+AGENTS = sorted(path.stem for path in (conf.CONF / "agent").glob("*.yaml"))
+
+
+@pytest.mark.parametrize("name", AGENTS)
+def test_help_of_evaluate_lists_the_agents_that_walk_and_that_of_train_says_who_does_not(name):
+    agent = get_object(conf.load_config("train", [f"agent={name}"]).agent._target_)
+    (shown,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("evaluate"), re.M)
+    (training,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("train"), re.M)
+    walking, others = training.split("; walk no episodes, for recipes of their own: ")
+    able = hasattr(agent, "reset") and hasattr(agent, "act")
+    assert shown == walking and (name in walking.split(", ")) == able
+    assert (name in others.split(", ")) == (not able)
 
 
 def test_help_needs_no_config_to_compose(monkeypatch, capsys):
