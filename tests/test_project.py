@@ -43,7 +43,7 @@ def test_make_help_lists_every_target_and_comes_first():
 
 
 def test_doctor_names_versions_cores_and_the_renderer(capsys):
-    doctor.main()
+    doctor.main([])
     out = capsys.readouterr().out
     for word in ("python", "cores", "torch ", "renderer", "extra cluster"):
         assert re.search(rf"^{word}", out, re.MULTILINE)
@@ -69,7 +69,7 @@ def test_doctor_checks_the_python_that_the_project_asks_for():
 
 def test_doctor_says_what_to_do_with_an_older_python(capsys, monkeypatch):
     monkeypatch.setattr(doctor.sys, "version_info", (3, 9, 18))
-    assert doctor.main() == 1
+    assert doctor.main([]) == 1
     assert "Python 3.10 or newer is needed: make PYTHON=python3.10" in capsys.readouterr().out
 
 

@@ -1,27 +1,34 @@
 """Write the README of hardened folders anew from their cards: python tools/renew_cards.py DIR...
 
 For folders that an older version exported. Each is checked first; the new one is made aside and
-renamed into place, with the README's new sum in the card. Nothing else in it changes.
+renamed into place, with the README's new sum in the card. Nothing else in it changes, but that
+``--rows FILE...`` adds to a card which agent those rows are of, where they are of its weights.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import shutil
 import sys
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from mitigate.core.conf import said
 from mitigate.core.files import put_folder, sha256
+from mitigate.evaluation.rows import Row, gather
 from mitigate.shipping import hardened
-from mitigate.shipping.card import readme
+from mitigate.shipping.card import readme, rows_agent
 
 
-def renew(folder: Path) -> None:
+def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
     """Rewrite ``folder``. Raises FileNotFoundError or ValueError if it is not whole; it is then as
     it was."""
     card = hardened.check(folder)
+    named = rows_agent(rows, {card["agent"], card["run_agent"]})
+    if named:
+        card["rows_agent"] = named
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as aside:
         draft = Path(shutil.copytree(folder, Path(aside) / folder.name))
         page = draft / hardened.README
@@ -36,15 +43,19 @@ def renew(folder: Path) -> None:
 
 def main() -> None:
     """Read the command line."""
-    folders = [Path(name).resolve() for name in sys.argv[1:]]
-    if not folders:
-        sys.exit(__doc__)
-    for folder in folders:
-        try:
-            renew(folder)
-        except (OSError, ValueError) as error:
-            sys.exit(f"error: {said(error)}")
-        print(f"wrote {folder / hardened.README}")
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folders", nargs="+", type=Path, help="hardened folders")
+    parser.add_argument("--rows", nargs="+", default=[], help="row files of their evaluations")
+    given = parser.parse_intermixed_args()
+    try:
+        rows = gather(given.rows) if given.rows else []
+        for folder in given.folders:
+            renew(folder.resolve(), rows)
+            print(f"wrote {folder / hardened.README}")
+    except (OSError, ValueError) as error:
+        sys.exit(f"error: {said(error)}")
 
 
 if __name__ == "__main__":

@@ -24,6 +24,8 @@ class Agent(Protocol):
 
     An agent that works with a prompt has it in an attribute ``system_prompt``, read at ``reset``.
     ``views`` (attribute, optional): 12 for a panorama, 1 for a camera ahead.
+    ``tasks`` (attribute, optional): of what episode lists call ``info["task"]`` ("vln", a route;
+    "ogn", an object), those that it can do; an evaluation warns of others. Without it, all.
     ``taken(action, metres, radians)`` (optional): somebody else drives; since the agent's last
     answer that took it ``metres`` ahead and ``radians`` to the left, which is most like ``action``
     (-1: like none). What the agent planned is forgotten.

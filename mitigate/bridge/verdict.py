@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.results import Told
+from mitigate.core.names import counted
 
 if TYPE_CHECKING:
     from mitigate.bridge.cell import Cell
@@ -106,7 +107,7 @@ def _unfinished(cell: Cell, told: Told) -> str:
 
 def episodes(count: int) -> str:
     """Return "1 episode", "2 episodes"."""
-    return "1 episode" if count == 1 else f"{count} episodes"
+    return counted(count, "episode")
 
 
 def lacking(cell: Cell, missing: list[str]) -> str:

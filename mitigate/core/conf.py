@@ -44,6 +44,7 @@ OURS = (
     "MITIGATE_FULL_ERROR"  # set beside it by main: programs that it starts do not show them whole
 )
 HYDRAS = "Error executing job with overrides"  # hydra.core.utils, JobReturn.return_value
+WHOLE = "# @package _global_"  # Hydra's mark of a file that sets entries beside its own group
 KINDS = {
     "Integer": "a whole number, such as 4",
     "Float": "a number, such as 0.6",
@@ -76,6 +77,9 @@ def main(
     try:
         if check is not None:
             check()
+        for key in replaced(primary, sys.argv[1:]):
+            told = f"{key} is there already, and +{key}= replaces it."
+            print(f"{told} To add one, give it another name.", file=sys.stderr)
         with _without_hydras_line():
             program()
     except (HydraException, OmegaConfBaseException) as error:
@@ -193,15 +197,34 @@ def help_text(about: str, primary: str) -> str:
 
 
 def options_text(primary: str) -> str:
-    """Every option of ``conf/<primary>.yaml`` with its comment; those that choose a file of
-    ``conf/`` come first, with what there is."""
+    """Every option of ``conf/<primary>.yaml`` with its comment, also those that stand in a comment
+    since the recipes set them; those that choose a file of ``conf/`` come first, with what there
+    is."""
     own, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
-    kept = [line for line in own.splitlines() if re.match(r" *\w+:.*#|\w+: \S", line)]
+    lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in own.splitlines()]
+    kept = [line for line in lines if re.match(r" *\w+:.*#|\w+: \S", line)]
     groups = []
     for name, chosen in _chosen(primary).items():
-        there = ", ".join(sorted(path.stem for path in (CONF / name).glob("*.yaml")))
-        groups.append(f"{name}: {chosen or 'null'}  # {there}")
+        groups.append(f"{name}: {chosen or 'null'}  # {_choices(name, primary)}")
     return "\n".join(groups + kept)
+
+
+def _choices(group: str, primary: str) -> str:
+    """The files of a group; of ``agent`` those that walk episodes, and for a training, which has
+    recipes for them, the others apart."""
+    files = sorted((CONF / group).glob("*.yaml"))
+    if group != "agent":
+        return ", ".join(path.stem for path in files)
+    others = [path.stem for path in files if not walks(path)]
+    text = ", ".join(path.stem for path in files if walks(path))
+    own = f"; walk no episodes, for recipes of their own: {', '.join(others)}"
+    return text + (own if primary == "train" else "")
+
+
+def walks(file: Path) -> bool:
+    """Whether the agent of a ``file`` of ``conf/agent`` walks episodes: such a file also says which
+    weights are shipped and what is asked of the world, so it is one of the whole config."""
+    return file.read_text(encoding="utf-8").startswith(WHOLE)
 
 
 def _chosen(primary: str) -> dict[str, str | None]:
@@ -228,11 +251,31 @@ def composed(primary: str, options: Sequence[str] = (), further: Path | None = N
         raise ValueError(explain(error, primary, [*options, *own])) from error
 
 
+def replaced(primary: str, options: Sequence[str]) -> list[str]:
+    """The keys that ``options`` add (``+columns.mine=...``) though the config has them: Hydra puts
+    the new value in their place without a word."""
+    added = [option for option in options if re.match(r"\+[^+]", option)]
+    if not added:
+        return []
+    others = [o for o in options if o not in added and re.match(r"[^-].*=|~", o)]
+    try:
+        cfg = load_config(primary, others, _further(options))
+        keys = [option[1:].partition("=")[0] for option in added]
+        return [key for key in keys if OmegaConf.select(cfg, key) is not None]
+    except (HydraException, OmegaConfBaseException):  # which the program itself explains
+        return []
+
+
 def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
     """The config with what ``options`` choose of its groups (``agent=recurrent``), and no more."""
     groups = [o for o in options if o.partition("=")[0] in _chosen(primary)]
-    further = _first(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
-    return load_config(primary, groups, Path(further) if further else None)
+    return load_config(primary, groups, _further(options))
+
+
+def _further(options: Sequence[str]) -> Path | None:
+    """The user's own folder of configs, if ``options`` name one."""
+    found = _first(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
+    return Path(found) if found else None
 
 
 def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import platform
 import shutil
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -62,8 +63,11 @@ OLDEST = (3, 10)  # Python, as pyproject.toml says
 ROOM = 5.0  # GB of disk for the environment, runs and caches (ours)
 
 
-def main() -> int:
-    """Print the report; return 0 if training can run here, else 1."""
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the report; return 0 if training can run here, else 1. It takes no options but
+    ``--help``; another ends with status 2."""
+    parser = argparse.ArgumentParser(prog="mitigate doctor", description=__doc__)
+    parser.parse_args(arguments)
     problems = [*_machine(), *_packages(), *_renderer(), *_files()]
     print("\n".join(["", *problems]) if problems else "\nall well")
     return 1 if problems else 0
@@ -128,10 +132,28 @@ def compiler() -> str | None:
 
 def _packages() -> list[str]:
     missing = [name for name in NEEDED if not _package(name)]
+    if "torch" not in missing:
+        _line("torch and CUDA", cuda())
     for extra, names in EXTRAS.items():
         lacking = [name for name in names if not _version(name)]
         _line(f"extra {extra}", f"lacks {', '.join(lacking)}" if lacking else "installed")
     return [f"Missing: {', '.join(missing)}. Run: make install"] if missing else []
+
+
+def cuda() -> str:
+    """Say which GPUs torch sees, or why it sees none."""
+    try:
+        import torch
+    except Exception as error:  # whatever a broken installation says belongs in the report
+        return f"torch cannot be imported: {error}"
+    if torch.cuda.is_available():
+        count = torch.cuda.device_count()
+        names = ", ".join(torch.cuda.get_device_name(number) for number in range(count))
+        return f"sees {names} (CUDA {torch.version.cuda})"
+    built = torch.version.cuda
+    return (
+        f"sees no GPU (built for CUDA {built})" if built else "sees no GPU (built for CPUs alone)"
+    )
 
 
 def _package(name: str) -> bool:

@@ -1,4 +1,5 @@
-"""The one answer to a name that does not exist: what was meant, and what there is."""
+"""How messages name things; the one answer to a name that does not exist: what was meant, and what
+there is."""
 
 from __future__ import annotations
 
@@ -14,6 +15,11 @@ def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
     near = difflib.get_close_matches(str(name), allowed, n=1)
     hint = f" Did you mean {near[0]}?" if near else ""
     return f"There is no {what} {name!r}.{hint} Choose one of: {', '.join(allowed)}."
+
+
+def counted(count: int, what: str) -> str:
+    """Return e.g. ``1 episode``, ``0 episodes`` or ``40 episodes``."""
+    return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
 def short(value: object, most: int = 60) -> str:

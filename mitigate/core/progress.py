@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING
 
 from tqdm import tqdm
 
+from mitigate.core.names import counted
+
 if TYPE_CHECKING:
     from typing_extensions import Self
 
@@ -120,7 +122,7 @@ class Progress:
 
     def _first(self) -> str:
         before = f", {self.start} of them done before" if self.start else ""
-        return f"{self.title}: {self.total} {_plural(self.unit, self.total)}{before}"
+        return f"{self.title}: {counted(self.total, self.unit)}{before}"
 
     def _last(self, failed: bool) -> str:
         end = "stopped after" if failed else "done in"
@@ -158,10 +160,6 @@ def _rate(per_second: float, unit: str) -> str:
         took = f"{each:.3g} s" if each < 60 else duration(each)
         return f"{took} {'an' if unit[0] in 'aeiou' else 'a'} {unit}"
     return f"{per_second:.3g} {unit}s/s"
-
-
-def _plural(unit: str, count: int) -> str:
-    return unit if count == 1 else f"{unit}s"
 
 
 def _start_clock() -> None:

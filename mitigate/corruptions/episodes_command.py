@@ -3,6 +3,8 @@
 ``python -m mitigate.corrupt_episodes IN OUT family=black_box severity=0.5 [seed=0] [split=test]
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``
 
+Families (docs/instructions.md): friendly, novice, professional, formal, capitalize, mask, black_box
+
 ``instruction_text`` is changed and the old text kept as ``original_text``. Tokens are made again
 for the tokenizer named (``vocabulary``: the file's own ``instruction_vocab``; else a folder or hub
 name for transformers), or removed with a notice: an agent that reads stale tokens hears the clean
@@ -233,9 +235,9 @@ def _options(given: Mapping[str, str]) -> dict[str, Any]:
             raise ValueError(f"{key} must be a number, but {value!r} was given.") from error
     for key, example in (("family", "black_box"), ("severity", "0.5")):
         if key not in options:
+            families = ", ".join(name for name in INSTRUCTION if name != "white_box")
             raise ValueError(
-                f"The option {key} is missing: add {key}={example}. Families: "
-                f"{', '.join(INSTRUCTION)}."
+                f"The option {key} is missing: add {key}={example}. Families: {families}."
             )
     return options
 

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import warnings
 from collections import Counter
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig
 
 from mitigate.core.files import find
-from mitigate.core.names import unknown
+from mitigate.core.names import counted, unknown
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
 
 GOLDEN = (5**0.5 - 1) / 2
+TASKS = {"vln": "follow a route", "ogn": "find an object"}  # info["task"] of an episode, in words
 
 
 def episodes(env: DictConfig, split: str, count: int | None) -> list:
@@ -30,6 +32,8 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
 
     if count is not None and count < 1:
         raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
+    if not env.episodes:
+        raise ValueError(f"env={env.name} has no episodes, so nothing can be walked in it.")
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
     listed = list(read_episodes(find(env.episodes[split])))
@@ -48,3 +52,22 @@ def check_episodes(source: str, listed: Sequence[Episode]) -> None:
         raise ValueError(f"{source} has the episode {twice[0]} twice: give each an id of its own.")
     if silent:
         raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
+
+
+def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) -> None:
+    """Warn of episodes of a task that ``agent``, called ``name``, says it cannot do (``tasks`` in
+    ``agents/agent.py``). split: the list to name in place of theirs, that of the agent's config."""
+    able: Sequence[str] | None = getattr(agent, "tasks", None)
+    asked = [str(episode.info["task"]) for episode in chosen if "task" in episode.info]
+    other = [] if able is None else [task for task in asked if task not in able]
+    if able is not None and other:
+        warnings.warn(
+            f"{name} can {_in_words(able)}, not {_in_words(other)}, but {len(other)} of "
+            f"{counted(len(chosen), 'episode')} ask for that: success there is chance. Choose a "
+            f"list of its own, such as split={split}.",
+            stacklevel=2,
+        )
+
+
+def _in_words(tasks: Sequence[str]) -> str:
+    return " or ".join(TASKS.get(task, task) for task in sorted(set(tasks)))

@@ -20,13 +20,14 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import conf, seeding
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.locks import FolderLock
+from mitigate.core.names import counted
 from mitigate.evaluation.columns import changed, column_of, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
-from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # registers the kinds of conf/launcher
 
-if TYPE_CHECKING:  # nothing slow is imported before the first line is printed
+if TYPE_CHECKING:  # nothing slow is imported before run() has checked the options
     from torch import nn
 
 ROWS = "rows.jsonl"
@@ -113,11 +114,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     _check(cfg)
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
-    print(
-        f"evaluate: {cfg.checkpoint} on {cfg.split}, {len(chosen)} episodes x {len(names)} "
-        f"conditions at severity {cfg.severity:g}",
-        flush=True,
-    )
+    met = conditions(names, cfg.severity, cfg.severity_depth)
     from mitigate.core import build
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.restoration.restorer import restorer_of
@@ -128,7 +125,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
     check_walks(agent)
     front, world = label(cfg.safeguard), build.maker(cfg.env.world)
-    sensors, met = world().sensors, conditions(names, cfg.severity, cfg.severity_depth)
+    sensors = world().sensors
     restorer = restorer_of(cfg.restore, sensors)
     before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
     before = [part for part in before if part != "none"]
@@ -138,6 +135,12 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     with FolderLock(out):
         _check_list(out / LIST, cfg.env.episodes[cfg.split])
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
+        print(  # when all is checked: a mistake is told alone
+            f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
+            f"{counted(len(met), 'condition')} at severity {cfg.severity:g}",
+            flush=True,
+        )
+        warn_of_tasks(agent, chosen, name, cfg.env.split)
         evaluate(
             agent,
             world,
@@ -163,7 +166,8 @@ def _check(cfg: DictConfig) -> None:
     if cfg.checkpoint is None:
         raise ValueError(
             "checkpoint is not set, and no weights are shipped for this agent: name a run's agent "
-            "folder (checkpoint=runs/.../agent), or choose another agent."
+            "folder (checkpoint=runs/.../agent), or choose an agent that walks episodes "
+            "(agent=recurrent; docs/agents.md lists them)."
         )
     if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(

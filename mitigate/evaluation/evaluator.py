@@ -220,7 +220,7 @@ def _run(
     """Run the jobs, a group's in one process, and append their rows to ``out`` as they come."""
     todo = sum(map(len, groups))
     started = min(count(launcher, workers, todo, WORTH), len(groups))
-    with Progress(title, total, unit="episode", start=total - todo) as progress:
+    with Progress(title, total, unit="walk", start=total - todo) as progress:
         if started > 1:
             progress.say(f"{title}: {started} {launcher.name} workers")
         try:

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from mitigate.core.files import atomic_text
-from mitigate.core.names import markdown_of
+from mitigate.core.names import counted, markdown_of
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
 from mitigate.evaluation.grid import METRICS, PROMPT_ONLY, Grid, meant
 from mitigate.evaluation.metrics import FLOOR
@@ -70,7 +70,7 @@ def _heading(section: Section) -> str:
     )
     return (
         f"## {markdown_of(grid.heading)}, {at}\n\n"
-        f"N = {len(grid.episodes)} episodes, {seeds}, corruption suite "
+        f"N = {counted(len(grid.episodes), 'episode')}, {seeds}, corruption suite "
         f"{markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Agents: {agents}.\n"
         f"SR in %. PRS = mean over the block's corruptions of SR (SPL) / the same agent's clean "
         f"SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over episodes, {RESAMPLES:,} "
@@ -187,7 +187,7 @@ def _notes(section: Section) -> str:
         notes.append("\\* over the episodes at hand. Missing cells:")
         notes += [
             f"- {markdown_of(gap.column)}, {gap.corruption} at {gap.severity:g}: "
-            f"{gap.have} of {gap.want} episodes"
+            f"{gap.have} of {counted(gap.want, 'episode')}"
             for gap in section.gaps
         ]
     return "\n".join(notes)

@@ -26,7 +26,7 @@ def run(paths: Iterable[Path | str], out: Path | str = OUT) -> list[Path]:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for a bad input)."""
-    parser = argparse.ArgumentParser(prog="python -m mitigate.table", description=__doc__)
+    parser = argparse.ArgumentParser(prog="mitigate table", description=__doc__)
     parser.add_argument("rows", nargs="+", metavar="ROWS", help="row files or run folders")
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)

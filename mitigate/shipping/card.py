@@ -12,7 +12,7 @@ from typing import Any
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
-from mitigate.core.names import markdown_of, short
+from mitigate.core.names import counted, markdown_of, short
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.rows import Row
@@ -96,6 +96,12 @@ def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
     return [_entry(section) for section in sections(mine)] if mine else []
 
 
+def rows_agent(rows: Iterable[Row], agents: set[str]) -> list[str]:
+    """Return what ``agent`` says in the rows of ``agents`` (their weights' sha): the hash of all
+    that made the agent, by which tables and the leaderboard name it."""
+    return sorted({str(row["agent"]) for row in rows if weights_of(row) in agents})
+
+
 def readme(card: dict[str, Any]) -> str:
     """Return the README of a folder as Markdown, with Hugging Face's front matter."""
     parts = [f"# {card['name']}", _origin(card), *map(_table, card["metrics"]), _use(card)]
@@ -159,9 +165,17 @@ def _origin(card: dict[str, Any]) -> str:
     computed = f", trained in {card['precision']}" if card.get("precision") else ""
     return (
         f"Recipe `{card['recipe']}`, severity {severities}, seed {card['seed']}{computed}, "
-        f"corruption suite {card['suite']}{start}{taught}.\n{kind}. Agent `{card['agent']}`, "
+        f"corruption suite {card['suite']}{start}{taught}.\n{kind}. {_hashes(card)}, "
         f"{licence}{_exported(card)}."
     )
+
+
+def _hashes(card: dict[str, Any]) -> str:
+    """The hash of the weights, as exported and before, and the agents of their rows, if known."""
+    own, before = card["agent"], card.get("run_agent", card["agent"])
+    rounded = f" (`{before}` before rounding)" if before != own else ""
+    named = " and ".join(f"`{agent}`" for agent in card.get("rows_agent", ()))
+    return f"Weights `{own}`{rounded}" + (f", in rows the agent {named}" if named else "")
 
 
 def _exported(card: dict[str, Any]) -> str:
@@ -182,7 +196,7 @@ def _table(entry: dict[str, Any]) -> str:
     gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
     return (
         f"## {markdown_of(entry['split'])}, severity {entry['severity']:g}\n\n"
-        f"{entry['episodes']} episodes, seed {', '.join(map(str, entry['seeds']))}, "
+        f"{counted(entry['episodes'], 'episode')}, seed {', '.join(map(str, entry['seeds']))}, "
         f"suite {markdown_of(entry['suite'])}. "
         f"Success: {markdown_of(entry['rule'])}.\n\n" + "\n".join(lines) + gaps
     )

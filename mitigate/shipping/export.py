@@ -32,7 +32,7 @@ from mitigate.evaluation import evaluate
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.rows import Row
 from mitigate.shipping import hardened, others, programs
-from mitigate.shipping.card import facts, metrics, readme, weights_of
+from mitigate.shipping.card import facts, metrics, readme, rows_agent, weights_of
 from mitigate.shipping.others import Walks
 
 HARDENED = Path("checkpoints/hardened")
@@ -146,7 +146,8 @@ def _write(
     if walks is None and not adapters_only:
         shipped = copy.deepcopy(agent)
         checkpoint.load_weights(shipped, draft)
-    found = _metrics(run, rows, {checkpoint.weights_sha(a) for a in (agent, shipped)})
+    weights = {checkpoint.weights_sha(a) for a in (agent, shipped)}
+    found = _rows(run, rows, weights)
     made: dict[str, Any] = {"program": False, "latency_ms": {}}
     made["checked"] = {"walks": others.WALKS}
     wanted: dict[str, Tensor] = {}
@@ -156,10 +157,11 @@ def _write(
         "format": hardened.FORMAT,
         "name": name,
         **known,
-        "agent": checkpoint.weights_sha(shipped),
+        "agent": checkpoint.weights_sha(shipped),  # of the weights alone, as run_agent
         "run_agent": checkpoint.weights_sha(agent),
+        "rows_agent": rows_agent(found, weights),
         "adapters_only": adapters_only,
-        "metrics": found,
+        "metrics": metrics(found, weights),
         **made,
     }
     (draft / hardened.README).write_text(readme(card), encoding="utf-8")
@@ -223,7 +225,9 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
     return adapters.backbone_sha(base) == adapters.backbone_sha(agent)
 
 
-def _metrics(run: Path, rows: list[Path | str], agents: set[str]) -> list[dict[str, Any]]:
+def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
+    """The rows of the weights ``agents``: the run's own, and those given. Raises ValueError if none
+    of these are of them."""
     try:
         own = result_rows.gather([run])
     except FileNotFoundError:
@@ -235,7 +239,7 @@ def _metrics(run: Path, rows: list[Path | str], agents: set[str]) -> list[dict[s
             f"of this agent ({', '.join(sorted(agents))}). Evaluate it: `make evaluate "
             f'ARGS="checkpoint={run}/agent"`.'
         )
-    return metrics([*_of_one_agent(own, given, agents)], agents)
+    return list(_of_one_agent(own, given, agents))
 
 
 def _of_one_agent(own: list[Row], given: list[Row], weights: set[str]) -> Iterator[Row]:
@@ -286,17 +290,24 @@ def _write_json(file: Path, value: Any) -> None:
 
 def main() -> None:
     """Read the command line."""
-    parser = argparse.ArgumentParser(prog="mitigate export", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(
+        prog="mitigate export",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("run", type=Path, help="a finished run folder, such as runs/...")
     parser.add_argument("name", help="name of the folder to write")
     parser.add_argument(
         "overrides",
         nargs="*",
+        default=[],  # or argparse counts them among those that are required
         metavar="key=value",
         help="of an agent of your own: agent=policy env=corridor, as for mitigate evaluate",
     )
     parser.add_argument("--config-dir", type=Path, help="where such configs are")
-    parser.add_argument("--out", type=Path, default=HARDENED, help="where to write it")
+    parser.add_argument(
+        "--out", type=Path, default=HARDENED, help=f"folder to write it in (default {HARDENED})"
+    )
     parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")

@@ -13,6 +13,7 @@ from pathlib import Path
 from omegaconf import DictConfig, OmegaConf
 
 from mitigate.core import checkpoint, precision
+from mitigate.core.names import counted
 from mitigate.core.progress import duration
 from mitigate.core.workers import cores
 from mitigate.training.stages import trainer_settings
@@ -35,9 +36,10 @@ def plan(cfg: DictConfig, folder: Path) -> str:
     """Return what a run is going to do and how long that will take here, for all of it."""
     parts = [f"{name} {count} steps" for name, count in _steps(cfg).items()]
     if _walked(cfg):
-        listed = "all" if cfg.evaluation.episodes is None else cfg.evaluation.episodes
+        count = cfg.evaluation.episodes
+        listed = "all episodes" if count is None else counted(count, "episode")
         agents, conditions = 1 + has_base(cfg), len(cfg.suite.conditions)
-        parts.append(f"{agents} x {listed} episodes x {conditions} conditions")
+        parts.append(f"{agents} x {listed} x {counted(conditions, 'condition')}")
     total = estimate(cfg, folder)
     about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
     return f"{cfg.name}: {', '.join(parts)}: {about} on this machine; all goes to {folder}"

@@ -45,7 +45,7 @@ def measure(
         workers = 1
     total = len(drawn) * len(met)
     started = processes.count(workers, total, WORTH)
-    with Progress(f"success at step {step}", total, unit="episode") as progress:
+    with Progress(f"success at step {step}", total, unit="walk") as progress:
         found = []
         for item in processes.results(task, groups, started, progress):
             if item is not None:

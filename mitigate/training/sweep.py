@@ -118,13 +118,19 @@ def chain(cfg: DictConfig, options: Sequence[str]) -> programs.Chain:
     )
 
 
-def main() -> None:
-    """Run from the command line."""
+def main() -> int:
+    """Run from the command line; return the exit status: 2, and the help, where there is nothing
+    to combine."""
     given = sys.argv[1:]
     own = [option for option in given if OWN.match(option)]
     options = [option for option in given if not OWN.match(option)]
+    if not options:
+        print(conf.help_text(__doc__ or "", "sweep"))
+        print("sweep: give options to combine, such as seed=0,1.", file=sys.stderr)
+        return 2
 
     def program() -> None:
         run(conf.load_config("sweep", own), options)
 
     conf.main(program, "sweep", lambda: check_arguments(options))
+    return 0

@@ -139,6 +139,16 @@ def test_table_refuses_what_is_no_rows(tmp_path, capsys, raw):
     assert not (tmp_path / "out" / "table.md").exists()
 
 
+@pytest.mark.parametrize(
+    ("given", "missing"), [([], "run, name"), (["runs/a"], "name"), (["--onnx"], "run, name")]
+)
+def test_export_asks_for_what_it_needs_and_no_more(monkeypatch, capsys, given, missing):
+    monkeypatch.setattr(sys, "argv", ["mitigate export", *given])
+    status, told = said_by(export.main, capsys)
+    assert status == 2
+    assert told.splitlines()[-1].endswith(f"the following arguments are required: {missing}")
+
+
 FOLDERS = [
     [],
     ["a"],

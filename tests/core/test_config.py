@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -307,6 +308,43 @@ def test_help_says_what_every_option_and_group_means(primary):
     for group in ("suite", "launcher"):
         if group in cfg:
             assert f"{group}: " in shown and ", " in shown.partition(f"{group}: ")[2]
+
+
+@pytest.mark.parametrize(
+    ("primary", "options", "keys"),
+    [
+        ("table1", ["+columns.recurrent_ts=[agent=recurrent]"], ["columns.recurrent_ts"]),
+        ("table1", ["+columns.mine=[agent=recurrent]", "jobs=1"], []),
+        ("table1", ["columns.recurrent=[agent=recurrent]"], []),
+        ("table1", ["~columns.recurrent", "+columns.recurrent=[agent=recurrent]"], []),
+        ("evaluate", ["+env.episodes.val_seen=mine.json"], ["env.episodes.val_seen"]),
+        ("evaluate", ["++split=val_seen"], []),
+        ("evaluate", ["+severity=1", "sevrity=2"], []),  # is refused anyway
+    ],
+)
+def test_an_option_that_is_added_in_the_place_of_another_is_told(primary, options, keys):
+    assert conf.replaced(primary, options) == keys
+
+
+def test_what_is_replaced_is_said_once_on_standard_error(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["mitigate table1", "+columns.recurrent=[agent=recurrent]"])
+    conf.main(lambda: None, "table1")
+    said = capsys.readouterr().err
+    assert said.count("columns.recurrent is there already, and +columns.recurrent= replaces") == 1
+
+
+AGENTS = sorted(path.stem for path in (conf.CONF / "agent").glob("*.yaml"))
+
+
+@pytest.mark.parametrize("name", AGENTS)
+def test_help_of_evaluate_lists_the_agents_that_walk_and_that_of_train_says_who_does_not(name):
+    agent = get_object(conf.load_config("train", [f"agent={name}"]).agent._target_)
+    (shown,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("evaluate"), re.M)
+    (training,) = re.findall(r"^agent: topological  # (.*)$", conf.options_text("train"), re.M)
+    walking, others = training.split("; walk no episodes, for recipes of their own: ")
+    able = hasattr(agent, "reset") and hasattr(agent, "act")
+    assert shown == walking and (name in walking.split(", ")) == able
+    assert (name in others.split(", ")) == (not able)
 
 
 def test_help_needs_no_config_to_compose(monkeypatch, capsys):

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import torch
 
 from mitigate.core import doctor
 
@@ -83,10 +84,37 @@ def test_cores_are_those_that_this_process_may_use(monkeypatch):
 
 
 def test_the_report_has_a_line_for_each(capsys):
-    doctor.main()
+    doctor.main([])
     out = capsys.readouterr().out
-    for name in ("cores", "processor", r"C\+\+ compiler"):
+    for name in ("cores", "processor", r"C\+\+ compiler", "torch and CUDA"):
         assert re.search(rf"^{name} +\S", out, re.MULTILINE)
     flags = Path("/proc/cpuinfo")
     if flags.is_file() and "avx2" in flags.read_text():
         assert re.search(r"^processor +AVX2", out, re.MULTILINE)
+
+
+@pytest.mark.parametrize(("given", "status"), [("--help", 0), ("foo", 2), ("--fix", 2)])
+def test_it_takes_no_options_and_says_so_in_place_of_a_report(given, status, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["mitigate doctor", given])
+    with pytest.raises(SystemExit) as ended:
+        doctor.main()
+    shown = capsys.readouterr()
+    assert ended.value.code == status and "processor" not in shown.out
+    assert "usage: mitigate doctor" in (shown.err if status else shown.out)
+    assert status == 0 or given in shown.err
+
+
+@pytest.mark.parametrize(
+    ("there", "built", "said"),
+    [
+        (True, "12.8", "sees H100, H100 (CUDA 12.8)"),
+        (False, "12.8", "sees no GPU (built for CUDA 12.8)"),
+        (False, None, "sees no GPU (built for CPUs alone)"),
+    ],
+)
+def test_what_torch_sees_of_cuda_is_said(there, built, said, monkeypatch):
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: there)
+    monkeypatch.setattr(torch.cuda, "device_count", lambda: 2)
+    monkeypatch.setattr(torch.cuda, "get_device_name", lambda number: "H100")
+    monkeypatch.setattr(torch.version, "cuda", built)
+    assert doctor.cuda() == said

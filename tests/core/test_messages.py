@@ -40,14 +40,17 @@ def weights(tmp_path_factory):
 
 
 @pytest.fixture
-def evaluation(monkeypatch, tmp_path, weights):
-    """Run ``python -m mitigate.evaluate`` with options and return its complaint."""
+def evaluation(monkeypatch, tmp_path, weights, capsys):
+    """Run ``python -m mitigate.evaluate`` with options and return its complaint, before which
+    nothing else is said."""
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
 
     def run(*options: str) -> str:
         given = (f"checkpoint={weights}", f"out={tmp_path / 'out'}", "episodes=1", *options)
         monkeypatch.setattr(sys, "argv", ["evaluate", *given])
-        return complaint(evaluate.hydra_main, "evaluate")
+        text = complaint(evaluate.hydra_main, "evaluate")
+        assert capsys.readouterr().out == ""
+        return text
 
     return run
 
@@ -56,6 +59,11 @@ def test_a_severity_out_of_range(evaluation):
     text = evaluation("severity=1.2", "conditions=[clean,flare]")
     for part in ("1.2", "from 0 (clean) to 1 (worst)", "divided by 100"):
         assert part in text
+
+
+def test_a_restorer_or_a_safeguard_that_is_not_there(evaluation):
+    assert "There is no restorer at nowhere" in evaluation("restore=nowhere")
+    assert "nowhere" in evaluation("safeguard=nowhere")
 
 
 def test_no_weights_no_agent_and_a_sensor_that_is_not_shown(evaluation, monkeypatch):

@@ -108,6 +108,16 @@ def test_a_world_may_say_success_by_true_and_its_row_says_1(tmp_path):
     assert made["success"] == 1 and type(made["success"]) is int
 
 
+def test_progress_counts_walks_of_which_an_episode_has_one_a_condition(tmp_path, capsys):
+    episodes, met = load_episodes("val_seen")[:1], [CLEAN, Corruption("flare", 0.6)]
+    options = {"name": "test", "out": tmp_path / "rows.jsonl", "split": "val_seen"}
+    evaluate(Straight(1), partial(Won, SIZE), episodes, met, **options)
+    shown = capsys.readouterr().out
+    assert "test, val_seen: 2 walks" in shown and "walk 2/2, done in" in shown
+    evaluate(Straight(1), partial(Won, SIZE), episodes, [*met, Corruption("flare", 0.3)], **options)
+    assert "3 walks, 2 of them done before" in capsys.readouterr().out
+
+
 def test_corruptions_change_what_the_agent_does(finished):
     _, rows = finished
     paths = {(r["episode_id"], r["corruption"]): (r["path_length"], r["steps"]) for r in rows}

@@ -53,6 +53,7 @@ def test_the_conditions_of_the_result_are_printed():
         assert said in text
     assert "vln: STOP and geodesic < 2.0 m" in text
     assert "`0123456789ab`" in text
+    assert "N = 1 episode, seed 0" in markdown(sections(column(8, ALL)[:1]))
 
 
 def test_prs_differences_are_paired_and_against_base():

@@ -34,6 +34,7 @@ pytestmark = pytest.mark.xdist_group("export")
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/deployment.md"
 SIZE = 64
+ROWS = "ab" * 6  # the agent of the rows of `whole`
 TINY = {"width": 16, "planner": {"heads": 2, "text_layers": 1, "layers": 1}}
 ADAPTERS = {
     "target_modules": [r"depth_encoder\.stages\.0"],
@@ -113,7 +114,8 @@ def place(tmp_path_factory) -> Path:
     base = checkpoint.save_weights(agent, place / "base", half=True)
     run = finished_run(place / "runs/whole", agent, TINY, init=str(base.parent))
     sha = checkpoint.weights_sha(agent)
-    found = [a_row(sha, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]
+    found = [a_row(ROWS, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]
+    found = [{**row, "weights": sha} for row in found]
     rows.write(run / "rows.jsonl", [*found, a_row("0123456789ab", 0, "clean", 0.0)])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(programs, "TIMED", 2)
@@ -157,6 +159,9 @@ def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
     assert entry["clean"]["SR"][1] < 0.75 < entry["clean"]["SR"][2]
     assert entry["PRS"]["PRS-SR (RGB, 1 of 8)"][0] == 1.0  # spatter alone
     text = (folder / "README.md").read_text()
+    before, after = card["run_agent"], card["agent"]
+    assert card["rows_agent"] == [ROWS] and before != after  # rounded to float16
+    assert f"Weights `{after}` (`{before}` before rounding), in rows the agent `{ROWS}`" in text
     assert "Clean SR | 0.750 [" in text and "spatter" in text.lower()
     for kind in ("eager", "exported"):
         for name in ("perceive", "decide"):

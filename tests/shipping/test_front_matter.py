@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from huggingface_hub import ModelCard
 
+from mitigate.evaluation.rows import gather
 from mitigate.shipping import hardened
 from mitigate.shipping.card import readme
 from mitigate.shipping.front_matter import front_matter
@@ -43,6 +44,13 @@ def test_a_shipped_folder_is_a_model_repository(folder):
     assert clean.dataset_args["episodes"] in (100, 300) and clean.metric_args["level"] == 0.95
     assert found.text.strip().startswith(f"# {card['name']}")
     assert (folder / "README.md").read_text(encoding="utf-8") == readme(card)
+
+
+@pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
+def test_the_published_rows_are_found_by_a_shipped_card(folder):
+    published = gather([ROOT / f"docs/results/second/{folder.name}-val_unseen.jsonl.gz"])
+    (agent,) = card_of(folder)["rows_agent"]
+    assert len({row["corruption"] for row in published if row["agent"] == agent}) == 13
 
 
 def test_a_card_without_metrics_or_with_strange_names_is_one_too():
@@ -82,3 +90,15 @@ def test_renewing_a_folder_changes_its_readme_and_the_sums_alone(tmp_path):
     page.write_text(readme(before), encoding="utf-8")
     renew(folder)
     assert hardened.check(folder) == before and [p.name for p in tmp_path.iterdir()] == ["mine"]
+
+
+def test_renewing_adds_the_agent_of_rows_to_a_card_that_lacks_it(tmp_path):
+    folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
+    old = {k: v for k, v in card_of(folder).items() if k != "rows_agent"}
+    resigned = {**old, "sha256": hardened.card_sha(old)}
+    (folder / "card.json").write_text(json.dumps(resigned), encoding="utf-8")
+    renew(folder, [{"agent": "a" * 12, "weights": "0" * 12}])  # of other weights
+    assert "rows_agent" not in card_of(folder) and "in rows the agent" not in readme(old)
+    renew(folder, [{"agent": "a" * 12, "weights": old["run_agent"]}])
+    assert hardened.check(folder)["rows_agent"] == ["a" * 12]
+    assert f"Weights `{old['agent']}`, in rows the agent `{'a' * 12}`" in readme(card_of(folder))

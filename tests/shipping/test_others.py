@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 import yaml
 
+from mitigate.shipping.card import rows_agent
 from mitigate.shipping.export import _of_one_agent
 from mitigate.shipping.hardened import _check_same
 from tests.evaluation.made_rows import row
@@ -25,6 +26,12 @@ def test_the_runs_own_rows_say_which_agent_of_equal_weights_it_is():
 def test_rows_of_before_are_known_by_their_weights():
     old = [{**row("e0", True), "agent": "w" * 12}]
     assert list(_of_one_agent([], old, {"w" * 12})) == old
+
+
+def test_a_card_names_the_agent_of_its_rows_and_not_those_of_other_weights():
+    found = [*rows("a" * 12, True), *rows("b" * 12, True)]
+    assert rows_agent(found, {"w" * 12}) == ["a" * 12, "b" * 12]
+    assert rows_agent(found, {"v" * 12}) == []
 
 
 class Mine:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 import pytest
 
 from mitigate.core import conf
@@ -45,6 +47,22 @@ def test_every_combination_is_run_by_hydras_grammar():
 
 def test_a_list_is_one_value_and_not_a_sweep():
     assert len(sweep.combinations(["agent.blind=[rgb,depth]", "seed=3"])) == 1
+
+
+@pytest.mark.parametrize("given", [[], ["runs=sweeps/default"], ["command=evaluate", "jobs=2"]])
+def test_without_options_to_combine_it_shows_how_and_runs_nothing(given, monkeypatch, fake, capsys):
+    """``make sweep`` alone gives it ``runs=``."""
+    monkeypatch.setattr(sys, "argv", ["mitigate sweep", *given])
+    assert sweep.main() == 2 and not fake
+    shown = capsys.readouterr()
+    assert "mitigate.sweep recipe=imitation,stacked seed=0,1" in shown.out
+    assert "jobs: 1  # runs at a time" in shown.out and "give options to combine" in shown.err
+
+
+def test_options_to_combine_are_run(monkeypatch, fake, tmp_path):
+    monkeypatch.setattr(sys, "argv", ["mitigate sweep", f"runs={tmp_path}", "seed=0,2"])
+    assert sweep.main() == 0
+    assert [len(chains) for chains, _, _ in fake] == [2]
 
 
 def test_runs_have_a_log_each_share_the_cores_and_evaluations_a_folder_each(tmp_path, monkeypatch):

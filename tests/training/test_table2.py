@@ -65,15 +65,15 @@ def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
 
 
 def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
-    more = '+columns.recurrent_ts=["agent=recurrent","recipe=ts_distill"]'
+    more = '+columns.recurrent_mine=["agent=recurrent","recipe=ts_distill"]'
     cfg = conf.load_config("table1", [f"out={tmp_path}", "split=val_unseen_ogn", more])
     made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in table2.cells(cfg)}
     (plain,), (shipped,) = made["recurrent"], made["recurrent_da"]
-    train, hardened = made["recurrent_ts"]
+    train, hardened = made["recurrent_mine"]
     assert "checkpoint=checkpoints/recurrent/teacher" in shipped
     assert "agent=recurrent" in plain and not any(a.startswith("checkpoint=") for a in plain)
     assert {"agent=recurrent", "recipe=ts_distill"} <= set(train)
-    weights = tmp_path / "cells" / "recurrent_ts-seed0" / "run" / "agent"
+    weights = tmp_path / "cells" / "recurrent_mine-seed0" / "run" / "agent"
     assert {"agent=recurrent", f"checkpoint={weights}", "split=val_unseen_ogn"} <= set(hardened)
     assert any(a.startswith("conditions=[clean,motion_blur,") and "black_box" in a for a in plain)
 

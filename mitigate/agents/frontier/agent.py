@@ -69,6 +69,7 @@ class FrontierAgent(nn.Module):
     """
 
     views = 1
+    tasks = ("ogn",)  # it finds objects, it follows no routes
     together = 8  # episodes side by side (ours): encoding one frame alone takes twice as long
     encoders: ClassVar = {RGB: camera.ENCODERS[RGB]}
     labels: ClassVar = {RGB: camera.LABELS[RGB]}

@@ -17,6 +17,7 @@ from torch import nn
 from mitigate.core import conf, seeding
 from mitigate.core.build import maker
 from mitigate.core.locks import FolderLock
+from mitigate.core.names import counted
 from mitigate.core.progress import duration
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
@@ -185,8 +186,9 @@ def _tell(
         started = time.monotonic()
         run_episode(agent, world, episode, CLEAN, 0)
         each = time.monotonic() - started
+    grid = f"{counted(len(episodes), 'episode')} x {counted(conditions, 'condition')}"
     print(
-        f"benchmark: {len(episodes)} episodes x {conditions} conditions = {total} walks of about "
+        f"benchmark: {grid} = {counted(total, 'walk')} of about "
         f"{each:.2g} s on {processes} process{'es' * (processes > 1)}: about "
         f"{duration(each * total / processes)}",
         flush=True,

@@ -15,6 +15,7 @@ from typing import Any
 
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
+from mitigate.core.names import counted
 from mitigate.evaluation.leaderboard.checks import problem
 from mitigate.evaluation.page.model import Numbers
 
@@ -66,7 +67,8 @@ class LeaderboardEntry:
 
     def __str__(self) -> str:
         """A line for each score."""
-        head = f"{self.name}: {self.episodes} episodes of {self.split}, severity {self.severity:g}"
+        walked = f"{counted(self.episodes, 'episode')} of {self.split}"
+        head = f"{self.name}: {walked}, severity {self.severity:g}"
         lines = (f"  {title}: {_words(found)}" for title, found in self.scores.items())
         return "\n".join([f"{head} ({self.rule})", *lines])
 

@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from mitigate.core.names import unknown
+from mitigate.core.names import counted, unknown
 from mitigate.core.observation import Sensor
 from mitigate.corruptions.registry import UNSEEN
 from mitigate.evaluation import bootstrap
@@ -46,8 +46,9 @@ def entry_of(
             "one."
         )
     for gap in [gap for part in found for gap in part.gaps][:1]:
+        held = f"{gap.have} of {counted(gap.want, 'episode')}"
         raise ValueError(
-            f"The rows of {name} hold {gap.have} of {gap.want} episodes under {gap.corruption}: an "
+            f"The rows of {name} hold {held} under {gap.corruption}: an "
             "entry needs all of them under each. The evaluation's own command goes on from there."
         )
     scores, rates = _figures(found)

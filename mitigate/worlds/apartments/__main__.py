@@ -64,7 +64,7 @@ def main() -> None:
         "settings",
         nargs="*",
         metavar="key=value",
-        help="seed=7 episode=0 task=vln size=192 out=runs/show.png",
+        help="seed=7 episode=0 task=vln size=192 out=runs/show/vln-7-0.png",
     )
     args = parser.parse_args()
     values = {"seed": "7", "episode": "0", "task": "vln", "size": "192", "out": ""}

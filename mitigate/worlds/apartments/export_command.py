@@ -1,4 +1,4 @@
-"""Write apartments for Habitat: mitigate export-scene OUT split=val_unseen scenes=3
+"""Write apartments for Habitat: mitigate export_scene OUT split=val_unseen scenes=3
 
   OUT      folder for scenes, episodes and configs
   split    train, val_seen or val_unseen (default)

@@ -12,6 +12,7 @@ from mitigate.agents.concepts import CONCEPTS, THING_NAMES
 from mitigate.agents.frontier import FrontierAgent, planning, search
 from mitigate.agents.frontier.grid import CELL, Grid
 from mitigate.core.observation import LEFT, MAX_STEPS, RGB
+from mitigate.evaluation.episode_lists import warn_of_tasks
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 
@@ -115,6 +116,16 @@ def test_it_looks_around_first_and_needs_its_sensors():
         FrontierAgent(blind=("smell",))
     with pytest.warns(UserWarning, match="names no object"):
         agent.reset("hello")
+
+
+def test_an_evaluation_on_routes_is_warned_of_and_one_on_objects_is_not():
+    routes, objects = load_episodes("val_unseen")[:3], load_episodes("val_unseen", "ogn")[:2]
+    with pytest.warns(UserWarning, match="mine can find an object, not follow a route, but 3 of 5"):
+        warn_of_tasks(FrontierAgent(), [*routes, *objects], "mine", "val_unseen_ogn")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_of_tasks(FrontierAgent(), objects, "mine", "val_unseen_ogn")
+        warn_of_tasks(object(), routes, "any that does not say", "val_unseen")
 
 
 def test_only_its_encoder_is_learned():
