@@ -151,7 +151,7 @@ class RestoreGate(Recipe):
         """The entries of :class:`Judged` for frames [n, H, W, c]."""
         made = self.net(frames, views)
         less = self.net.small(*self.net.scaled(frames))
-        read = (self.net.net.encode(self.net.seen(*less), views).stats, texture(*less))
+        read = (self.net.net.encode(self.net.seen(*less, views), views).stats, texture(*less))
         wanted, valid = self.net.scaled(clean)
         seen, _ = self.net.scaled(frames)
         wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made.out)]

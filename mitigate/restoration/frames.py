@@ -51,7 +51,7 @@ class SensorRestorer(nn.Module):
         super().__init__()
         self.sensor, self.size, self.far = sensor, size, far
         channels = CHANNELS[sensor]
-        inputs = channels + (sensor == DEPTH)
+        inputs = 3 * channels + 1 + (sensor == DEPTH)
         self.net = UNet(inputs, 2 * channels + 1, width)
         self.refine = UNet(channels + 2, channels, width)
         self.gate = Gate(width)
@@ -88,12 +88,17 @@ class SensorRestorer(nn.Module):
 
     def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor]:
         """The U-Net's maps and the gate's logits [instants] of frames at the working size."""
-        maps = self.net.encode(self.seen(x, valid), views)
+        maps = self.net.encode(self.seen(x, valid, views), views)
         return maps, self.gate(maps.stats, texture(x, valid), views)
 
-    def seen(self, x: Tensor, valid: Tensor) -> Tensor:
-        """What goes into the U-Net."""
-        return torch.cat([x * 2 - 1, valid], 1) if self.sensor == DEPTH else x * 2 - 1
+    def seen(self, x: Tensor, valid: Tensor, views: int) -> Tensor:
+        """What goes into the U-Net: the frame, of depth where it reads something, and how far
+        below and above it the other views of its panorama are."""
+        own = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
+        if not ring.is_ring(views, *x.shape[-2:]):
+            return torch.cat([*own, torch.zeros_like(x), torch.zeros_like(x), x[:, :1] * 0], 1)
+        low, high, seen = ring.compared(x, valid, self.sensor == DEPTH)
+        return torch.cat([*own, (low - x) * 2, (high - x) * 2, seen], 1)
 
     def _composed(
         self, x: Tensor, valid: Tensor, maps: Tensor, views: int, gate: Tensor
