@@ -22,6 +22,7 @@ from mitigate.restoration import ring
 from mitigate.restoration.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
+RIGHT = 0.02  # of the range: a pixel that is off by less is right (ours)
 LOST = -3.0  # logit of "lost" before anything is learned: 5 % (ours)
 SUREST = 6.0  # the greatest logit, either way: a pixel is never given up for good (ours)
 GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; low light leaves 0.03)
@@ -57,14 +58,19 @@ class SensorRestorer(nn.Module):
         self.gate = Gate(width)
         self.register_buffer("threshold", torch.zeros(()))
 
+    @property
+    def range(self) -> float:
+        """Levels of RGB, or metres of depth, that count as 1."""
+        return 255.0 if self.sensor == RGB else self.far
+
     def scaled(self, frames: Tensor) -> tuple[Tensor, Tensor]:
         """Frames [n, H, W, c] as they come to values [n, c, H, W] in [0, 1], and which pixels
         [n, 1, H, W] are a reading (of depth: finite and above 0)."""
         x = frames.permute(0, 3, 1, 2).float()
         if self.sensor == RGB:
-            return x / 255, torch.ones_like(x[:, :1])
+            return x / self.range, torch.ones_like(x[:, :1])
         valid = torch.isfinite(x) & (x > 0)
-        return torch.where(valid, x, 0.0).div(self.far).clamp(max=1), valid.float()
+        return torch.where(valid, x, 0.0).div(self.range).clamp(max=1), valid.float()
 
     def working(self, height: int, width: int) -> tuple[int, int]:
         """The size that frames of a size are worked on at: multiples of 8."""
@@ -140,8 +146,8 @@ class SensorRestorer(nn.Module):
         """Values [n, c, H, W] as the sensor gives them: uint8, or metres above 0."""
         out = out.clamp(0, 1).permute(0, 2, 3, 1)
         if self.sensor == RGB:
-            return (out * 255).round().to(torch.uint8)
-        return (out * self.far).clamp(min=1e-3)
+            return (out * self.range).round().to(torch.uint8)
+        return (out * self.range).clamp(min=1e-3)
 
 
 def _resized(x: Tensor, size: tuple[int, int] | torch.Size) -> Tensor:
