@@ -4,9 +4,10 @@
         + w_right mean of e / (e + RIGHT), e = |out - clean| of a pixel        (out, and unrefined)
 
 The last counts how many pixels are wrong rather than by how much: what is seen rightly beside
-drops, stripes or noise is to stay as it was. RGB counts in [0, 1], depth in metres over the range; pixels of depth that read nothing in the clean
-frame do not count. Nothing of an agent enters, so one restorer serves all. Its gate is trained
-afterwards, on maps that no longer change (``restore_gate.py``).
+drops, stripes or noise is to stay as it was. RGB counts in [0, 1], depth in metres over the range;
+pixels of depth that read nothing in the clean frame do not count. Nothing of an agent enters, so
+one restorer serves all. Its gate is trained afterwards, on maps that no longer change
+(``restore_gate.py``).
 """
 
 from __future__ import annotations

@@ -4,9 +4,9 @@
 
 By the mean error alone it is better to blur a frame of which a part is wrong; to who reads it, it
 is not. A frame that is neither clearly better afterwards nor clean or worse counts for neither. The
-maps that the gate reads do not change here, so they are computed once, for ``instants`` random instants,
-and learned from many times. Afterwards the threshold is set on clean frames of the training scenes
-that were held back: ``touched`` of them lie above it.
+maps that the gate reads do not change here, so they are computed once, for ``instants`` random
+instants, and learned from many times. Afterwards the threshold is set on clean frames of the
+training scenes that were held back: ``touched`` of them lie above it.
 """
 
 from __future__ import annotations
@@ -150,7 +150,7 @@ class RestoreGate(Recipe):
         """The entries of :class:`Judged` for frames [n, H, W, c]."""
         made = self.net(frames, views)
         less = self.net.small(*self.net.scaled(frames))
-        read = (self.net.net.encode(self.net.seen(*less, views), views).stats, texture(*less))
+        read = (self.net.judge(*less, views)[0].stats, texture(*less))
         wanted, valid = self.net.scaled(clean)
         seen, _ = self.net.scaled(frames)
         wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made.out)]

@@ -109,9 +109,10 @@ def measure(
                 errors = [float(part.mean()) * far * UNITS[sensor] for part in off]
                 right = [float((part < RIGHT).mean()) for part in off]
                 rows.append((*errors, *right, made is not frames))
-            *means, hit = np.array(rows, float).T
-            found = Score(*(mean(column) for column in means), share(hit))
-            scores[sensor, corruption.name] = found
+            before, after, right, kept, hit = np.array(rows, float).T
+            scores[sensor, corruption.name] = Score(
+                mean(before), mean(after), mean(right), mean(kept), share(hit)
+            )
             progress.advance(note=corruption.name)
     return scores
 

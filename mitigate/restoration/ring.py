@@ -63,8 +63,9 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
 
 
 def _turned(maps: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-    """Of each neighbour: its ``maps`` [P * 12, c + 1, s, s] but the last, which says how much they
-    count, in the view's own frame; that last; and the metres along its axis for one along the own."""
+    """Of each neighbour, in the view's own frame: its ``maps`` [P * 12, c + 1, s, s] but the last;
+    that last, which says how much they count; and the metres along its axis for one along the own.
+    """
     grid, ahead = (part.to(maps.device) for part in neighbours(maps.shape[-1]))
     ring = maps.unflatten(0, (-1, VIEWS))
     shifts = [sign * step for step in STEPS for sign in (1, -1)]

@@ -118,6 +118,21 @@ def test_the_views_of_a_panorama_tell_which_of_them_lies(panorama, sensor):
     assert after[others].mean() < before[others].mean() + 0.01
 
 
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_a_speck_that_no_other_view_shows_goes_before_anything_is_learned(
+    untrained, panorama, sensor
+):
+    rng, clean = np.random.default_rng(0), panorama[sensor]
+    specks = rng.random(clean.shape[:3]) < 0.05
+    frames = clean.copy()
+    frames[specks] = np.where(clean[specks] > clean.max() / 2, clean.max() * 0.02, clean.max())
+    made = untrained.restore(sensor, frames)
+    before, after = (np.abs(f.astype(float) - clean)[specks].mean() for f in (frames, made))
+    assert after < 0.35 * before
+    alone = untrained.restore(sensor, frames[4])
+    assert np.abs(alone.astype(float) - frames[4])[specks[4]].mean() < 0.1 * before
+
+
 def test_what_no_other_view_shows_is_compared_with_nothing():
     values, valid = torch.rand(12, 1, 16, 16), torch.zeros(12, 1, 16, 16)
     valid[5] = 1
