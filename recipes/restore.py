@@ -1,12 +1,13 @@
 """Train a restorer from pairs of corrupted and clean frames; no agent, label or action is needed.
 
     L = mean over scales of |out - clean| + w_grad |their image gradients|
-        + w_right e / (e + RIGHT), e = |out - clean| of a pixel                (out, and unrefined)
+        + w_right mean of e / (e + RIGHT), e = |out - clean| of a pixel        (out, and unrefined)
 
-The last counts how many pixels are wrong rather than by how much: what was seen rightly behind
-drops, stripes or noise is to stay as it was. RGB counts in [0, 1], depth in metres over the range; pixels of depth that read nothing in the clean
-frame do not count. Nothing of an agent enters, so one restorer serves all. Its gate is trained
-afterwards, on maps that no longer change (``restore_gate.py``).
+The last counts how many pixels are wrong rather than by how much: what is seen rightly beside
+drops, stripes or noise is to stay as it was. RGB counts in [0, 1], depth in metres over the range;
+pixels of depth that read nothing in the clean frame do not count. Nothing of an agent enters, so
+one restorer serves all. Its gate is trained afterwards, on maps that no longer change
+(``restore_gate.py``).
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from torch import Tensor
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.restoration.frames import SensorRestorer
+from mitigate.restoration.frames import RIGHT, SensorRestorer
 from mitigate.restoration.pairs import pairs_of
 from mitigate.restoration.restorer import Restorer
 from mitigate.training.recipe import Recipe
@@ -30,7 +31,6 @@ from mitigate.worlds.world import TrainingEpisodes
 
 SCALES = (1, 4)  # pixels: errors of edges, and of surfaces (ours)
 RESTORER = "This recipe takes a restorer in an agent's place: agent=restorer (docs/restoration.md)."
-RIGHT = 0.02  # of the range: an error that counts half as much as any (ours)
 COARSE = 0.5  # weight of the frames before they are refined (ours)
 
 

@@ -1,13 +1,12 @@
 """Train the gate of a restorer: which frames come nearer to the clean ones by being restored.
 
-    L = BCE(gate, error after < ``BETTER`` error before, and no more than ``SPENT`` of the pixels, which
-                  were right, wrong afterwards)
+    L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer right pixels)
 
-A mean error alone calls it better to blur a frame of which only a part is wrong; who reads that frame
-does not. A frame that is neither clearly better afterwards nor clean or worse counts for neither. The maps
-that the gate reads do not change here, so they are computed once, for ``instants`` random instants,
-and learned from many times. Afterwards the threshold is set on clean frames of the training scenes
-that were held back: ``touched`` of them lie above it.
+By the mean error alone it is better to blur a frame of which a part is wrong; to who reads it, it
+is not. A frame that is neither clearly better afterwards nor clean or worse counts for neither. The
+maps that the gate reads do not change here, so they are computed once, for ``instants`` random
+instants, and learned from many times. Afterwards the threshold is set on clean frames of the
+training scenes that were held back: ``touched`` of them lie above it.
 """
 
 from __future__ import annotations
@@ -23,8 +22,8 @@ from torch import Tensor
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.restore import RESTORER, RIGHT
-from mitigate.restoration.frames import SensorRestorer
+from mitigate.recipes.restore import RESTORER
+from mitigate.restoration.frames import RIGHT, SensorRestorer
 from mitigate.restoration.network import texture
 from mitigate.restoration.pairs import Pairs, pairs_of
 from mitigate.restoration.restorer import Restorer
@@ -40,7 +39,7 @@ OFFSETS = {"learned": 0, "held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_0
 class Judged(NamedTuple):
     """Of N instants of V views: stats [N, V, s] and textures [N, V, t], which the gate reads;
     before, after [N]: mean error over the range as they are and as restored. spent [N]: share of
-    right pixels before less that afterwards (``restore.RIGHT``)."""
+    right pixels before less that afterwards (``frames.RIGHT``)."""
 
     stats: Tensor
     textures: Tensor
@@ -151,7 +150,7 @@ class RestoreGate(Recipe):
         """The entries of :class:`Judged` for frames [n, H, W, c]."""
         made = self.net(frames, views)
         less = self.net.small(*self.net.scaled(frames))
-        read = (self.net.net.encode(self.net.seen(*less), views).stats, texture(*less))
+        read = (self.net.judge(*less, views)[0].stats, texture(*less))
         wanted, valid = self.net.scaled(clean)
         seen, _ = self.net.scaled(frames)
         wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made.out)]

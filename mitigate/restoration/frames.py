@@ -1,6 +1,8 @@
 """The restorer of one sensor: judge, correct, fill what is lost, refine.
 
-    trust, gain, bias = U-Net(x)                   zero-initialised: at first nothing changes
+    low, high = least and greatest of what the other views of the panorama show
+    lost, gain, bias = U-Net(x, low - x, high - x) zero-initialised: at first nothing changes
+    trust = sigmoid(-lost - alone * how far x lies outside of low and high)
     y = x gain + bias                              light, blur, noise
     z = y where trusted, else what other views of the panorama show, else what is around
     out = z + U-Net2(z, trust, sure)
@@ -22,6 +24,12 @@ from mitigate.restoration import ring
 from mitigate.restoration.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
+RIGHT = 0.02  # of the range: a pixel that is off by less is right (ours)
+MARGIN = {
+    RGB: 0.2,
+    DEPTH: 0.02,
+}  # of the range: 99 % of clean pixels are contradicted by less (ours)
+ALONE = 2.0  # logit that a pixel loses for each further margin, before anything is learned (ours)
 LOST = -3.0  # logit of "lost" before anything is learned: 5 % (ours)
 SUREST = 6.0  # the greatest logit, either way: a pixel is never given up for good (ours)
 GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; low light leaves 0.03)
@@ -51,20 +59,26 @@ class SensorRestorer(nn.Module):
         super().__init__()
         self.sensor, self.size, self.far = sensor, size, far
         channels = CHANNELS[sensor]
-        inputs = channels + (sensor == DEPTH)
+        inputs = 3 * channels + 1 + (sensor == DEPTH)
         self.net = UNet(inputs, 2 * channels + 1, width)
         self.refine = UNet(channels + 2, channels, width)
         self.gate = Gate(width)
+        self.alone = nn.Parameter(torch.tensor(ALONE))
         self.register_buffer("threshold", torch.zeros(()))
+
+    @property
+    def range(self) -> float:
+        """Levels of RGB, or metres of depth, that count as 1."""
+        return 255.0 if self.sensor == RGB else self.far
 
     def scaled(self, frames: Tensor) -> tuple[Tensor, Tensor]:
         """Frames [n, H, W, c] as they come to values [n, c, H, W] in [0, 1], and which pixels
         [n, 1, H, W] are a reading (of depth: finite and above 0)."""
         x = frames.permute(0, 3, 1, 2).float()
         if self.sensor == RGB:
-            return x / 255, torch.ones_like(x[:, :1])
+            return x / self.range, torch.ones_like(x[:, :1])
         valid = torch.isfinite(x) & (x > 0)
-        return torch.where(valid, x, 0.0).div(self.far).clamp(max=1), valid.float()
+        return torch.where(valid, x, 0.0).div(self.range).clamp(max=1), valid.float()
 
     def working(self, height: int, width: int) -> tuple[int, int]:
         """The size that frames of a size are worked on at: multiples of 8."""
@@ -82,18 +96,32 @@ class SensorRestorer(nn.Module):
     def forward(self, frames: Tensor, views: int) -> Restored:
         """Frames [n, H, W, c] as they come, every ``views`` of them one instant, all restored."""
         x, valid = self.scaled(frames)
-        less, read = self.small(x, valid)
-        maps, gate = self.judge(less, read, views)
-        return self._composed(x, valid, self.net.decode(maps), views, gate)
+        maps, outside, gate = self.judge(*self.small(x, valid), views)
+        return self._composed(x, valid, self._corrections(maps, outside), views, gate)
 
-    def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor]:
-        """The U-Net's maps and the gate's logits [instants] of frames at the working size."""
-        maps = self.net.encode(self.seen(x, valid), views)
-        return maps, self.gate(maps.stats, texture(x, valid), views)
+    def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor, Tensor]:
+        """Of frames at the working size: the U-Net's maps, how far each pixel is contradicted
+        [n, 1, h, w], in margins, and the gate's logits [instants]."""
+        shown, outside = self.seen(x, valid, views)
+        maps = self.net.encode(shown, views)
+        return maps, outside, self.gate(maps.stats, texture(x, valid), views)
 
-    def seen(self, x: Tensor, valid: Tensor) -> Tensor:
-        """What goes into the U-Net."""
-        return torch.cat([x * 2 - 1, valid], 1) if self.sensor == DEPTH else x * 2 - 1
+    def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
+        """What goes into the U-Net: the frame, of depth where it reads something, and how far
+        below and above it the other views of its panorama are; and how far it lies outside."""
+        own = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
+        if not ring.is_ring(views, *x.shape[-2:]):
+            none = torch.zeros_like(x[:, :1])
+            return torch.cat([*own, torch.zeros_like(x), torch.zeros_like(x), none], 1), none
+        low, high, seen = ring.compared(x, valid, self.sensor == DEPTH)
+        off = torch.maximum(low - x, x - high).clamp(min=0).amax(1, keepdim=True)
+        outside = (off / MARGIN[self.sensor] - 1).clamp(min=0)
+        return torch.cat([*own, (low - x) * 2, (high - x) * 2, seen], 1), outside
+
+    def _corrections(self, maps: Encoded, outside: Tensor) -> Tensor:
+        """Gain, bias and how surely lost each pixel is, at the working size."""
+        gain_bias, lost = self.net.decode(maps).tensor_split([-1], 1)
+        return torch.cat([gain_bias, lost + self.alone * outside], 1)
 
     def _composed(
         self, x: Tensor, valid: Tensor, maps: Tensor, views: int, gate: Tensor
@@ -125,18 +153,18 @@ class SensorRestorer(nn.Module):
         else as they are."""
         views = len(frames)
         x, valid = self.scaled(frames)
-        maps, gate = self.judge(*self.small(x, valid), views)
+        maps, outside, gate = self.judge(*self.small(x, valid), views)
         if not bool(gate > self.threshold):
             return False, frames
-        made = self._composed(x, valid, self.net.decode(maps), views, gate)
+        made = self._composed(x, valid, self._corrections(maps, outside), views, gate)
         return True, self.unscaled(made.out)
 
     def unscaled(self, out: Tensor) -> Tensor:
         """Values [n, c, H, W] as the sensor gives them: uint8, or metres above 0."""
         out = out.clamp(0, 1).permute(0, 2, 3, 1)
         if self.sensor == RGB:
-            return (out * 255).round().to(torch.uint8)
-        return (out * self.far).clamp(min=1e-3)
+            return (out * self.range).round().to(torch.uint8)
+        return (out * self.range).clamp(min=1e-3)
 
 
 def _resized(x: Tensor, size: tuple[int, int] | torch.Size) -> Tensor:

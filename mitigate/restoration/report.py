@@ -2,7 +2,8 @@
 
     python -m mitigate.restoration.report checkpoints/restorer --split val_seen --suite unseen_val
 
-Errors are means over pixels: RGB in levels of 255, depth in centimetres. How much of an agent's
+Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it
+is off by less than ``RIGHT`` of the range. How much of an agent's
 success comes back is for `python -m mitigate.evaluate restore=FOLDER` to say.
 """
 
@@ -34,19 +35,23 @@ from mitigate.encoders.frames import collect
 from mitigate.encoders.sources import UNSEEN
 from mitigate.evaluation.bootstrap import Estimate, mean, share
 from mitigate.evaluation.conditions import conditions
+from mitigate.restoration.frames import RIGHT
 from mitigate.restoration.restorer import Restorer, load_restorer
 from mitigate.worlds.episodes import read_episodes
 
-UNITS = {RGB: 1.0, DEPTH: 100.0}  # levels of 255; centimetres
+UNITS = {RGB: 1.0, DEPTH: 100.0}  # of the range: levels; metres as centimetres
 SHOWN = (0, 1, 2)  # views of an instant in the picture
 SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names beside it
 
 
 class Score(NamedTuple):
-    """Mean error before and after, and the share of instants that the gate had restored."""
+    """Mean error before and after, shares of right pixels before and after, and the share of
+    instants that the gate had restored."""
 
     before: Estimate
     after: Estimate
+    right_before: Estimate
+    right_after: Estimate
     restored: Estimate
 
 
@@ -99,10 +104,15 @@ def measure(
             for number, clean in enumerate(seen):
                 frames = _corrupted(clean, corruption, seed, number)[sensor]
                 made = restorer.restore(sensor, frames)
-                errors = [_error(sensor, part, clean[sensor]) for part in (frames, made)]
-                rows.append((*errors, made is not frames))
-            before, after, hit = np.array(rows, float).T
-            scores[sensor, corruption.name] = Score(mean(before), mean(after), share(hit))
+                far = restorer.parts()[sensor].range
+                off = [_off(part, clean[sensor], far) for part in (frames, made)]
+                errors = [float(part.mean()) * far * UNITS[sensor] for part in off]
+                right = [float((part < RIGHT).mean()) for part in off]
+                rows.append((*errors, *right, made is not frames))
+            before, after, right, kept, hit = np.array(rows, float).T
+            scores[sensor, corruption.name] = Score(
+                mean(before), mean(after), mean(right), mean(kept), share(hit)
+            )
             progress.advance(note=corruption.name)
     return scores
 
@@ -112,12 +122,13 @@ def _corrupted(clean: dict[str, np.ndarray], corruption: Corruption, seed: int, 
     return corrupt_observation(frames, corruption, Key(seed, f"instant {n}", 0))
 
 
-def _error(sensor: str, frames: np.ndarray, clean: np.ndarray) -> float:
-    """Mean absolute difference where the clean frame reads something."""
-    valid = np.isfinite(clean) & (clean > 0) if sensor == DEPTH else np.ones(clean.shape, bool)
+def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
+    """How far each pixel is off, as a share of the range ``far``, mean over its colours, where the
+    clean frame reads something."""
+    valid = np.isfinite(clean) & (clean > 0) if clean.dtype != np.uint8 else True
     made = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
-    wanted = np.where(valid, clean, 0).astype(np.float64)
-    return float(np.abs(made - wanted)[valid].mean() * UNITS[sensor]) if valid.any() else 0.0
+    off = np.abs(made - np.where(valid, clean, 0)).mean(-1) / far
+    return off[np.broadcast_to(valid, clean.shape)[..., 0]]
 
 
 def table(scores: dict[tuple[str, str], Score], about: str) -> str:
@@ -125,11 +136,15 @@ def table(scores: dict[tuple[str, str], Score], about: str) -> str:
     parts = [f"# Frames before and after restoration\n\n{about}. In brackets 95 % intervals.\n"]
     for sensor in dict.fromkeys(sensor for sensor, _ in scores):
         unit = "levels of 255" if sensor == RGB else "cm"
-        lines = [f"| {sensor}: mean error, {unit} | before | after | instants restored, % |"]
-        lines.append("| --- | ---: | ---: | ---: |")
+        lines = [
+            f"| {sensor}: mean error, {unit}; right pixels, % | before | after | right before "
+            "| right after | instants restored, % |",
+            "| --- | ---: | ---: | ---: | ---: | ---: |",
+        ]
         for (own, name), score in scores.items():
             if own == sensor:
-                cells = [_text(score.before), _text(score.after), _text(score.restored, 100)]
+                shares = (score.right_before, score.right_after, score.restored)
+                cells = [_text(score.before), _text(score.after), *(_text(s, 100) for s in shares)]
                 lines.append(f"| {' | '.join([title(name), *cells])} |")
         parts.append("\n".join(lines) + "\n")
     return "\n".join(parts)

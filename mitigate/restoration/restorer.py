@@ -112,7 +112,7 @@ class Restorer(nn.Module):
         net, views = self._net(sensor), self._views(sensor, np.asarray(frame))
         with torch.inference_mode():
             x, valid = net.scaled(torch.from_numpy(views))
-            return float(net.judge(*net.small(x, valid), len(views))[1] - net.threshold)
+            return float(net.judge(*net.small(x, valid), len(views))[2] - net.threshold)
 
     def _net(self, sensor: str) -> SensorRestorer:
         if sensor not in self.nets:

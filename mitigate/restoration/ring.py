@@ -1,4 +1,4 @@
-"""What one view of a panorama has lost, taken from the views beside it, and from around a hole.
+"""What the views of a panorama say of each other: where they disagree, and what one has lost.
 
 The views share one centre and overlap, so up to four others show a point that a view should show.
 """
@@ -6,6 +6,7 @@ The views share one centre and overlap, so up to four others show a point that a
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import lru_cache
 
 import torch
@@ -42,6 +43,38 @@ def is_ring(views: int, height: int, width: int) -> bool:
     return views == VIEWS and height == width
 
 
+def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor, Tensor]:
+    """The least and the greatest of what the other views of each panorama show of every pixel.
+
+    A direction is seen by three views or more, so whoever lies outside of the two is alone with it.
+
+    Args: values float [P * 12, c, s, s] in [0, 1], of depth along each view's axis. valid
+    [P * 12, 1, s, s]: which of them are a reading.
+    Returns least, greatest [P * 12, c, s, s], the values themselves where no other view has a
+    reading, and whether one has, [P * 12, 1, s, s] in 0 and 1.
+    """
+    low, high = torch.full_like(values, torch.inf), torch.full_like(values, -torch.inf)
+    for value, sure, scale in _turned(torch.cat([values * valid, valid], 1)):
+        shown = (value / sure.clamp(min=0.5) / (scale if depth else 1.0)).clamp(max=1)
+        low = torch.where(sure > 0.5, torch.minimum(low, shown), low)
+        high = torch.where(sure > 0.5, torch.maximum(high, shown), high)
+    seen = torch.isfinite(low)
+    return torch.where(seen, low, values), torch.where(seen, high, values), seen[:, :1].float()
+
+
+def _turned(maps: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
+    """Of each neighbour, in the view's own frame: its ``maps`` [P * 12, c + 1, s, s] but the last;
+    that last, which says how much they count; and the metres along its axis for one along the own.
+    """
+    grid, ahead = (part.to(maps.device) for part in neighbours(maps.shape[-1]))
+    ring = maps.unflatten(0, (-1, VIEWS))
+    shifts = [sign * step for step in STEPS for sign in (1, -1)]
+    for shift, turned, scale in zip(shifts, grid, ahead, strict=True):
+        rolled = ring.roll(shift, 1).flatten(0, 1)
+        seen = F.grid_sample(rolled, turned.expand(len(rolled), -1, -1, -1), align_corners=False)
+        yield seen[:, :-1], seen[:, -1:], scale
+
+
 def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor, Tensor]:
     """What the other views of each panorama say of every pixel.
 
@@ -49,15 +82,9 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
     anything. trust [P * 12, 1, s, s] in [0, 1]: which of them are to be believed.
     Returns their mean [P * 12, c, s, s] and how sure it is, [P * 12, 1, s, s] in [0, 1).
     """
-    grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
-    maps = torch.cat([values * trust, trust], 1).unflatten(0, (-1, VIEWS))
-    shifts = [sign * step for step in STEPS for sign in (1, -1)]
     total = torch.zeros_like(values)
     weight = torch.zeros_like(trust)
-    for shift, turned, scale in zip(shifts, grid, ahead, strict=True):
-        ring = maps.roll(shift, 1).flatten(0, 1)
-        seen = F.grid_sample(ring, turned.expand(len(ring), -1, -1, -1), align_corners=False)
-        value, sure = seen[:, :-1], seen[:, -1:]
+    for value, sure, scale in _turned(torch.cat([values * trust, trust], 1)):
         total = total + value * sure / (scale if depth else 1.0)
         weight = weight + sure.square()
     return total / (weight + 1e-4), weight / (weight + SURE)

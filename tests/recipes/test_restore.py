@@ -81,7 +81,10 @@ def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
 
 def test_what_is_better_on_the_mean_but_blurs_right_pixels_is_not_wanted():
     nothing = torch.zeros(5, 1, 1)
-    before, after = torch.tensor([0.2, 0.2, 0.2, 0.0, 0.2]), torch.tensor([0.1, 0.1, 0.19, 0.1, 0.3])
+    before, after = (
+        torch.tensor([0.2, 0.2, 0.2, 0.0, 0.2]),
+        torch.tensor([0.1, 0.1, 0.19, 0.1, 0.3]),
+    )
     spent = torch.tensor([0.0, 0.5, 0.0, 0.5, 0.0])
     hit, counted = Judged(nothing, nothing, before, after, spent).wanted
     assert hit.tolist() == [True, False, False, False, False]

@@ -98,6 +98,49 @@ def test_the_neighbours_show_what_a_view_has_lost(panorama, sensor):
     assert error < (0.35 if sensor == RGB else 0.05) * (values[0] - values[0].mean()).abs().mean()
 
 
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_the_views_of_a_panorama_tell_which_of_them_lies(panorama, sensor):
+    values = torch.from_numpy(panorama[sensor]).float().permute(0, 3, 1, 2)
+    values = (values / (255 if sensor == RGB else 10)).clamp(max=1)
+    valid = torch.ones_like(values[:, :1])
+    wrong = values.clone()
+    wrong[3, :, 20:40, 20:40] = (wrong[3, :, 20:40, 20:40] + 0.5) % 1
+
+    def outside(shown):
+        low, high, seen = ring.compared(shown, valid, sensor == DEPTH)
+        assert seen.mean() > 0.95
+        return (low - shown).clamp(min=0) + (shown - high).clamp(min=0)
+
+    before, after = outside(values), outside(wrong)
+    assert before.mean() < (0.04 if sensor == RGB else 0.002)
+    assert after[3, :, 22:38, 22:38].mean() > 0.25
+    others = [v for v in range(12) if v != 3]
+    assert after[others].mean() < before[others].mean() + 0.01
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_a_speck_that_no_other_view_shows_goes_before_anything_is_learned(
+    untrained, panorama, sensor
+):
+    rng, clean = np.random.default_rng(0), panorama[sensor]
+    specks = rng.random(clean.shape[:3]) < 0.05
+    frames = clean.copy()
+    frames[specks] = np.where(clean[specks] > clean.max() / 2, clean.max() * 0.02, clean.max())
+    made = untrained.restore(sensor, frames)
+    before, after = (np.abs(f.astype(float) - clean)[specks].mean() for f in (frames, made))
+    assert after < 0.35 * before
+    alone = untrained.restore(sensor, frames[4])
+    assert np.abs(alone.astype(float) - frames[4])[specks[4]].mean() < 0.1 * before
+
+
+def test_what_no_other_view_shows_is_compared_with_nothing():
+    values, valid = torch.rand(12, 1, 16, 16), torch.zeros(12, 1, 16, 16)
+    valid[5] = 1
+    low, high, seen = ring.compared(values, valid, True)
+    assert not seen[5].any() and torch.equal(low[5], values[5]) and torch.equal(high[5], values[5])
+    assert seen[4].any() and seen[6].any()
+
+
 def test_a_hole_takes_the_mean_around_it():
     values = torch.zeros(1, 1, 32, 32)
     values[..., 16:] = 1.0
@@ -175,7 +218,7 @@ def card_with(**changed):
         (card_with(width=16), "do not fit"),
         (card_with(far="many"), "far must be metres"),
         (card_with(sensors=["rgb", "sound"]), "a list of rgb, depth"),
-        (card_with(format=2), "format 1"),
+        (card_with(format=1), "format 2"),
         (lambda folder: (folder / "card.json").unlink(), "card.json missing"),
     ],
 )
