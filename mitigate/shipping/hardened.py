@@ -174,13 +174,13 @@ def read_card(folder: Path) -> dict[str, Any]:
             "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`."
         )
     card = read_json(file, _AGAIN)
-    if not isinstance(card, dict) or card.get("format") != FORMAT:
-        raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {_AGAIN}")
-    if "sha256" not in card:
+    if isinstance(card, dict) and "format" in card and "sha256" not in card:
         raise ValueError(
             f"{file} is the card of another kind of folder, such as a restorer (restore=...): name "
             "a hardened checkpoint (checkpoints/hardened/...)."
         )
+    if not isinstance(card, dict) or card.get("format") != FORMAT:
+        raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {_AGAIN}")
     if card["sha256"] != card_sha(card):
         raise ValueError(
             f"{file} does not have the sha256 that it states: it was changed. {_AGAIN}"
