@@ -19,8 +19,9 @@ from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import Told, without_path
 from mitigate.bridge.server import Listener
 from mitigate.bridge.subset import Subset
-from mitigate.bridge.verdict import episodes, lacking
+from mitigate.bridge.verdict import lacking
 from mitigate.core.files import atomic_text
+from mitigate.core.names import counted
 from mitigate.core.signals import unbroken
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
@@ -291,7 +292,7 @@ class Cell:
         twice = f", {told.again} ended twice (the first counts)" if told.again else ""
         silent = len(told.ends) - len({row["episode_id"] for row in found})
         left += f", {silent} without a result" if silent and found else ""
-        return f"{episodes(len(told.ends))}{rate}{left}{twice}"
+        return f"{counted(len(told.ends), 'episode')}{rate}{left}{twice}"
 
 
 def _filled(word: str, values: dict[str, str]) -> str:

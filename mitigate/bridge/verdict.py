@@ -71,7 +71,7 @@ def _unfinished(cell: Cell, told: Told) -> str:
     """What if episodes are not there, or say nothing."""
     if told.lost:
         return (
-            f"the command ended, but {episodes(len(told.lost))} "
+            f"the command ended, but {counted(len(told.lost), 'episode')} "
             f"{'was' if len(told.lost) == 1 else 'were'} left in the middle, such as "
             f"{told.lost[0]}: a process of it died, or its loop gave up. Run again; the "
             f"condition is measured anew. {CRASH}{cell.said()}"
@@ -91,26 +91,23 @@ def _unfinished(cell: Cell, told: Told) -> str:
     beyond = cell.beyond()
     if beyond:
         return (
-            f"{episodes(len(beyond))} ended under it that clean's run lacks, such as {beyond[0]}: "
+            f"{counted(len(beyond), 'episode')} ended under it that clean's run lacks, such as "
+            f"{beyond[0]}: "
             "a process of clean's died or gave up before its first step, or the command draws its "
             "episodes at random (fix its seed, and choose some by episodes=). Run again; clean is "
             f"measured anew, too. {CRASH}"
         )
     if not cell.rows():
         return (
-            f"of {episodes(len(told.ends))} that ended none said how it went, so there is no row: "
+            f"of {counted(len(told.ends), 'episode')} that ended none said how it went, so there is "
+            "no row: "
             "the metrics hold no success, and neither they nor the simulator a distance to a goal. "
             "Add the Success measure to the task, or call episode.finish(success=...)."
         )
     return ""
 
 
-def episodes(count: int) -> str:
-    """Return "1 episode", "2 episodes"."""
-    return counted(count, "episode")
-
-
 def lacking(cell: Cell, missing: list[str]) -> str:
     """Return "3 of clean's 6 episodes are missing"."""
     verb = "is" if len(missing) == 1 else "are"
-    return f"{len(missing)} of clean's {episodes(len(cell.of_clean()))} {verb} missing"
+    return f"{len(missing)} of clean's {counted(len(cell.of_clean()), 'episode')} {verb} missing"
