@@ -99,8 +99,8 @@ def _unfinished(cell: Cell, told: Told) -> str:
         )
     if not cell.rows():
         return (
-            f"of {counted(len(told.ends), 'episode')} that ended none said how it went, so there is "
-            "no row: "
+            f"of {counted(len(told.ends), 'episode')} that ended none said how it went, so there "
+            "is no row: "
             "the metrics hold no success, and neither they nor the simulator a distance to a goal. "
             "Add the Success measure to the task, or call episode.finish(success=...)."
         )
