@@ -4,7 +4,8 @@
         + w_right mean of e / (e + RIGHT), e = |out - clean| of a pixel        (out, and unrefined)
 
 The last counts how many pixels are wrong rather than by how much: what is seen rightly beside
-drops, stripes or noise is to stay as it was. RGB counts in [0, 1], depth in metres over the range;
+drops, stripes or noise is to stay as it was. In the first term depth that is too far counts
+``w_far`` times: a way that is not there costs a walk, one that is not seen a detour. RGB counts in [0, 1], depth in metres over the range;
 pixels of depth that read nothing in the clean frame do not count. Nothing of an agent enters, so
 one restorer serves all. Its gate is trained afterwards, on maps that no longer change
 (``restore_gate.py``).
@@ -40,7 +41,7 @@ class Restore(Recipe):
     world, training: where poses come from (``training/poses.py``), or a folder of frames.
     schedule: of corruptions; those of the sensor are drawn. panoramas: of 12 views, a step.
     frames: read of a folder, once. single: share of steps whose views are shown one by one.
-    w_grad, w_right: of the loss above.
+    w_grad, w_right, w_far: of the loss above.
     """
 
     ahead = True
@@ -60,6 +61,7 @@ class Restore(Recipe):
         seed: int = 0,
         w_grad: float = 0.5,
         w_right: float = 0.05,
+        w_far: float = 1.0,
     ) -> None:
         super().__init__()
         if not 0 <= single <= 1 or panoramas < 1:
@@ -68,7 +70,7 @@ class Restore(Recipe):
                 f"({panoramas}) at least 1."
             )
         self.agent, self.modality, self.single, self.seed = agent, modality, single, seed
-        self.w_grad, self.w_right = w_grad, w_right
+        self.w_grad, self.w_right, self.w_far = w_grad, w_right, w_far
         agent.requires_grad_(False)
         self.net: SensorRestorer = agent.parts()[modality].requires_grad_(True)
         self.net.gate.requires_grad_(False)
@@ -117,12 +119,10 @@ class Restore(Recipe):
     def _error(self, out: Tensor, wanted: Tensor, valid: Tensor) -> Tensor:
         """L1 at all scales, that of the image gradients, and the share of wrong pixels."""
         total = out.new_zeros(())
-        difference, weight = (out - wanted) * valid, valid
-        for scale in SCALES:
-            if scale > 1:
-                difference, weight = (F.avg_pool2d(part, scale) for part in (difference, weight))
-            total = total + difference.abs().mean() / len(SCALES)
         difference = (out - wanted) * valid
+        charged = torch.where(difference > 0, self.w_far * difference, difference)
+        for scale in SCALES:
+            total = total + F.avg_pool2d(charged, scale).abs().mean() / len(SCALES)
         for axis in (2, 3):
             near = valid.narrow(axis, 1, valid.shape[axis] - 1) * valid.narrow(
                 axis, 0, valid.shape[axis] - 1
