@@ -93,7 +93,7 @@ COMMANDS = {
         "drives/ episodes=3 form=mcap",
     ),
     "export": Command(
-        "mitigate.shipping.export",
+        "mitigate.shipping.export_command",
         "write the agent of a run as a hardened checkpoint",
         "runs/ts_distill-s0.6-seed0 mine",
     ),

@@ -5,10 +5,10 @@
 
 The last counts how many pixels are wrong rather than by how much: what is seen rightly beside
 drops, stripes or noise is to stay as it was. In the first term depth that is too far counts
-``w_far`` times: a way that is not there costs a walk, one that is not seen a detour. RGB counts in [0, 1], depth in metres over the range;
-pixels of depth that read nothing in the clean frame do not count. Nothing of an agent enters, so
-one restorer serves all. Its gate is trained afterwards, on maps that no longer change
-(``restore_gate.py``).
+``w_far`` times: a way that is not there costs a walk, one that is not seen a detour. RGB counts in
+[0, 1], depth in metres over the range; pixels of depth that read nothing in the clean frame do not
+count. Nothing of an agent enters, so one restorer serves all. Its gate is trained afterwards, on
+maps that no longer change (``restore_gate.py``).
 """
 
 from __future__ import annotations

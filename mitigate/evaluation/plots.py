@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.grid import BLOCKS, Grid
+from mitigate.evaluation.blocks import BLOCKS
+from mitigate.evaluation.grid import Grid
 from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["RdYlGn"]

@@ -11,8 +11,9 @@ from pathlib import Path
 
 from mitigate.core.files import atomic_text
 from mitigate.core.names import counted, markdown_of
+from mitigate.evaluation.blocks import PROMPT_ONLY, meant
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
-from mitigate.evaluation.grid import METRICS, PROMPT_ONLY, Grid, meant
+from mitigate.evaluation.grid import METRICS, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections

@@ -11,18 +11,9 @@ import numpy as np
 
 from mitigate.corruptions.registry import title
 from mitigate.evaluation import bootstrap
+from mitigate.evaluation.blocks import SUITE, by_kind, halves, meant
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import (
-    METRICS,
-    SUITE,
-    Gap,
-    Grid,
-    Retention,
-    by_kind,
-    grids,
-    halves,
-    meant,
-)
+from mitigate.evaluation.grid import METRICS, Gap, Grid, Retention, grids
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 

@@ -6,8 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mitigate.safeguard import gate, masks, rules
-from mitigate.safeguard.formal_words import FORMAL, formal
-from mitigate.safeguard.manners import plainer
+from mitigate.safeguard.manners import plainer, restyled
 from mitigate.safeguard.object_goal import object_goal
 from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
 from mitigate.safeguard.refusals import refusal
@@ -88,7 +87,7 @@ class Draft:
 
     def _say_orders(self) -> None:
         """Say orders of a manner of speaking in plain words."""
-        if not _restyled(self.repaired):
+        if not (self.styled or restyled(self.repaired)):
             return
         plain = plainer(self.repaired)
         if plain != self.repaired:
@@ -173,5 +172,5 @@ def _untouched(text: str, tagger: Tags | None) -> bool:
 
 
 def _restyled(text: str) -> bool:
-    """Return whether ``text`` shows marks of a manner of speaking, or formal sayings."""
-    return rules.style_marks(text) >= MARKS or formal(text) >= FORMAL
+    """Return whether ``text`` shows marks or sayings of a manner of speaking."""
+    return rules.style_marks(text) >= MARKS or restyled(text)

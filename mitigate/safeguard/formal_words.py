@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 FORMAL = 2  # different formal sayings from which a text counts as restyled (ours)
 _ENDS = r"(?= ?(?:[.,;:!?]|$)| (?:and|then|at|before|after|when|once|into|through|past|as|until)\b)"
-_BEFORE_WAY = (
+# in front of a way: "proceed" {past}
+BEFORE_WAY = (
     r"(?= (?:to|towards?|into|in|past|through|along|down|up|across|around|round|out|over|onto|"
     r"beyond|between|straight|forwards?|ahead|inside|outside|beneath|under|via|by)\b)"
 )
@@ -46,7 +47,7 @@ _DONE = {
 _FORMAL = (
     (rf"(?:effect|execute|perform) a turn {_TO_SIDE}\b", r"turn \1"),
     (r"(?:betake yourself|convey yourself|direct yourself|advance|navigate|transition|journey)"
-     rf"{_BEFORE_WAY}", "go"),
+     rf"{BEFORE_WAY}", "go"),
     (r"(?:egress|depart) (?:through|via|by)\b", "go out through"),
     (r"(?:egress|depart(?: from)?|vacate)(?= (?:the|this|your|that)\b)", "leave"),
     (r"traverse(?= (?:the|this|that)\b(?! (?:\w+ )?(?:stairs?|staircase|steps)\b))", "go through"),
@@ -68,7 +69,7 @@ _FORMAL = (
     (r"halt\b(?! (?:sign|line))", "stop"),
     (r"prior to(?= (?:the|a|an|reaching|entering|passing|that|it)\b)", "before"),
     (r"adjacent to\b", "next to"),
-    (rf"proceed{_BEFORE_WAY}", "go"),
+    (rf"proceed{BEFORE_WAY}", "go"),
     (r"approximately\b", "about"),
     (r"(?:subsequently|thereafter|thereupon),?(?= [a-z])", "then"),
     (r"(?:upon|on) (?:reaching|arriv(?:al|ing) at)(?= (?:the|a|an|that|this)\b)", "at"),
@@ -79,7 +80,7 @@ _COMMON = (
     (rf"(?:turn|reorient|pivot|rotate)(?: yourself)? {_TO_SIDE}{_ENDS}", r"turn \1"),
     (rf"reverse (?:your |the )?(?:course|direction){_ENDS}", "turn around"),
     (r"turn (?:fully|completely|entirely|all the way) around\b", "turn around"),
-    (rf"(?:make your way|take yourself){_BEFORE_WAY}", "go"),
+    (rf"(?:make your way|take yourself){BEFORE_WAY}", "go"),
     (r"descend(?= (?:the|this|that|those|a|one|two)\b)", "go down"),
     (r"enter into\b", "enter"),
     (r"continue on your way\b", "continue"),
@@ -91,14 +92,15 @@ _COMMON = (
 )  # fmt: skip
 
 
-def _compiled(sayings: Sequence[tuple[str, str]]) -> tuple[tuple[re.Pattern[str], str], ...]:
+def compiled(sayings: Sequence[tuple[str, str]]) -> tuple[tuple[re.Pattern[str], str], ...]:
+    """Return patterns and what is said in their place, to be found from a word's begin on."""
     return tuple(
         (re.compile(rf"\b(?:{pattern})", re.IGNORECASE), said) for pattern, said in sayings
     )
 
 
-_MARKS = _compiled(_FORMAL)
-_SAYINGS = (*_MARKS, *_compiled(_COMMON))
+_MARKS = compiled(_FORMAL)
+_SAYINGS = (*_MARKS, *compiled(_COMMON))
 _BEGINS = re.compile(
     r"\b(?:initiate (?:movement|motion|navigation)|commence|begin|start) by (?P<verb>[a-z]+ing)\b",
     re.IGNORECASE,

@@ -11,11 +11,10 @@ from __future__ import annotations
 import re
 
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard import gate
-from mitigate.safeguard.formal_words import FORMAL, formal, in_plain_words
+from mitigate.safeguard import chatty_words, formal_words, gate
 from mitigate.safeguard.neighbours import SEEKS, STOPS
 from mitigate.safeguard.steps import MOVES, STEP
-from mitigate.safeguard.text import sentences, words
+from mitigate.safeguard.text import MASK, sentences, words
 
 _GREETS = (
     r"(?:(?:(?:dear|esteemed|honou?red|valued|respected) \w+(?: (?:or|and) \w+)?|hello|hi|hey|"
@@ -26,8 +25,9 @@ _JOINS = (
     r"(?:(?:and|then|next|now|thereafter|thereupon|subsequently|afterwards?|finally|ultimately|"
     r"lastly|initially|first(?:ly)?|secondly|thirdly|(?:following|after) (?:this|that|which)|"
     r"at (?:this|that|which) (?:juncture|point|stage|time)|upon (?:completion|doing so)|once done|"
-    r"to (?:commence|begin|start|conclude|end|finish|complete the (?:task|route))|"
-    r"in (?:conclusion|closing)|at the outset|(?:task )?briefing|(?:navigation )?procedure|"
+    r"to (?:commence|begin|start|conclude|end|finish|complete the (?:task|route)|get going|"
+    r"start off|finish (?:off|up))|let's (?:begin|start|go)|okay|alright|"
+    r"(?:um|uh|er|erm|hm+)|in (?:conclusion|closing)|at the outset|(?:task )?briefing|(?:navigation )?procedure|"
     r"having done so)(?: with)?[,:]? )*"
 )
 _POLITE = r"(?:kindly|respectfully|further|hereby|politely|please|then|now|next|also)"
@@ -62,15 +62,23 @@ _ASKED = re.compile(r"\b(?:kindly|(?:requested|asked|advised|invited) to)\b", re
 _PLAIN_JOINS = bag("and then next now first finally after that this so")
 
 
+def restyled(text: str) -> bool:
+    """Return whether a text has as many formal sayings, or chatty ones, as plain ones never do."""
+    formal = formal_words.formal(text) >= formal_words.FORMAL
+    return formal or chatty_words.chatty(text) >= chatty_words.CHATTY
+
+
 def plainer(text: str) -> str:
     """Return a text with its orders in plain words; ``text`` itself if they are plain."""
     said, found = text, sentences(text)
-    if not any(_mannered(sentence) for sentence in found) and formal(text) < FORMAL:
+    if not restyled(text) and not any(_mannered(sentence) for sentence in found):
         return text
-    for sentence in found:
-        plain = _plain(sentence)
-        last = sentence is found[-1]
-        if plain != sentence and not gate.rewrite_refused(sentence, plain, last):
+    for place, sentence in enumerate(found):
+        plain, last = _plain(sentence), sentence is found[-1]
+        less = _less(said, sentence)
+        if _cheers(sentence, not place, last) and not gate.result_refused(said, less):
+            said = less
+        elif plain != sentence and not gate.rewrite_refused(sentence, plain, last):
             said = said.replace(sentence, plain, 1)
     return said
 
@@ -84,11 +92,26 @@ def _mannered(sentence: str) -> bool:
     return any(word not in _PLAIN_JOINS for word in before)
 
 
+def _cheers(sentence: str, first: bool, last: bool) -> bool:
+    """Return whether a sentence exclaims what tells nothing of the way ("You've got this!"), or
+    says that all is told."""
+    if chatty_words.closing(sentence):
+        return last and not first
+    if not sentence.endswith("!") or gate.weight(sentence) or MASK.search(sentence):
+        return False
+    return not gate.removal_refused(sentence, 0.0, first, last)
+
+
+def _less(text: str, sentence: str) -> str:
+    before, _, behind = text.partition(sentence)
+    return f"{before.rstrip()} {behind.lstrip()}".strip()
+
+
 def _plain(sentence: str) -> str:
     """Return a sentence without what stands before its verbs, and without verbs in many words."""
     frame = _FRAME.match(sentence)
     told = frame is not None and frame["verb"].lower() in _VERBS
     said = sentence[frame.start("rest") :] if frame and told else sentence
     said = _INSIDE.sub(lambda m: m["join"] if m["verb"].lower() in _VERBS else m[0], said)
-    said = in_plain_words(said)
+    said = formal_words.in_plain_words(chatty_words.in_plain_words(said))
     return said[:1].upper() + said[1:] if sentence[:1].isupper() else said

@@ -9,12 +9,13 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import Edited
 from mitigate.safeguard.neighbours import STOPS, side_first
-from mitigate.safeguard.plain_words import PHRASES
+from mitigate.safeguard.plain_words import PHRASES, plain_form
 from mitigate.safeguard.speech import STOP
-from mitigate.safeguard.steps import DOORS, MARKS, PRONOUNS, TURNS, WAY, Step, steps
+from mitigate.safeguard.steps import DOORS, MARKS, MOVES, PRONOUNS, STEP, TURNS, WAY, Step, steps
 
 _PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
 _IT_IS = bag("it's it'll")  # a left
+_VERBS, _GOES = bag("go walk continue stop"), MOVES | STEP.keys() | STOPS
 _SHOWN = bag("see there's there'll there're there spot notice count")  # "there's a door" is no way
 # by which one stops, whether or not it is said so
 _RESTS = STOPS | bag(
@@ -52,6 +53,9 @@ def _backed(
         emphasis = following[:1] == ["right"] and following[1:2] and following[1] in _PLACED
         if not turning or emphasis or not ("around" in phrase or side_first(following)):
             return False
+    again = following[:1] != [] and following[0] in _GOES
+    if again and phrase[-1] in _VERBS and plain_form(following[0]) != phrase[-1]:
+        return False  # "go cruise", "stop wait"
     if "stop" in phrase and not (_RESTS & {*clause} or STOP.search(" ".join(clause))):
         return False
     for word in phrase:

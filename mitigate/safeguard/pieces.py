@@ -169,6 +169,10 @@ def without(text: str, out: Iterable[Piece]) -> str:
         kept.append(text[at : piece.start].strip())
         at = max(at, piece.end)
     kept.append(text[at:].strip())
+    for place in range(1, len(kept)):  # what a sentence begins with now
+        before = "".join(kept[:place]).rstrip("\"'”’) ")
+        if before.endswith((".", "!", "?")) and text[: out[place - 1].start].rstrip()[-1:] in ".!?":
+            kept[place] = kept[place][:1].upper() + kept[place][1:]
     left = _closed(" ".join(part for part in kept if part))
     return left[:1].upper() + left[1:] if not text.lstrip().startswith(left[:1]) else left
 

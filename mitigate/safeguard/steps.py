@@ -41,7 +41,7 @@ MOVES = (
         hop get gets getting slip duck trot dash scoot stride pace march amble saunter meander
         wandering mosey coming venture journey travel relocate roll drive run jog tiptoe squeeze
         nip cut zip pad aim return progress strolling stepping moves goes walks heads heading
-        maneuver manoeuvre transit back backing swing ease edge zoom dart breeze
+        maneuver manoeuvre transit back backing swing ease edge zoom dart breeze cruise
         """
     )
 ) - STEP.keys()

@@ -30,7 +30,7 @@ from mitigate.safeguard.phrases import unbacked
 from mitigate.safeguard.speech import SIDE_BACK, STOP
 from mitigate.safeguard.speech_words import speech_words
 from mitigate.safeguard.steps import MARKS, PRONOUNS, WAY, WHICH, same, steps, unknown_move, which
-from mitigate.safeguard.turns_told import turns_told
+from mitigate.safeguard.turns_told import motion_told, turns_told
 from mitigate.safeguard.wholes import span_of, spelled, together
 
 _AT = bag("in inside outside by from")  # where a thing is, unless a verb of motion stands before
@@ -114,6 +114,7 @@ def _mended(made: Edited, drop: Sequence[float]) -> None:
         if not any([*mended, *more]):
             break
     marks_kept(made)
+    motion_told(made)
 
 
 def _sayings(made: Edited) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, PLAIN, Edited
+from mitigate.safeguard.neighbours import STOPS
 from mitigate.safeguard.plain_words import plain_form
-from mitigate.safeguard.steps import DETERMINERS, MARKS, MOVES, TURNS, WAY
+from mitigate.safeguard.steps import DETERMINERS, MARKS, MOVES, STEP, TURNS, WAY
 
 _SIDES = bag("left right")
 _ORDINALS = bag("first second third fourth last next 1st 2nd 3rd")
@@ -24,6 +25,12 @@ _JOINS = bag("and or then") | frozenset(",.;")
 _DOES = bag("turns bends curves veers forks swings")  # what a thing does where one turns
 _SOON = bag("then slightly sharply gently just suddenly")
 _IT = bag("it that which")
+# with these a sentence begins that has lost its verb
+_WAYS = bag(
+    "into past through from out down up across along towards toward around back straight forward "
+    "upstairs downstairs onto"
+)
+_VERBS = MOVES | STEP.keys() | STOPS | TURNS | bag("is are be was has have see do")
 _THING = ("NOUN", "PROPN", "ADJ")  # a thing may be tagged as what comes before one
 _WHERE = bag("when once until till where if as")
 # who is told to turn
@@ -40,6 +47,14 @@ def turns_told(made: Edited) -> bool:
         if token.lower in _SIDES and made.kept(place) and not _place_name(made, place):
             changed |= _told(made, place)
     return changed
+
+
+def motion_told(made: Edited) -> None:
+    """Say "go" before a sentence that begins with a way and has no verb left ("Into the bath.")."""
+    said = made.said()
+    alone = said and not said[0].phrase and said[0].word in _WAYS
+    if alone and not any(one.word in _VERBS for one in said):
+        made.before[said[0].place] = NUMBER["go"]
 
 
 def _place_name(made: Edited, side: int) -> bool:

@@ -13,8 +13,8 @@ from mitigate.safeguard.speech import STOP
 _TOGETHER = re.compile(
     r"(?<![^ ])(?:(?:track|hunt)(?:ing|ed)? (?:one|it|that|them|those) down|as far as|in front of|"
     r"(?:above|below|beneath|underneath) (?:it|them|that|those)|"
-    r"(?:stop|wait|stay|stand|halt) (?:right |just )?(?:inside|outside|in there|out there|"
-    r"(?:on|in|by|under|behind) (?:it|that|them|those))|"
+    r"(?:stop|wait|stay|stand|halt) (?:for an? \w+ )?(?:right |just )?"
+    r"(?:inside|outside|in there|out there|(?:on|in|by|under|behind) (?:it|that|them|those))|"
     r"having \w+ed|having (?:left|gone|come|got|gotten|made|taken|found|been)|"
     r"parallel to|adjacent to|prior to|short of|clear of|next to|close to|on top of|out of|"
     r"away from|instead of|one more|once more|"

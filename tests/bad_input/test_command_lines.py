@@ -13,7 +13,7 @@ from mitigate import cli
 from mitigate.core import conf
 from mitigate.corruptions import episodes_command, frames_command
 from mitigate.evaluation import evaluate, table
-from mitigate.shipping import export
+from mitigate.shipping import export, export_command
 from mitigate.training import train
 from tests.bad_input.named import LONGEST
 from tests.bad_input.test_episode_files import GOOD
@@ -144,7 +144,7 @@ def test_table_refuses_what_is_no_rows(tmp_path, capsys, raw):
 )
 def test_export_asks_for_what_it_needs_and_no_more(monkeypatch, capsys, given, missing):
     monkeypatch.setattr(sys, "argv", ["mitigate export", *given])
-    status, told = said_by(export.main, capsys)
+    status, told = said_by(export_command.main, capsys)
     assert status == 2
     assert told.splitlines()[-1].endswith(f"the following arguments are required: {missing}")
 

@@ -11,7 +11,7 @@ from mitigate.safeguard import weights
 from mitigate.safeguard.choices import VERSION, identity, label
 from mitigate.safeguard.guard import open_safeguard
 
-SAID = "8406022c2479"  # hash of what the rules of VERSION make of the texts below
+SAID = "cbea624ecefd"  # hash of what the rules of VERSION make of the texts below
 TEXTS = (
     "Turn left at the red sofa, go through the door and stop in front of the sink.",
     "Look for the bed and wait next to it.",

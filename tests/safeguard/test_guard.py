@@ -65,7 +65,7 @@ def test_a_good_answer_is_taken():
     [
         ("Walk past the sofa. Turn right.", "directions"),
         ("Walk past the table. Turn left.", "landmark"),
-        ("Walk ten meters past the sofa.", "number"),
+        ("Walk ten meters past the sofa. Turn left.", "number"),
         (PLAIN + " And then walk on and on and on and on and on and on and on.", "longer"),
         ("", "left"),
         (None, "no answer in time"),

@@ -291,3 +291,21 @@ def test_what_parts_two_clauses_stays_unless_something_else_parts_them(marked, s
 )
 def test_what_was_done_before_and_how_one_stops_stay_told(marked, said):
     assert said in given(marked)
+
+
+@pytest.mark.parametrize(
+    "marked, said",
+    [
+        ("{Then just sneak} into the library.", "Go into the library."),
+        ("{You just go} past the sofa.", "Go past the sofa."),
+        ("Past the sofa is a lamp.", "Past the sofa is a lamp."),
+        ("From the bed, {you should} turn left.", "From the bed, turn left."),
+    ],
+)
+def test_a_sentence_without_a_verb_is_told_to_go(marked, said):
+    assert given(marked) == said
+
+
+def test_no_verb_is_put_before_another():
+    assert given("{Then just} <walk>cruise along the railing.") == "Cruise along the railing."
+    assert given("{And} <stop>wait {for me} by the pool.") == "Wait by the pool."

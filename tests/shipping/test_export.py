@@ -432,7 +432,7 @@ def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(place, tm
     weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
     for most in (weights // 2, weights + 1000):
         code = (
-            "import resource, signal, sys; from mitigate.shipping.export import main; "
+            "import resource, signal, sys; from mitigate.shipping.export_command import main; "
             f"resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most})); main()"
         )
         done = subprocess.run(

@@ -9,7 +9,7 @@ from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core import conf
 from mitigate.core.checkpoint import weights_sha
-from mitigate.shipping import export, others
+from mitigate.shipping import export, export_command, others
 from mitigate.training import train
 
 SMALL = ["agent.size=16", "env.size=16", "init=null", "trainer.steps=1", "workers=0"]
@@ -28,11 +28,11 @@ def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     cfg = conf.load_config("train", ["recipe=imitation", "debug=smoke", *options])
     cfg.runs = str(tmp_path)
     run = train.run(cfg)
-    (option,) = export._own_kind(run)  # what the command takes unless told
+    (option,) = export_command._own_kind(run)  # what the command takes unless told
     assert option == f"agent={kind.partition('_')[0]}"
     with pytest.raises(ValueError, match=option):
         export.export(run, "mine", out=tmp_path)
-    walks = export._walks_of(run, [option, "env.size=16"], None)
+    walks = export_command._walks_of(run, [option, "env.size=16"], None)
     folder = export.export(run, "mine", out=tmp_path, walks=walks)
     assert 'load_hardened("checkpoints/hardened/mine")' in (folder / "README.md").read_text()
     loaded = mitigate.load_hardened(folder)
@@ -49,11 +49,11 @@ def test_options_may_stand_behind_the_rows_and_a_wrong_one_is_explained(monkeypa
 
     command = ["export", "runs/a", "mine", "--rows", "rows.jsonl", "agent=policy", "env=corridor"]
     monkeypatch.setattr("sys.argv", command)
-    monkeypatch.setattr(export, "_walks_of", read)
+    monkeypatch.setattr(export_command, "_walks_of", read)
     with pytest.raises(SystemExit, match="enough"):
-        export.main()
+        export_command.main()
     assert given["options"] == ["agent=policy", "env=corridor"]
     monkeypatch.undo()
     monkeypatch.setattr("sys.argv", ["export", "runs/a", "mine", "agent=recurent"])
     with pytest.raises(SystemExit, match="Did you mean recurrent?"):
-        export.main()
+        export_command.main()

@@ -9,7 +9,8 @@ from typing import Any
 
 from mitigate.core.names import short
 from mitigate.corruptions.registry import HALVES
-from mitigate.evaluation.grid import BLOCKS, METRICS
+from mitigate.evaluation.blocks import BLOCKS
+from mitigate.evaluation.grid import METRICS
 
 LONGEST_NAME, LONGEST_TEXT = 200, 2000  # characters (ours)
 MOST_AGENTS, MOST_SENSORS, MOST_CONDITIONS = 100, 20, 500  # of an entry (ours)

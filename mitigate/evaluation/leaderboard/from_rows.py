@@ -11,7 +11,8 @@ from mitigate.core.names import counted, unknown
 from mitigate.core.observation import Sensor
 from mitigate.corruptions.registry import UNSEEN
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.grid import METRICS, SUITE
+from mitigate.evaluation.blocks import SUITE
+from mitigate.evaluation.grid import METRICS
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page.model import CLEAN, Numbers, numbers
 from mitigate.evaluation.rows import Row, identity

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from mitigate.corruptions.registry import AND, UNSEEN
+from mitigate.evaluation.blocks import BLOCKS, PROMPT_ONLY, SUITE, kind
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES
-from mitigate.evaluation.grid import BLOCKS, PROMPT_ONLY, SUITE, kind
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page import document

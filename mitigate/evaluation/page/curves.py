@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.grid import BLOCKS, METRICS, Grid
+from mitigate.evaluation.blocks import BLOCKS
+from mitigate.evaluation.grid import METRICS, Grid
 from mitigate.evaluation.page.model import numbers
 from mitigate.evaluation.sections import Section, label
 

@@ -19,7 +19,7 @@ import mitigate
 from mitigate.core.observation import FORWARD, STOP
 from mitigate.corruptions.registry import HALVES, unseen_names
 from mitigate.evaluation import rows as result_rows
-from mitigate.evaluation.grid import BLOCKS
+from mitigate.evaluation.blocks import BLOCKS
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import load

@@ -1,0 +1,75 @@
+"""Write a run's agent as a folder to ship: ``python -m mitigate.export runs/a my_agent``.
+
+``checkpoints/hardened/<name>`` gets the weights (or adapters and a reference to their base),
+``config.yaml``, ``program.pt2``, a card and a README. The folder is made aside, reloaded in a fresh
+process and renamed into place only if the outputs on a fixed probe are the same.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from mitigate.core import build, conf, settings
+from mitigate.evaluation import evaluate
+from mitigate.shipping import hardened, others
+from mitigate.shipping.export import HARDENED, export
+from mitigate.shipping.others import Walks
+
+
+def main() -> None:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(
+        prog="mitigate export",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("run", type=Path, help="a finished run folder, such as runs/...")
+    parser.add_argument("name", help="name of the folder to write")
+    parser.add_argument(
+        "overrides",
+        nargs="*",
+        default=[],  # or argparse counts them among those that are required
+        metavar="key=value",
+        help="of an agent of your own: agent=policy env=corridor, as for mitigate evaluate",
+    )
+    parser.add_argument("--config-dir", type=Path, help="where such configs are")
+    parser.add_argument(
+        "--out", type=Path, default=HARDENED, help=f"folder to write it in (default {HARDENED})"
+    )
+    parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
+    parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
+    parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
+    given = vars(parser.parse_intermixed_args())
+    overrides, configs = given.pop("overrides"), given.pop("config_dir")
+    given["rows"], more = conf.paths_and_options(given["rows"])
+    try:
+        chosen = [*overrides, *more] or _own_kind(given["run"])
+        if chosen:
+            given["walks"] = _walks_of(given["run"], chosen, configs)
+        folder = export(given.pop("run"), given.pop("name"), **given)
+    except (ValueError, OSError) as error:
+        sys.exit(f"error: {conf.said(error)}")
+    card = hardened.read_card(folder)
+    if card["latency_ms"]:
+        print(f"latency in ms: {json.dumps(card['latency_ms'])}")
+    print(f"wrote {folder}")
+
+
+def _own_kind(run: Path) -> list[str]:
+    """The option that names the agent of ``run`` where it is one of ours that has no programs."""
+    config = run / hardened.CONFIG
+    kind = hardened.kind_of(config) if config.is_file() else hardened.TARGET
+    name = "" if kind == hardened.TARGET else settings.named(kind)
+    return [f"agent={name}"] if name else []
+
+
+def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
+    """How to make the agent and the world that ``overrides`` name; the agent's settings are those
+    beside the run's weights, read as data."""
+    cfg = conf.composed("evaluate", overrides, configs)
+    node = build.settings_of(cfg.agent, str(run / "agent"), overrides)
+    listed = evaluate.episodes(cfg.env, cfg.split, others.WALKS)
+    return Walks(build.maker(node), build.maker(cfg.env.world), listed)
