@@ -27,7 +27,8 @@ _JOINS = (
     r"at (?:this|that|which) (?:juncture|point|stage|time)|upon (?:completion|doing so)|once done|"
     r"to (?:commence|begin|start|conclude|end|finish|complete the (?:task|route)|get going|"
     r"start off|finish (?:off|up))|let's (?:begin|start|go)|okay|alright|"
-    r"(?:um|uh|er|erm|hm+)|in (?:conclusion|closing)|at the outset|(?:task )?briefing|(?:navigation )?procedure|"
+    r"(?:um|uh|er|erm|hm+)|in (?:conclusion|closing)|at the outset|(?:task )?briefing|"
+    r"(?:navigation )?procedure|"
     r"having done so)(?: with)?[,:]? )*"
 )
 _POLITE = r"(?:kindly|respectfully|further|hereby|politely|please|then|now|next|also)"
