@@ -101,6 +101,13 @@ def test_of_equal_mean_errors_the_one_with_fewer_wrong_pixels_costs_less():
     assert few < all_ and float(recipe._error(wanted, wanted, valid)) == 0
 
 
+def test_depth_that_is_too_far_costs_more_than_what_is_too_near():
+    recipe = recipe_of(w_grad=0.0, w_right=0.0, w_far=3.0)
+    wanted, valid = torch.full((1, 1, 8, 8), 0.5), torch.ones(1, 1, 8, 8)
+    far, near = (float(recipe._error(wanted + off, wanted, valid)) for off in (0.1, -0.1))
+    assert far == pytest.approx(3 * near)
+
+
 def test_a_folder_of_frames_will_do(tmp_path):
     rng = np.random.default_rng(0)
     for scene in range(3):
