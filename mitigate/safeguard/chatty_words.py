@@ -8,7 +8,7 @@ import re
 from mitigate.safeguard.formal_words import BEFORE_WAY, compiled
 
 CHATTY = 2  # different chatty sayings from which a text counts as restyled (ours)
-_STEPS = "(?: (?:just|right|straight|on|back|over|along))?"
+_STEPS = "(?: (?:just|on|over))?"  # no way, no side
 _TO_WAY = rf"{_STEPS}{BEFORE_WAY}"
 _NICE = r"(?:(?:nice|quick|easy|little|lovely|cheerful|gentle|simple|cheeky) )*"
 _REST = r"(?:breather|rest|bit|moment|second|sec|minute|while)"

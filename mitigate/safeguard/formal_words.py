@@ -49,6 +49,7 @@ _FORMAL = (
     (r"(?:betake yourself|convey yourself|direct yourself|advance|navigate|transition|journey)"
      rf"{BEFORE_WAY}", "go"),
     (r"(?:egress|depart) (?:through|via|by)\b", "go out through"),
+    (r"egress from\b", "go out of"),
     (r"(?:egress|depart(?: from)?|vacate)(?= (?:the|this|your|that)\b)", "leave"),
     (r"traverse(?= (?:the|this|that)\b(?! (?:\w+ )?(?:stairs?|staircase|steps)\b))", "go through"),
     (r"circumnavigate(?= (?:the|this|that)\b)", "go around"),

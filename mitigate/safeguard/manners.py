@@ -110,9 +110,9 @@ def _less(text: str, sentence: str) -> str:
 
 def _plain(sentence: str) -> str:
     """Return a sentence without what stands before its verbs, and without verbs in many words."""
-    frame = _FRAME.match(sentence)
-    told = frame is not None and frame["verb"].lower() in _VERBS
-    said = sentence[frame.start("rest") :] if frame and told else sentence
+    said = formal_words.in_plain_words(chatty_words.in_plain_words(sentence))
+    frame = _FRAME.match(said)
+    if frame and frame["verb"].lower() in _VERBS:
+        said = said[frame.start("rest") :]
     said = _INSIDE.sub(lambda m: m["join"] if m["verb"].lower() in _VERBS else m[0], said)
-    said = formal_words.in_plain_words(chatty_words.in_plain_words(said))
     return said[:1].upper() + said[1:] if sentence[:1].isupper() else said
