@@ -79,7 +79,7 @@ def test_a_large_frame_keeps_its_detail_under_a_correction_computed_small():
     net = restorer.nets[RGB]
     with torch.no_grad():
         net.net.head.bias.view(-1, 4)[:3] = np.log(2.0)  # every gain is 2
-        net.net.head.bias.view(-1, 4)[6:] = -100.0  # nothing is lost
+        net.net.head.bias.view(-1, 4)[6] = -100.0  # nothing is lost
     frame = frames(RGB, 128, 128) // 2
     made = restorer.restore(RGB, frame)
     assert np.abs(made.astype(int) - 2 * frame.astype(int)).max() <= 1
@@ -131,18 +131,6 @@ def test_a_speck_that_no_other_view_shows_goes_before_anything_is_learned(
     assert after < 0.35 * before
     alone = untrained.restore(sensor, frames[4])
     assert np.abs(alone.astype(float) - frames[4])[specks[4]].mean() < 0.1 * before
-
-
-def test_a_colour_that_no_other_view_shows_goes_and_the_others_stay(untrained, panorama):
-    clean = panorama[RGB]
-    specks = np.random.default_rng(0).random(clean.shape[:3]) < 0.05
-    frames = clean.copy()
-    frames[specks, 0] = np.where(clean[specks, 0] > 127, 0, 255)
-    made = untrained.restore(RGB, frames)
-    before, after = (np.abs(f.astype(float) - clean)[specks] for f in (frames, made))
-    assert after[:, 0].mean() < 0.35 * before[:, 0].mean()
-    clear = untrained.restore(RGB, clean).astype(float)
-    assert np.abs(made - clear)[specks][:, 1:].mean() < 1
 
 
 def test_what_no_other_view_shows_is_compared_with_nothing():
