@@ -1,7 +1,7 @@
 """Train a restorer from pairs of corrupted and clean frames; no agent, label or action is needed.
 
     L = mean over scales of |out - clean| + w_grad |their image gradients|
-        + w_right mean of e / (e + RIGHT), e = |out - clean| of a pixel        (out, and unrefined)
+        + w_right mean of e / (e + RIGHT), e = |out - clean| of a pixel
 
 The last counts how many pixels are wrong rather than by how much: what is seen rightly beside
 drops, stripes or noise is to stay as it was. In the first term depth that is too far counts
@@ -32,7 +32,6 @@ from mitigate.worlds.world import TrainingEpisodes
 
 SCALES = (1, 4)  # pixels: errors of edges, and of surfaces (ours)
 RESTORER = "This recipe takes a restorer in an agent's place: agent=restorer (docs/restoration.md)."
-COARSE = 0.5  # weight of the frames before they are refined (ours)
 
 
 class Restore(Recipe):
@@ -106,15 +105,10 @@ class Restore(Recipe):
         with torch.autocast(frames.device.type, enabled=False):
             wanted, valid = self.net.scaled(clean)
             seen, _ = self.net.scaled(frames)
-            values = {
-                "out": self._error(made.out, wanted, valid),
-                "coarse": self._error(made.coarse, wanted, valid),
-                "before": ((seen - wanted).abs() * valid).mean(),
-                "after": ((made.out - wanted).abs() * valid).mean().detach(),
-            }
-            loss = values["out"] + COARSE * values["coarse"]
+            loss = self._error(made.out, wanted, valid)
+            before, after = (((x - wanted).abs() * valid).mean() for x in (seen, made.out.detach()))
         self._keep(frames, made.out, clean)
-        return {"loss": loss, **values}
+        return {"loss": loss, "before": before, "after": after}
 
     def _error(self, out: Tensor, wanted: Tensor, valid: Tensor) -> Tensor:
         """L1 at all scales, that of the image gradients, and the share of wrong pixels."""

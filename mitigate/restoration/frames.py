@@ -1,11 +1,10 @@
-"""The restorer of one sensor: judge, correct, fill what is lost, refine.
+"""The restorer of one sensor: judge, correct, fill what is lost.
 
     low, high = least and greatest of what the other views of the panorama show
     lost, gain, bias = U-Net(x, low - x, high - x) zero-initialised: at first nothing changes
     trust = sigmoid(-lost - alone * how far x lies outside of low and high)
     y = x gain + bias                              light, blur, noise
-    z = y where trusted, else what other views of the panorama show, else what is around
-    out = z + U-Net2(z, trust, sure)
+    out = y where trusted, else what other views of the panorama show, else what is around
 
 At sizes above the working size all but ``x`` and what other views show is computed small and
 enlarged, so detail stays.
@@ -35,11 +34,10 @@ GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; lo
 
 
 class Restored(NamedTuple):
-    """out, coarse [n, c, H, W]: the restored frames, and before they were refined; trust
-    [n, 1, H, W]; gate [instants]: logits of "corrupted"."""
+    """out [n, c, H, W]: the restored frames; trust [n, 1, H, W]; gate [instants]: logits of
+    "corrupted"."""
 
     out: Tensor
-    coarse: Tensor
     trust: Tensor
     gate: Tensor
 
@@ -60,7 +58,6 @@ class SensorRestorer(nn.Module):
         channels = CHANNELS[sensor]
         inputs = 3 * channels + 1 + (sensor == DEPTH)
         self.net = UNet(inputs, 2 * channels + 1, width)
-        self.refine = UNet(channels + 2, channels, width)
         self.gate = Gate(width)
         self.alone = nn.Parameter(torch.tensor(ALONE))
         self.register_buffer("threshold", torch.zeros(()))
@@ -131,18 +128,13 @@ class SensorRestorer(nn.Module):
         gain, bias, lost = maps.split([channels, channels, 1], 1)
         trust = (-SUREST * ((lost + LOST) / SUREST).tanh()).sigmoid() * valid
         y = (x * gain.clamp(*GAINS).exp() + bias).clamp(0, 1)
-        known, values, sure = trust, y, torch.zeros_like(trust)
+        known, values = trust, y
         if ring.is_ring(views, *full):
             other, sure = ring.from_neighbours(y, trust, self.sensor == DEPTH)
             values = y + (1 - trust) * sure * (other - y)
             known = trust + (1 - trust) * sure
         around = ring.from_around(values, known)
-        z = values + (1 - known) * (around - values)
-        told = [z * 2 - 1, trust, sure]
-        if full != small:
-            told = [_resized(part, small) for part in told]
-        more = self.refine(torch.cat(told, 1), views)
-        return Restored(z + (more if full == small else _resized(more, full)), z, trust, gate)
+        return Restored(values + (1 - known) * (around - values), trust, gate)
 
     # one instant, as an agent sees it ----------------------------------------------------------
 
