@@ -218,7 +218,7 @@ def card_with(**changed):
         (card_with(width=16), "do not fit"),
         (card_with(far="many"), "far must be metres"),
         (card_with(sensors=["rgb", "sound"]), "a list of rgb, depth"),
-        (card_with(format=1), "format 2"),
+        (card_with(format=1), "format 3"),
         (lambda folder: (folder / "card.json").unlink(), "card.json missing"),
     ],
 )
