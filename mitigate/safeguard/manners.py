@@ -12,9 +12,12 @@ import re
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import chatty_words, formal_words, gate
+from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.speech_words import speech_words
 from mitigate.safeguard.steps import MOVES, STEP
 from mitigate.safeguard.text import MASK, sentences, words
+from mitigate.safeguard.weights import STYLE
 
 _GREETS = (
     r"(?:(?:(?:dear|esteemed|honou?red|valued|respected) \w+(?: (?:or|and) \w+)?|hello|hi|hey|"
@@ -60,6 +63,11 @@ _VERBS = MOVES | STEP.keys() | STOPS | SEEKS | bag(
     """
 )  # fmt: skip
 _ASKED = re.compile(r"\b(?:kindly|(?:requested|asked|advised|invited) to)\b", re.IGNORECASE)
+# with these a sentence says more of what was told before ("The other one!")
+_POINTS = bag(
+    "one ones other way only if unless until till before after them those these both all not "
+    "never no room that inside outside"
+)
 _PLAIN_JOINS = bag("and then next now first finally after that this so")
 
 
@@ -94,13 +102,16 @@ def _mannered(sentence: str) -> bool:
 
 
 def _cheers(sentence: str, first: bool, last: bool) -> bool:
-    """Return whether a sentence exclaims what tells nothing of the way ("You've got this!"), or
-    says that all is told."""
+    """Return whether a sentence exclaims what tells nothing of the way ("You've got this!"), in
+    words that people say beside it, or says that all is told."""
     if chatty_words.closing(sentence):
         return last and not first
     if not sentence.endswith("!") or gate.weight(sentence) or MASK.search(sentence):
         return False
-    return not gate.removal_refused(sentence, 0.0, first, last)
+    said = words(sentence)
+    aside = not _POINTS & {*said} and {*said} <= speech_words() | FUNCTION | STYLE
+    told = gate.rewrite_refused(sentence, "") or gate.removal_refused(sentence, 0.0, first, last)
+    return aside and not told
 
 
 def _less(text: str, sentence: str) -> str:

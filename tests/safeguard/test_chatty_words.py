@@ -66,3 +66,10 @@ def test_a_sentence_that_lost_its_beginning_has_a_capital():
         .canonicalise(heard)
         .text.endswith("door. Stop at the edge of the pool.")
     )
+
+
+@pytest.mark.parametrize(
+    "said", ["Not the red one!", "The other way!", "All the way!", "Only if it is open!"]
+)
+def test_what_says_more_of_a_step_is_no_cheer(said):
+    assert said in plainer(f"Pop into the hall, then hang a left. {said} Stop by the lamp.")
