@@ -84,9 +84,9 @@ def plainer(text: str) -> str:
         return text
     for place, sentence in enumerate(found):
         plain, last = _plain(sentence), sentence is found[-1]
-        less = _less(said, sentence)
-        if _cheers(sentence, not place, last) and not gate.result_refused(said, less):
-            said = less
+        if _cheers(sentence, not place, last):
+            less = _less(said, sentence)
+            said = said if gate.result_refused(said, less) else less
         elif plain != sentence and not gate.rewrite_refused(sentence, plain, last):
             said = said.replace(sentence, plain, 1)
     return said
