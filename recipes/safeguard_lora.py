@@ -13,7 +13,7 @@ from torch import Tensor
 from mitigate.core.seeding import generator
 from mitigate.safeguard.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.safeguard.model import LanguageModel, collate
-from mitigate.training.recipe import Recipe
+from mitigate.training.recipe import Recipe, to_device
 
 Encoded = tuple[int, list[int], list[int]]  # of a pair: its number, prompt and completion
 _HELD = 10**9  # pairs from here on are for evaluation
@@ -99,5 +99,5 @@ class SafeguardLora(Recipe):
         """Loss and accuracy on pairs that training never draws."""
         pieces = [self.work(index) for index in range(_HELD, _HELD + 4 * self.pairs)]
         held = self.micro_batches(self._batch(pieces))
-        values = [self(part) for part in held]
+        values = [self(to_device(part, self.agent.device)) for part in held]
         return {n: float(sum(part[n] for part in values)) for n in ("loss", "accuracy")}

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
+import logging
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -34,8 +35,11 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     if gguf:
         given = {**gguf, "quantization_config": GgufConfig(dequantize=True)}
     given["trust_remote_code"] = False
-    # on CPUs plain attention trains these short texts faster than the fused kernel
-    how: dict[str, Any] = {} if torch.cuda.is_available() else {"attn_implementation": "eager"}
+    # plain attention: on CPUs it trains these short texts faster than the fused kernel, whose
+    # gradients of padded texts in bf16 were no numbers on a GPU (H200, torch 2.11)
+    how: dict[str, Any] = {"attn_implementation": "eager"}
+    # its products are of float16 whatever comes in, which it would say at every one of them
+    logging.getLogger("bitsandbytes.autograd").setLevel(logging.ERROR)
     with _explained(base, precision):
         tokenizer = AutoTokenizer.from_pretrained(place, trust_remote_code=False, **gguf)
         if precision == "int8" and gguf:  # bitsandbytes quantises a dense checkpoint, not GGUF

@@ -28,6 +28,7 @@ from mitigate.safeguard.tagger import (
     flags,
     only_with_plain_form,
     open_tagger,
+    placed,
     tagged,
 )
 
@@ -102,10 +103,9 @@ class Reader(nn.Module):
         if not found:
             return Tagged((), (), ())
         self.eval()
-        logits = [
-            [part[0] for part in self(self.collate([self.encode(found[i : i + LONGEST])]))]
-            for i in range(0, len(found), LONGEST)
-        ]
+        parts = [found[i : i + LONGEST] for i in range(0, len(found), LONGEST)]
+        read = [placed(self.collate([self.encode(part)]), self.act.weight.device) for part in parts]
+        logits = [[part[0].cpu() for part in self(batch)] for batch in read]
         acts, before, attack = (torch.cat(part) for part in zip(*logits, strict=True))
         return tagged(found, acts, before, attack.sigmoid().tolist(), SPEECH, LED)
 

@@ -98,7 +98,8 @@ class Tagger(nn.Module):
         at = torch.searchsorted(self.keys, keys).clamp(max=len(self.keys) - 1)
         vector = self.vectors[at].float() / SCALE * (self.keys[at] == keys)[..., None]
         seen = self.first(self.dropout(torch.cat([vector, spelled, batch["flags"]], -1)))
-        mask = (torch.arange(shape[1]) < batch["length"][:, None])[..., None].float()
+        places = torch.arange(shape[1], device=keys.device)
+        mask = (places < batch["length"][:, None])[..., None].float()
         for block in self.blocks:
             seen = block(seen, mask)
         found = self.norm(seen)
@@ -112,7 +113,8 @@ class Tagger(nn.Module):
         if not found:
             return Tagged((), (), ())
         self.eval()
-        acts, before = (part[0] for part in self(self.collate([self.encode(found)])))
+        read = self.collate([self.encode(found)])
+        acts, before = (part[0].cpu() for part in self(placed(read, self.act.weight.device)))
         return tagged(found, acts, before)
 
     def encode(self, found: Sequence[Token]) -> Encoded:
@@ -163,8 +165,13 @@ def open_tagger(folder: str | Path) -> Tagger:
 
 def only_with_plain_form(acts: Tensor, plain: Tensor) -> Tensor:
     """Return logits of the acts [B, T, 3] that say a word plainly only if it has a plain form."""
-    barred = nn.functional.one_hot(torch.tensor(PLAIN), 3).bool() & ~plain[..., None]
+    barred = (torch.arange(3, device=plain.device) == PLAIN) & ~plain[..., None]
     return acts.masked_fill(barred, -30.0)
+
+
+def placed(batch: dict[str, Tensor], device: torch.device) -> dict[str, Tensor]:
+    """Return a batch on the device of the weights that read it."""
+    return {name: part.to(device) for name, part in batch.items()}
 
 
 def tagged(

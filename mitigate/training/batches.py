@@ -23,8 +23,8 @@ from mitigate.core.workers import WorkersDied, context, leave_to_parent, portabl
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe, do
 
-MOST = 4  # workers worth starting: the recipes make 2 to 4 pieces of a step
-AHEAD = 3  # steps whose pieces are ordered before they are needed (ours)
+MOST = 8  # workers worth starting: the recipes make 2 to 4 pieces of a step, some steps ahead
+AHEAD = 4  # steps whose pieces are ordered before they are needed (ours)
 PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
 STUCK = 60.0  # seconds without a word after which an awaited worker is reported (ours)
 TRIM_EVERY = 8  # jobs of a worker; after each it costs 7 % of their time, after 8 less than 1 %
@@ -32,7 +32,9 @@ DEATHS = 1  # times that a worker is started anew before the training stops
 
 
 class Workers:
-    """``count`` processes; job i of every step is done by worker ``i % count``.
+    """``count`` processes; job i of a step is done by worker ``i % count``, or, where there are
+    workers for several steps at once, by that of the step's turn. Either way a worker meets one
+    number i only, modulo the jobs of a step, so it opens the scenes of that piece alone.
 
     They live through all stages of a training, so apartments and scenes that one stage has built
     serve the next. Use it as a context manager.
@@ -68,17 +70,23 @@ class Workers:
         for worker in self._all:
             worker.send(("weights", {**trained, **buffers}))
 
-    def order(self, jobs: list[Any]) -> None:
-        """Have ``jobs`` done; :meth:`receive` returns what they give."""
-        for index, job in enumerate(jobs):
-            self._all[index % len(self)].order(job)
+    def order(self, jobs: list[Any], turn: int = 0) -> None:
+        """Have ``jobs`` done; :meth:`receive` returns what they give. What is ordered at once goes
+        to as many workers as there are if its ``turn`` goes up by one from order to order."""
+        for worker, job in zip(self._of(len(jobs), turn), jobs, strict=True):
+            worker.order(job)
 
-    def receive(self, count: int) -> list[Any]:
+    def receive(self, count: int, turn: int = 0) -> list[Any]:
         """Return what the next ``count`` jobs gave, in the order of one :meth:`order`.
 
         Raises what a job raised, and WorkersDied.
         """
-        return [self._all[index % len(self)].receive() for index in range(count)]
+        return [worker.receive() for worker in self._of(count, turn)]
+
+    def _of(self, jobs: int, turn: int) -> list[_Worker]:
+        """Who does each of ``jobs``."""
+        first = jobs * (turn % max(1, len(self) // max(1, jobs)))
+        return [self._all[(first + index) % len(self)] for index in range(jobs)]
 
 
 class Batches:
@@ -117,7 +125,7 @@ class Batches:
         ordered, count = self._ordered.popleft()
         assert ordered == step, f"step {step} was asked for, {ordered} is next"
         assert self.workers is not None
-        return recipe.collate(step, self.workers.receive(count))
+        return recipe.collate(step, self.workers.receive(count, self._turn(step)))
 
     def _jobs(self, step: int) -> list[Any]:
         """This rank's jobs of a step; none if the recipe makes its batches alone."""
@@ -138,8 +146,12 @@ class Batches:
             self._taken = True
         elif not self.recipe.ahead:
             self.workers.send_weights(self.recipe)
-        self.workers.order(jobs)
+        self.workers.order(jobs, self._turn(step))
         self._ordered.append((step, len(jobs)))
+
+    def _turn(self, step: int) -> int:
+        """Jobs that need the weights are never of two steps at once."""
+        return step if self.recipe.ahead else 0
 
 
 class _Worker:

@@ -34,7 +34,8 @@ def train_stage(
     finished stage is loaded from ``folder``."""
     seeding.seed_everything(cfg.seed, "stage", name)
     start = checkpoint.weights_sha(agent)
-    agent.requires_grad_(True)
+    for parameter in agent.parameters():
+        parameter.requires_grad_(parameter.is_floating_point())  # weights in 8 bits never learn
     recipe = build(stage.recipe, agent=agent)
     recipe.workers = cfg.workers
     identity = {"start": start, **named(cfg, stage), **recipe.identity()}

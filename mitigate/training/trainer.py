@@ -26,7 +26,7 @@ from mitigate.training import limits
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe, accumulate
+from mitigate.training.recipe import Recipe, accumulate, to_device
 
 SCHEDULES = ("cosine", "constant", "linear")
 
@@ -281,18 +281,6 @@ class Trainer:
         self.scheduler.load_state_dict(state["scheduler"])
         seeding.set_global_state(state["rng"])
         return int(state["step"])
-
-
-def to_device(value: Any, device: torch.device) -> Any:
-    """Move what has ``to`` (tensors, batches of them) in nested dicts, lists and tuples to
-    ``device``; leave the rest."""
-    if hasattr(value, "to"):
-        return value.to(device)
-    if isinstance(value, dict):
-        return {name: to_device(item, device) for name, item in value.items()}
-    if isinstance(value, (list, tuple)) and not hasattr(value, "_fields"):
-        return type(value)(to_device(item, device) for item in value)
-    return value
 
 
 def differences(old: Any, new: Any, path: str = "") -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import threading
+from functools import partial
 
 import pytest
 import torch
@@ -58,6 +59,11 @@ def trained(folder, workers: Workers | None, **settings) -> str:
     return checkpoint.weights_sha(recipe.agent)
 
 
+def counted(order, given: dict[int, int], number: int, job) -> None:
+    given[number] += 1
+    order(job)
+
+
 @pytest.fixture(scope="module")
 def two():
     with Workers(2) as workers:
@@ -70,6 +76,17 @@ def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
     checkpoint.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 4
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
+
+
+@pytest.mark.parametrize("ahead,busy", [(True, 6), (False, 3)])
+def test_more_workers_than_pieces_work_at_several_steps_at_once(ahead, busy, tmp_path):
+    with Workers(7) as workers:
+        given = dict.fromkeys(range(7), 0)
+        for worker in workers._all:
+            worker.order = partial(counted, worker.order, given, worker.number)
+        found = trained(tmp_path / "seven", workers, ahead=ahead)
+    assert found == trained(tmp_path / "alone", None, ahead=ahead)
+    assert [given[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
 
 
 @pytest.mark.parametrize("where", ["job", "message"])

@@ -16,12 +16,14 @@ from mitigate.evaluation.evaluator import evaluate
 from mitigate.training import train
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.safeguard.conftest import write_tiny_model
 
 pytestmark = [
     pytest.mark.gpu,
     pytest.mark.skipif(not torch.cuda.is_available(), reason="no CUDA here"),
 ]
 GPU = "cuda"
+DROPOUT = 0.1  # each device draws its own: losses of stages that have it differed by 7 %
 KINDS = [
     (agent, recipe)
     for agent in ("topological", "recurrent", "recurrent_rgb", "frontier")
@@ -31,7 +33,7 @@ KINDS = [
 
 def settings(folder, device, *options):
     return conf.load_config("train", [
-        *options, "debug=smoke", "evaluation.enabled=false", "workers=0", f"runs={folder}",
+        "debug=smoke", "evaluation.enabled=false", "workers=0", f"runs={folder}", *options,
         f"trainer.device={device}", "trainer.precision=fp32", "trainer.log_every=1"])  # fmt: skip
 
 
@@ -50,7 +52,34 @@ def test_it_loses_on_the_gpu_what_it_loses_on_the_processor(tmp_path, capfd, age
     for place, device in (("processor", "cpu"), ("gpu", GPU)):
         trained(tmp_path / place, device, f"agent={agent}", f"recipe={recipe}")
         found.append(losses("".join(capfd.readouterr())))
+    assert len(found[0]) > 2 and found[1] == pytest.approx(found[0], rel=DROPOUT)
+    assert found[1][:2] == pytest.approx(found[0][:2], rel=0.01)  # of the first stage: no dropout
+
+
+@pytest.mark.parametrize("recipe", ["harden", "ts_distill", "restore"])
+def test_workers_feed_every_stage_as_the_training_itself_does(tmp_path, capfd, recipe):
+    found = []
+    for count in (0, 2):  # no CUDA may be begun where the second stage's workers come from
+        options = [f"recipe={recipe}", f"workers={count}"]
+        trained(tmp_path / str(count), GPU, *options)
+        found.append(losses("".join(capfd.readouterr())))
     assert found[0] and found[1] == pytest.approx(found[0], rel=0.02, abs=1e-3)
+
+
+@pytest.mark.parametrize("computed", ["fp32", "bf16"])
+@pytest.mark.parametrize("precision", ["fp32", "int8"])
+def test_the_language_model_learns_and_answers(tmp_path, precision, computed):
+    pytest.importorskip("bitsandbytes")
+    base = write_tiny_model(tmp_path / "base")
+    options = ["recipe=safeguard_lora", f"agent.base={base}", f"agent.precision={precision}"]
+    cfg = settings(tmp_path, GPU, *options)
+    cfg.trainer.eval_every, cfg.trainer.precision = 1, computed
+    folder = train.run(cfg)
+    model = build(cfg.agent)
+    checkpoint.load_agent(model, folder / "agent")
+    learned = [p for name, p in model.named_parameters() if "lora_B" in name]
+    assert learned and all(bool(part.abs().sum() > 0) for part in learned)
+    model.to(GPU).rewrite(["Walk past the sofa and stop."])
 
 
 @pytest.mark.parametrize("first,then", [("cpu", GPU), (GPU, "cpu")])

@@ -56,6 +56,17 @@ def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 
+def test_a_language_model_in_eight_bits_is_trained_and_says_so_once(tmp_path, capfd):
+    base = write_tiny_model(tmp_path / "tiny-llama")
+    options = ["recipe=safeguard_lora", "debug=smoke", "evaluation.enabled=false", "workers=0"]
+    options += [f"runs={tmp_path}", f"agent.base={base}", "agent.precision=int8"]
+    cfg = conf.load_config("train", [*options, "trainer.eval_every=1"])
+    folder = train.run(cfg)
+    said = "".join(capfd.readouterr())
+    assert "evaluated at step 2" in said and "MatMul8bitLt" not in said
+    checkpoint.load_agent(build(cfg.agent), folder / "agent")
+
+
 @pytest.mark.parametrize("agent,recipe,weights", OTHERS)
 def test_a_training_goes_on_with_the_words_and_adapters_of_its_weights(
     tmp_path, agent, recipe, weights
