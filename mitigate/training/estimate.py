@@ -12,10 +12,11 @@ from pathlib import Path
 
 from omegaconf import DictConfig, OmegaConf
 
-from mitigate.core import checkpoint, precision
+from mitigate.core import precision
 from mitigate.core.names import counted
 from mitigate.core.progress import duration
 from mitigate.core.workers import cores
+from mitigate.training import states
 from mitigate.training.stages import trainer_settings
 
 REPORT = "mitigate.evaluation.evaluate.report_before_after"  # whose time is known
@@ -49,8 +50,8 @@ def estimate(cfg: DictConfig, folder: Path) -> float:
     """Return the seconds that the rest of a run takes here, NaN if a cost of them is not known."""
     costs: list[tuple[float, float | None]] = []  # how many, and seconds of each
     for name, count in _steps(cfg).items():
-        done = checkpoint.checkpoints(folder / name)
-        left = count - (checkpoint.steps_done(done[-1]) if done else 0)
+        done = states.checkpoints(folder / name)
+        left = count - (states.steps_done(done[-1]) if done else 0)
         costs.append((max(0, left), cfg.stages[name].cost))
     walk = times(EPISODE_COST / (cfg.evaluation.workers or cores()), cfg.cost.evaluation)
     costs.append((_walked(cfg), walk))

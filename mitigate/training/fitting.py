@@ -14,12 +14,12 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf, open_dict
 from torch import nn
 
-from mitigate.core import checkpoint
 from mitigate.core.build import build, located, maker
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality, names
+from mitigate.training import states
 from mitigate.training.parts import POLICY, policy_parts
 from mitigate.training.stages import IDENTITY, named
 from mitigate.training.trainer import differences
@@ -144,7 +144,7 @@ def _check_folder(cfg: DictConfig, folder: Path) -> None:
     """Raise ValueError if checkpoints in ``folder`` are of other stages, or of other settings."""
     for file in sorted(folder.glob(f"*/{IDENTITY}")):
         name = file.parent.name
-        if not checkpoint.checkpoints(file.parent):
+        if not states.checkpoints(file.parent):
             continue
         if name not in cfg.stages:
             raise ValueError(

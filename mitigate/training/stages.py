@@ -13,6 +13,7 @@ from torch import nn
 from mitigate.core import checkpoint, seeding
 from mitigate.core.build import build
 from mitigate.core.files import atomic_text
+from mitigate.training import states
 from mitigate.training.batches import Workers
 from mitigate.training.ranks import Ranks
 from mitigate.training.trainer import Trainer
@@ -40,7 +41,7 @@ def train_stage(
     recipe.workers = cfg.workers
     identity = {"start": start, **named(cfg, stage), **recipe.identity()}
     ranks = ranks or Ranks()
-    if ranks.first and not checkpoint.checkpoints(folder):  # else the trainer compares first
+    if ranks.first and not states.checkpoints(folder):  # else the trainer compares first
         with atomic_text(folder / IDENTITY) as file:
             json.dump(identity, file, indent=2)
     settings = {"name": name, "workers": workers, "ranks": ranks, **trainer_settings(cfg, stage)}

@@ -22,7 +22,7 @@ from mitigate.core.memory import give_back
 from mitigate.core.precision import choose, computing, device_of
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, held
-from mitigate.training import limits
+from mitigate.training import limits, states
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
 from mitigate.training.ranks import Ranks
@@ -198,7 +198,7 @@ class Trainer:
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
-        kept = checkpoint.checkpoints(self.folder)
+        kept = states.checkpoints(self.folder)
         own = type(self.recipe).__name__
         kind = "" if own == self.name else f" ({own})"
         last = f"The last good checkpoint is {kept[-1]}" if kept else "No checkpoint was saved yet"
@@ -238,7 +238,7 @@ class Trainer:
             "rng": seeding.global_state(),
             "config": self.config,
         }
-        checkpoint.save(self.folder, state, keep=self.keep)
+        states.save(self.folder, state, keep=self.keep)
         give_back()
 
     def _keep_precision(self, config: dict[str, Any]) -> None:
@@ -259,7 +259,7 @@ class Trainer:
 
     def _resume(self) -> int:
         """Load the newest sound checkpoint, if any, and return the number of updates done."""
-        found = checkpoint.load_newest(self.folder)
+        found = states.load_newest(self.folder)
         if found is None:
             return 0
         path, state = found

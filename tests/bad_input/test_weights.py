@@ -24,6 +24,7 @@ from mitigate.encoders import folder as encoder_folder
 from mitigate.encoders import loading, plain_adapters
 from mitigate.safeguard import adapter_folder
 from mitigate.shipping import hardened
+from mitigate.training import states
 from tests.bad_input.named import refused
 
 ROOT = Path(__file__).parents[2]
@@ -65,7 +66,7 @@ def repacked(raw: bytes, compression=zipfile.ZIP_DEFLATED, extra: dict[str, byte
         return file.getvalue()
 
 
-STATE = dict.fromkeys(checkpoint.REQUIRED, {}) | {"format": 1, "step": 3}
+STATE = dict.fromkeys(states.REQUIRED, {}) | {"format": 1, "step": 3}
 SOUND = saved(STATE | {"model": {"w": torch.arange(100.0)}})
 NETWORK = nn.Linear(3, 2)
 
@@ -114,7 +115,7 @@ DAMAGED = {
 def test_a_checkpoint_or_foreign_weights_that_are_none_are_refused(tmp_path, raw):
     path = tmp_path / "step-00000003.pt"
     path.write_bytes(raw)
-    assert str(path) in refused(lambda: checkpoint.load(path))
+    assert str(path) in refused(lambda: states.load(path))
     refused(lambda: loading.load_weights(NETWORK, str(path)), str(path))
     refused(lambda: loading.load_model(str(path)))
     assert [p.name for p in tmp_path.iterdir()] == [path.name]
@@ -125,7 +126,7 @@ def test_no_file_of_weights_runs_code(tmp_path, monkeypatch):
     for name, raw in trapped(tmp_path / "ran").items():
         path = tmp_path / "step-00000003.pt"
         path.write_bytes(raw)
-        refused(lambda path=path: checkpoint.load(path), "step-00000003.pt")
+        refused(lambda path=path: states.load(path), "step-00000003.pt")
         refused(lambda path=path: loading.load_weights(NETWORK, str(path)))
         refused(lambda path=path: loading.load_model(str(path)))
         assert not (tmp_path / "ran").exists(), name
@@ -318,7 +319,7 @@ def test_flipped_and_cut_bytes_are_noticed(tmp_path, data):
     path = tmp_path / "step-00000003.pt"
     path.write_bytes(raw)
     try:
-        found = checkpoint.load(path)
+        found = states.load(path)
     except ValueError as error:
         assert str(path) in str(error) and "\n" not in str(error)
     else:

@@ -14,6 +14,7 @@ import torch
 from torch import nn
 
 from mitigate.core import checkpoint, checksums, files, seeding
+from mitigate.training import states
 
 STATE = {
     "step": 3,
@@ -26,8 +27,8 @@ STATE = {
 
 
 def test_what_is_saved_is_loaded(tmp_path):
-    path = checkpoint.save(tmp_path, STATE)
-    loaded = checkpoint.load(path)
+    path = states.save(tmp_path, STATE)
+    loaded = states.load(path)
     assert loaded["step"] == 3 and torch.equal(loaded["model"]["w"], STATE["model"]["w"])
     names = sorted(p.name for p in tmp_path.iterdir())
     assert names == ["step-00000003.pt", "step-00000003.pt.sha256"]
@@ -35,15 +36,15 @@ def test_what_is_saved_is_loaded(tmp_path):
 
 def test_only_the_newest_are_kept(tmp_path):
     for step in (1, 2, 10, 100):
-        checkpoint.save(tmp_path, {**STATE, "step": step}, keep=2)
-    names = [path.name for path in checkpoint.checkpoints(tmp_path)]
+        states.save(tmp_path, {**STATE, "step": step}, keep=2)
+    names = [path.name for path in states.checkpoints(tmp_path)]
     assert names == ["step-00000010.pt", "step-00000100.pt"]
     sums = sorted(path.name for path in tmp_path.glob("*.sha256"))
     assert sums == [f"{name}.sha256" for name in names]
 
 
 def test_a_failed_write_leaves_the_old_file(tmp_path):
-    path = checkpoint.save(tmp_path, STATE)
+    path = states.save(tmp_path, STATE)
     before = path.read_bytes()
 
     def fail(file):
@@ -58,11 +59,11 @@ def test_a_failed_write_leaves_the_old_file(tmp_path):
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.9, 0.99])
 def test_a_truncated_checkpoint_is_named_with_the_older_one(tmp_path, share):
-    checkpoint.save(tmp_path, {**STATE, "step": 1})
-    path = checkpoint.save(tmp_path, {**STATE, "step": 2})
+    states.save(tmp_path, {**STATE, "step": 1})
+    path = states.save(tmp_path, {**STATE, "step": 2})
     os.truncate(path, int(path.stat().st_size * share))
     with pytest.raises(ValueError, match="step-00000002.pt") as error:
-        checkpoint.load(path)
+        states.load(path)
     assert "goes on from step-00000001.pt" in str(error.value) and "\n" not in str(error.value)
 
 
@@ -75,23 +76,23 @@ def test_a_foreign_file_is_named_and_runs_no_code(tmp_path):
         path = tmp_path / f"step-{number:08d}.pt"
         torch.save(content, path)
         with pytest.raises(ValueError, match=path.name):
-            checkpoint.load(path)
+            states.load(path)
     (tmp_path / "step-00000009.pt").write_bytes(pickle.dumps(Evil()))
     with pytest.raises(ValueError, match=r"step-00000009\.pt"):
-        checkpoint.load(tmp_path / "step-00000009.pt")
+        states.load(tmp_path / "step-00000009.pt")
     assert not (tmp_path / "owned").exists()
 
 
 def test_a_missing_checkpoint_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match="step-7"):
-        checkpoint.load(tmp_path / "step-7.pt")
+        states.load(tmp_path / "step-7.pt")
 
 
 def test_random_state_goes_through_a_checkpoint(tmp_path):
     seeding.seed_everything(5, "anything")
     state = {**STATE, "rng": seeding.global_state()}
     first = (torch.rand(3), numpy.random.rand(), random.random())
-    seeding.set_global_state(checkpoint.load(checkpoint.save(tmp_path, state))["rng"])
+    seeding.set_global_state(states.load(states.save(tmp_path, state))["rng"])
     again = (torch.rand(3), numpy.random.rand(), random.random())
     assert torch.equal(first[0], again[0]) and first[1:] == again[1:]
 
@@ -162,11 +163,11 @@ def test_a_full_disk_is_named_and_leaves_what_was_there(tmp_path):
     before = checkpoint.save_weights(made, tmp_path).read_bytes()
     limit = resource.getrlimit(resource.RLIMIT_FSIZE)
     before_signal = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    state = {k: {} for k in checkpoint.REQUIRED} | {"step": 1, "model": {"w": torch.zeros(99999)}}
+    state = {k: {} for k in states.REQUIRED} | {"step": 1, "model": {"w": torch.zeros(99999)}}
     resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, limit[1]))  # as a disk that fills up
     try:
         with pytest.raises(OSError, match="could not be written|too large"):
-            checkpoint.save(tmp_path, state)
+            states.save(tmp_path, state)
         with pytest.raises(OSError, match="could not be written|too large"):
             checkpoint.save_weights(torch.nn.Linear(99, 999), tmp_path)
         with pytest.raises(OSError):

@@ -13,6 +13,7 @@ from torch import nn
 
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, checksums, seeding
+from mitigate.training import states
 
 ROOT = Path(__file__).parents[2]
 FLIPS = 50
@@ -59,13 +60,13 @@ def checked(folder: Path) -> int:
 
 
 def test_every_flipped_bit_of_a_checkpoint_is_found(tmp_path):
-    checkpoint.save(tmp_path, state(1))
-    path = checkpoint.save(tmp_path, state(2))
+    states.save(tmp_path, state(1))
+    path = states.save(tmp_path, state(2))
     for changed in flips(path.read_bytes(), "step"):
         path.write_bytes(changed)
-        with pytest.raises(checkpoint.Damaged, match="step-00000002.pt"):
-            checkpoint.load(path)
-        newest, found = checkpoint.load_newest(tmp_path)
+        with pytest.raises(states.Damaged, match="step-00000002.pt"):
+            states.load(path)
+        newest, found = states.load_newest(tmp_path)
         assert newest.name == "step-00000001.pt" and found["step"] == 1
 
 
@@ -79,14 +80,14 @@ def test_every_flipped_bit_of_weights_is_found(tmp_path):
 
 def test_without_a_sidecar_no_flipped_bit_changes_what_a_checkpoint_says(tmp_path):
     """Its zip file holds sums of the contents: a flip outside of them is harmless."""
-    path = checkpoint.save(tmp_path, state(1))
+    path = states.save(tmp_path, state(1))
     note_of(path).unlink()
-    wanted, sound, refused = checkpoint.load(path), path.read_bytes(), 0
+    wanted, sound, refused = states.load(path), path.read_bytes(), 0
     for changed in flips(sound, "no sidecar"):
         path.write_bytes(changed)
         try:
-            found = checkpoint.load(path)
-        except checkpoint.Damaged:
+            found = states.load(path)
+        except states.Damaged:
             refused += 1
             continue
         assert str(found) == str(wanted)
@@ -95,19 +96,19 @@ def test_without_a_sidecar_no_flipped_bit_changes_what_a_checkpoint_says(tmp_pat
     path.write_bytes(sound)
     at = sound.index(STATE["model"]["w"].numpy().tobytes())
     path.write_bytes(flipped(sound, 8 * at + 77))
-    with pytest.raises(checkpoint.Damaged, match="has other bytes"):
-        checkpoint.load(path)
+    with pytest.raises(states.Damaged, match="has other bytes"):
+        states.load(path)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.99])
 @pytest.mark.parametrize("noted", [True, False])
 def test_a_truncated_checkpoint_is_passed_over(tmp_path, share, noted, capsys):
-    checkpoint.save(tmp_path, state(1))
-    path = checkpoint.save(tmp_path, state(2))
+    states.save(tmp_path, state(1))
+    path = states.save(tmp_path, state(2))
     os.truncate(path, int(path.stat().st_size * share))
     if not noted:
         note_of(path).unlink()
-    assert checkpoint.load_newest(tmp_path)[0].name == "step-00000001.pt"
+    assert states.load_newest(tmp_path)[0].name == "step-00000001.pt"
     said = capsys.readouterr().out
     assert said == f"{path} is damaged; going on from step-00000001.pt\n"
 
@@ -125,29 +126,29 @@ def test_a_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
     note_of(file).write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match="model.safetensors.sha256 alone is damaged, delete it"):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
-    path = checkpoint.save(tmp_path, state(1))
+    path = states.save(tmp_path, state(1))
     note_of(path).write_bytes(text.encode("latin-1"))
-    with pytest.raises(checkpoint.Damaged, match=r"If their \.sha256 files alone are damaged"):
-        checkpoint.load_newest(tmp_path)
+    with pytest.raises(states.Damaged, match=r"If their \.sha256 files alone are damaged"):
+        states.load_newest(tmp_path)
     for kept in (file, path):
         note_of(kept).unlink()
     checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
-    assert checkpoint.load_newest(tmp_path)[1]["step"] == 1
+    assert states.load_newest(tmp_path)[1]["step"] == 1
 
 
 def test_if_every_checkpoint_is_damaged_none_is_deleted(tmp_path):
     for step in (1, 2):
-        path = checkpoint.save(tmp_path, state(step))
+        path = states.save(tmp_path, state(step))
         path.write_bytes(flipped(path.read_bytes(), 4000))
     before = {p: p.read_bytes() for p in tmp_path.iterdir()}
-    with pytest.raises(checkpoint.Damaged, match="step-00000002.pt, step-00000001.pt.*none was"):
-        checkpoint.load_newest(tmp_path)
+    with pytest.raises(states.Damaged, match="step-00000002.pt, step-00000001.pt.*none was"):
+        states.load_newest(tmp_path)
     assert before == {p: p.read_bytes() for p in tmp_path.iterdir()}
-    assert checkpoint.load_newest(tmp_path / "nothing") is None
+    assert states.load_newest(tmp_path / "nothing") is None
 
 
 def test_sidecars_are_what_sha256sum_checks(tmp_path):
-    checkpoint.save(tmp_path, state(1))
+    states.save(tmp_path, state(1))
     file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
     assert checked(tmp_path) == 0
     file.write_bytes(flipped(file.read_bytes(), 500))
@@ -208,21 +209,21 @@ def test_a_damaged_file_that_is_replaced_does_not_become_a_sound_one(tmp_path, m
 def test_rotation_deletes_sidecars_too_and_those_that_a_kill_left(tmp_path):
     (tmp_path / "step-00000001.pt.sha256").write_text("left by a kill")
     for step in (2, 3, 4, 5):
-        checkpoint.save(tmp_path, state(step), keep=2)
+        states.save(tmp_path, state(step), keep=2)
     left = [f"step-0000000{step}.pt{end}" for step in (4, 5) for end in ("", ".sha256")]
     assert sorted(path.name for path in tmp_path.iterdir()) == left
 
 
 def test_what_is_written_is_kept_though_a_damaged_later_step_lies_there(tmp_path):
-    late = checkpoint.save(tmp_path, state(9))
+    late = states.save(tmp_path, state(9))
     late.write_bytes(b"")
     for step in (4, 5):
-        checkpoint.save(tmp_path, state(step), keep=1)
-    assert [path.name for path in checkpoint.checkpoints(tmp_path)] == [
+        states.save(tmp_path, state(step), keep=1)
+    assert [path.name for path in states.checkpoints(tmp_path)] == [
         "step-00000005.pt",
         "step-00000009.pt",
     ]
-    assert checkpoint.load_newest(tmp_path)[1]["step"] == 5
+    assert states.load_newest(tmp_path)[1]["step"] == 5
 
 
 @pytest.mark.parametrize("name", ["base", "teacher", "safeguard"])

@@ -19,7 +19,7 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf
 from mitigate.corruptions import Corruption, Key, Schedule, corrupt
 from mitigate.evaluation import evaluate
-from mitigate.training import train
+from mitigate.training import states, train
 from mitigate.worlds.apartments import world
 from tests.training.test_train import config
 
@@ -133,13 +133,13 @@ def test_weights_of_another_agent(evaluation, tmp_path):
 
 def test_a_run_without_a_sound_checkpoint(tmp_path):
     train.run(config(tmp_path))
-    kept = checkpoint.checkpoints(tmp_path / "second")
+    kept = states.checkpoints(tmp_path / "second")
     for path in kept:
         os.truncate(path, path.stat().st_size // 2)
     text = complaint(lambda: train.run(config(tmp_path)))
     for part in (str(tmp_path / "second"), *(path.name for path in kept), "none was deleted"):
         assert part in text
-    assert checkpoint.checkpoints(tmp_path / "second") == kept
+    assert states.checkpoints(tmp_path / "second") == kept
 
 
 def test_a_loss_that_is_not_a_number(tmp_path):
@@ -149,7 +149,7 @@ def test_a_loss_that_is_not_a_number(tmp_path):
     text = complaint(lambda: train.run(cfg))
     for part in ("nan", "step 3", "TinyRecipe", "episode-3", "step-00000002.pt"):
         assert part in text
-    assert [p.name for p in checkpoint.checkpoints(tmp_path / "second")] == ["step-00000002.pt"]
+    assert [p.name for p in states.checkpoints(tmp_path / "second")] == ["step-00000002.pt"]
 
 
 def test_a_run_whose_evaluation_cannot_work_stops_before_it_trains(tmp_path):

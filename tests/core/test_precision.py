@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 import torch
 
-from mitigate.core import checkpoint, precision
+from mitigate.core import precision
 from mitigate.core.precision import Probe, choose, computing, current, native
+from mitigate.training import states
 from mitigate.training.trainer import Trainer
 from tests.tiny import TinyRecipe
 
@@ -83,8 +84,8 @@ def test_preparation_batches_and_networks_obey_the_trainers_precision(kind, tmp_
 def test_a_run_goes_on_in_its_own_precision_on_another_machine(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(precision, "probe", lambda: Probe(10.0, 5.0))
     Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path).fit()
-    kept = checkpoint.checkpoints(tmp_path)
-    assert checkpoint.load(kept[-1])["config"]["trainer"]["precision"] == "bf16"
+    kept = states.checkpoints(tmp_path)
+    assert states.load(kept[-1])["config"]["trainer"]["precision"] == "bf16"
     kept[-1].unlink()
     monkeypatch.setattr(precision, "probe", lambda: Probe(10.0, None))
     resumed = Trainer(TinyRecipe(), steps=4, save_every=2, folder=tmp_path)

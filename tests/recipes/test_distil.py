@@ -10,11 +10,12 @@ import torch
 
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
-from mitigate.core.checkpoint import checkpoints, weights_sha
+from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import DEPTH, Schedule
 from mitigate.recipes.adapt import AdaptViews, differ
 from mitigate.recipes.distil import Distil, DistilViews, policy_kl
 from mitigate.recipes.imitate import Imitate
+from mitigate.training.states import checkpoints
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld

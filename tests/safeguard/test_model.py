@@ -13,6 +13,7 @@ from mitigate.core import checkpoint
 from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.safeguard.data import Pair
 from mitigate.safeguard.model import LanguageModel, collate, open_adapter
+from mitigate.training import states
 from mitigate.training.recipe import accumulate
 from mitigate.training.trainer import Trainer
 from tests.safeguard.conftest import LORA, write_tiny_model
@@ -35,7 +36,7 @@ def test_only_the_adapter_is_trained_and_kept_in_checkpoints(model, tmp_path):
     train(model, tmp_path, 3)
     moved = {n for n, p in model.named_parameters() if not torch.equal(p, before[n])}
     assert moved and all("lora_" in name for name in moved)
-    kept = checkpoint.load(checkpoint.checkpoints(tmp_path)[-1])["model"]
+    kept = states.load(states.checkpoints(tmp_path)[-1])["model"]
     assert kept and all("lora_" in name for name in kept)
 
 

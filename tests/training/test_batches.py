@@ -13,7 +13,7 @@ import torch
 from mitigate.core import checkpoint, seeding
 from mitigate.core.seeding import torch_generator
 from mitigate.core.workers import WorkersDied
-from mitigate.training import batches
+from mitigate.training import batches, states
 from mitigate.training.batches import Workers
 from mitigate.training.trainer import Trainer
 from tests.deaths import die_in_a_message
@@ -74,7 +74,7 @@ def two():
 def test_two_workers_train_the_weights_that_none_trains(ahead, two, tmp_path):
     alone = trained(tmp_path / "alone", None, ahead=ahead)
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
-    checkpoint.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 4
+    states.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 4
     assert trained(tmp_path / "two", two, ahead=ahead) == alone
 
 
@@ -103,7 +103,7 @@ def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(ahead, where, t
 def test_a_worker_that_is_killed_again_ends_the_training_with_advice(tmp_path):
     with Workers(1) as workers, pytest.raises(WorkersDied, match=r"memory ran out.* workers=1"):
         trained(tmp_path, workers, fatal="always")
-    assert checkpoint.checkpoints(tmp_path)
+    assert states.checkpoints(tmp_path)
 
 
 def test_an_error_in_a_worker_is_raised_as_it_was(two, tmp_path):

@@ -8,7 +8,7 @@ from omegaconf import OmegaConf
 from mitigate.agents.topological import stored
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build, carried
-from mitigate.training import train
+from mitigate.training import states, train
 from tests.safeguard.conftest import write_tiny_model
 
 TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
@@ -52,7 +52,7 @@ def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
         stage.recipe.update({k: v for k, v in LITTLE.items() if k in stage.recipe})
     folder = train.run(cfg)
     for stage in (name for name, settings in cfg.stages.items() if settings):
-        assert checkpoint.checkpoints(folder / stage)[-1].name == "step-00000002.pt"
+        assert states.checkpoints(folder / stage)[-1].name == "step-00000002.pt"
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 

@@ -14,7 +14,7 @@ from safetensors.torch import load_file
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
 from mitigate.evaluation.columns import column_of
-from mitigate.training import train
+from mitigate.training import states, train
 from tests.tiny import TinyAgent
 
 TINY = {"_target_": "tests.tiny.TinyRecipe"}
@@ -46,9 +46,9 @@ def same(one, two) -> bool:
 
 def test_stages_run_in_order_and_leave_agent_and_config(tmp_path):
     assert train.run(config(tmp_path)) == tmp_path
-    steps = [checkpoint.checkpoints(tmp_path / name)[-1].name for name in ("first", "second")]
+    steps = [states.checkpoints(tmp_path / name)[-1].name for name in ("first", "second")]
     assert steps == ["step-00000004.pt", "step-00000006.pt"]
-    last = checkpoint.load(checkpoint.checkpoints(tmp_path / "second")[-1])["model"]
+    last = states.load(states.checkpoints(tmp_path / "second")[-1])["model"]
     assert torch.equal(last["agent.body.0.weight"], weights(tmp_path)["body.0.weight"])
     assert OmegaConf.load(tmp_path / "config.yaml").name == "tiny"
     assert OmegaConf.load(tmp_path / "agent" / "config.yaml").agent["_target_"]
@@ -63,7 +63,7 @@ def test_the_second_stage_goes_on_from_the_first(tmp_path):
 def test_the_same_command_again_changes_nothing_and_a_broken_run_is_completed(tmp_path, capsys):
     train.run(config(tmp_path / "whole"))
     train.run(config(tmp_path / "broken"))
-    checkpoint.checkpoints(tmp_path / "broken" / "second")[-1].unlink()
+    states.checkpoints(tmp_path / "broken" / "second")[-1].unlink()
     (tmp_path / "broken" / "agent" / "model.safetensors").unlink()
     capsys.readouterr()
     train.run(config(tmp_path / "broken"))
@@ -90,11 +90,11 @@ def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):
 def test_a_damaged_checkpoint_is_passed_over_and_the_run_ends_the_same(tmp_path, capsys):
     train.run(config(tmp_path))
     wanted = weights(tmp_path)
-    newest = checkpoint.checkpoints(tmp_path / "second")[-1]
+    newest = states.checkpoints(tmp_path / "second")[-1]
     os.truncate(newest, newest.stat().st_size // 2)
     train.run(config(tmp_path))
     assert f"{newest} is damaged; going on from step-00000004.pt" in capsys.readouterr().out
-    assert same(wanted, weights(tmp_path)) and checkpoint.load(newest)["step"] == 6
+    assert same(wanted, weights(tmp_path)) and states.load(newest)["step"] == 6
 
 
 def test_the_same_command_writes_a_finished_runs_damaged_weights_again(tmp_path):
@@ -126,7 +126,7 @@ def test_a_run_says_first_what_it_will_do_and_how_long_that_takes(tmp_path, caps
 
 def test_trainer_options_go_before_a_stages_own(tmp_path):
     train.run(config(tmp_path, "trainer.steps=3"))
-    names = {checkpoint.checkpoints(tmp_path / stage)[-1].name for stage in ("first", "second")}
+    names = {states.checkpoints(tmp_path / stage)[-1].name for stage in ("first", "second")}
     assert names == {"step-00000003.pt"}
 
 

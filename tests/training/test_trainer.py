@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 import torch
 
-from mitigate.core import checkpoint, seeding
+from mitigate.core import seeding
+from mitigate.training import states
 from mitigate.training.trainer import LossNotFinite, Trainer, differences, to_device
 from tests.core.test_checksums import FLIPS, flipped
 from tests.tiny import TinyRecipe
@@ -57,7 +58,7 @@ def test_another_seed_trains_other_weights(tmp_path):
 def test_a_resumed_run_equals_an_unbroken_one(tmp_path, precision):
     whole = trained(tmp_path / "whole", precision=precision)
     trained(tmp_path / "broken", precision=precision)
-    checkpoint.checkpoints(tmp_path / "broken")[-1].unlink()  # back to step 15
+    states.checkpoints(tmp_path / "broken")[-1].unlink()  # back to step 15
     seeding.seed_everything(9, "what an interrupted process leaves behind")
     assert same(whole, trained(tmp_path / "broken", precision=precision))
 
@@ -72,12 +73,12 @@ def test_a_run_killed_in_the_middle_resumes_to_the_same_weights(tmp_path):
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"}
     command = [sys.executable, "-c", RUN, str(tmp_path / "killed")]
     killed = subprocess.Popen(command, env=environment, cwd=ROOT)
-    while not checkpoint.checkpoints(tmp_path / "killed"):
+    while not states.checkpoints(tmp_path / "killed"):
         assert killed.poll() is None, "the run ended before it saved"
         time.sleep(0.01)
     killed.send_signal(signal.SIGKILL)
     killed.wait()
-    step = checkpoint.load(checkpoint.checkpoints(tmp_path / "killed")[-1])["step"]
+    step = states.load(states.checkpoints(tmp_path / "killed")[-1])["step"]
     assert step < 60
     settings = {"steps": 60, "save_every": 7, "log_every": 0}
     resumed, whole = (trained(tmp_path / name, **settings) for name in ("killed", "whole"))
@@ -93,7 +94,7 @@ def test_a_finished_run_returns_at_once_and_says_so(tmp_path, capsys):
 
 def test_after_any_flipped_bit_the_older_checkpoint_is_used(tmp_path, capsys):
     whole = trained(tmp_path)
-    newest = checkpoint.checkpoints(tmp_path)[-1]
+    newest = states.checkpoints(tmp_path)[-1]
     sound = newest.read_bytes()
     draw = seeding.generator(0, "flipped bits of a trainer's checkpoint")
     for bit in draw.integers(0, 8 * len(sound), FLIPS):
@@ -101,21 +102,21 @@ def test_after_any_flipped_bit_the_older_checkpoint_is_used(tmp_path, capsys):
         made = recipe()
         assert Trainer(made, steps=20, save_every=5, folder=tmp_path)._resume() == 15
         assert f"{newest} is damaged; going on from step-00000015.pt" in capsys.readouterr().out
-    assert same(whole, trained(tmp_path)) and checkpoint.load(newest)["step"] == 20
+    assert same(whole, trained(tmp_path)) and states.load(newest)["step"] == 20
 
 
 def test_a_run_with_other_saves_keeps_what_it_writes_beside_a_damaged_later_step(tmp_path):
     trained(tmp_path, keep=2)
-    newest = checkpoint.checkpoints(tmp_path)[-1]
+    newest = states.checkpoints(tmp_path)[-1]
     newest.write_bytes(b"")
     Trainer(recipe(), steps=20, save_every=2, keep=1, folder=tmp_path).fit()
-    assert [p.name for p in checkpoint.checkpoints(tmp_path)] == [newest.name]
-    assert checkpoint.load(newest)["step"] == 20
+    assert [p.name for p in states.checkpoints(tmp_path)] == [newest.name]
+    assert states.load(newest)["step"] == 20
 
 
 def test_extra_state_is_resumed(tmp_path):
     trained(tmp_path)
-    checkpoint.checkpoints(tmp_path)[-1].unlink()
+    states.checkpoints(tmp_path)[-1].unlink()
     again = recipe()
     Trainer(again, steps=20, save_every=5, folder=tmp_path).fit()
     assert again.count == 20
@@ -173,7 +174,7 @@ def test_a_nan_loss_stops_with_step_recipe_and_episodes(tmp_path):
     for part in ("step 7", "TinyRecipe", "episode-7", "step-00000005.pt"):
         assert part in str(error.value)
     assert all(torch.isfinite(p).all() for p in made.parameters())
-    assert checkpoint.checkpoints(tmp_path)[-1].name == "step-00000005.pt"
+    assert states.checkpoints(tmp_path)[-1].name == "step-00000005.pt"
 
 
 def test_an_infinite_gradient_stops_before_it_is_applied(tmp_path):
@@ -239,7 +240,7 @@ def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
 
     with pytest.raises(LossNotFinite, match=r"no finite numbers \(agent.body.0.weight\)"):
         Trainer(Poisoned(), steps=9, folder=tmp_path, save_every=3).fit()
-    assert [p.name for p in checkpoint.checkpoints(tmp_path)][-1] == "step-00000006.pt"
+    assert [p.name for p in states.checkpoints(tmp_path)][-1] == "step-00000006.pt"
 
 
 @pytest.mark.skipif(torch.cuda.is_available(), reason="there is CUDA")

@@ -16,7 +16,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from mitigate.core import checkpoint, checksums
+from mitigate.core import checksums
+from mitigate.training import states
 from tools.faults.disk import filled, small_disk
 from tools.faults.processes import LATE, Command, workers
 
@@ -124,7 +125,7 @@ def newest_sound(folder: Path) -> dict[str, int]:
     found: dict[str, int] = {}
     for path in sorted(folder.glob("*/step-*.pt")):
         if checksums.sidecar(path).is_file() and not checksums.problem(path):
-            found[path.parent.name] = checkpoint.steps_done(path)
+            found[path.parent.name] = states.steps_done(path)
     return found
 
 
