@@ -141,9 +141,11 @@ class SensorRestorer(nn.Module):
     @torch.inference_mode()
     def judged(self, frames: Tensor) -> tuple[bool, Tensor]:
         """Whether the gate takes frames [V, H, W, c] for corrupted, and the frames restored if so,
-        else as they are."""
+        else as they are; so are those that read nothing at all."""
         views = len(frames)
         x, valid = self.scaled(frames)
+        if not bool(valid.any()):
+            return False, frames
         maps, outside, gate = self.judge(*self.small(x, valid), views)
         if not bool(gate > self.threshold):
             return False, frames

@@ -14,7 +14,7 @@ CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora
     "http://host/v1@model")  # fmt: skip
 ADAPTER = "checkpoints/safeguard"
 TAGGERS = {"tagger": "checkpoints/safeguard_tagger", "reader": "checkpoints/safeguard_reader"}
-VERSION = "5"  # of what the rules give on: another one where any text is repaired otherwise
+VERSION = "6"  # of what the rules give on: another one where any text is repaired otherwise
 
 
 def label(choice: str) -> str:

@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from mitigate.safeguard import gate, masks, rules
+from mitigate.safeguard.formatting import unformatted
 from mitigate.safeguard.manners import plainer, restyled
 from mitigate.safeguard.object_goal import object_goal
 from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
@@ -14,6 +15,7 @@ from mitigate.safeguard.text import MASK, passages, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
+ENDLESS = 10_000  # words from which a text is left as it is: time grows with their square (ours)
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
 
 
@@ -38,17 +40,23 @@ class Draft:
 
     def __init__(self, original: str, tagger: Tags | None = None) -> None:
         self.original, self.tagger = original, tagger
-        self.tidied = tidy(original)
-        short = len(words(self.tidied)) <= TOO_LONG
+        self.heard = unformatted(original)
+        self.tidied = tidy(self.heard)
+        length = len(words(self.tidied))
+        self.endless, short = length > ENDLESS, length <= TOO_LONG
         self.judge = tagger if short else None  # reads the text as it is heard
         self.reasons: list[str] = []
         self.asked = self.taken = 0
-        self.plain = not _readable(self.tidied) or (
-            _untouched(original, self.judge)
-            and not self._spoken()
-            and object_goal(self.tidied) is None
+        self.plain = (
+            self.endless
+            or not _readable(self.tidied)
+            or (
+                _untouched(self.heard, self.judge)
+                and not self._spoken()
+                and object_goal(self.tidied) is None
+            )
         )
-        heard = rules.lower_capitals(original)
+        heard = rules.lower_capitals(self.heard)
         self.doubtful = [] if self.plain else rules.doubtful(heard, judging(self.judge, heard))
         self.repair(set())
 
@@ -59,12 +67,12 @@ class Draft:
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
         if self.plain:
-            self.repaired, self.passages, self.styled = self.original, [self.original], False
+            self.repaired, self.passages, self.styled = self.heard, [self.heard], False
             self.same, self.tagged = True, False
-            self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
+            self.reasons = [why] if (why := self._left()) else []
             return
-        done = rules.repair(self.original, empty.__contains__, self.judge)
-        self.same = done.text == self.original
+        done = rules.repair(self.heard, empty.__contains__, self.judge)
+        self.same = done.text == self.heard
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.styled = done.marks >= MARKS
         self.tagged, self.passages = False, [self.repaired]
@@ -75,6 +83,12 @@ class Draft:
             self._say_orders()
             self.tagged = self._say_speech()
         self.passages = passages(self.repaired, PASSAGE)
+
+    def _left(self) -> str:
+        """Why the rules do not look at the text, "" if they do."""
+        if self.endless:
+            return f"over {ENDLESS:,} words: left as it is"
+        return "" if _readable(self.tidied) else "nothing readable in English"
 
     def _say_goal(self) -> bool:
         """Say a request for one thing in plain words; return whether it was one."""
@@ -129,7 +143,9 @@ class Draft:
                 self.taken += 1
 
     def decision(self, seconds: float) -> Decision:
-        text = self.original if self.same else self.repaired
+        text = self.heard if self.same else self.repaired
+        if self.heard != self.original:
+            self.reasons.append("marks of how words look taken off")
         if self.taken:
             text = self._said(text)
         if not self.plain and MASK.search(text):

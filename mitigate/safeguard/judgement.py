@@ -13,6 +13,7 @@ from functools import lru_cache
 from mitigate.safeguard import gate
 from mitigate.safeguard.decode import plainly
 from mitigate.safeguard.evidence import VERBS, features, in_another_language, in_context
+from mitigate.safeguard.manners import unasked
 from mitigate.safeguard.pieces import Piece, sentence_pieces
 from mitigate.safeguard.plainly_said import Tagged, Tags
 from mitigate.safeguard.text import words
@@ -58,7 +59,7 @@ def judged(text: str, tags: Tags | None = None) -> tuple[Judged, ...]:
     said = [piece.of(text) for piece in found]
     wraps = wrapped(text, found)
     own = [
-        1.0 if piece.tag else strangeness(s, bool(piece.block) and piece.block not in wraps)
+        1.0 if piece.tag else asked(s, bool(piece.block) and piece.block not in wraps)
         for s, piece in zip(said, found, strict=True)
     ]
     around = in_context(said, own)
@@ -132,6 +133,15 @@ def wrapped(text: str, found: Sequence[Piece]) -> frozenset[int]:
         for b, count in told.items()
         if b and (count == told.total() if b in disguised else 2 * count > told.total())
     )
+
+
+def asked(sentence: str, markup: bool) -> float:
+    """As :func:`strangeness`, where words that ask politely for a step count for nothing."""
+    plain = unasked(sentence)
+    found = strangeness(sentence, markup)
+    if plain == sentence or not gate.route_facts(plain):
+        return found
+    return min(found, strangeness(plain, markup))
 
 
 def strangeness(sentence: str, markup: bool = False) -> float:

@@ -9,7 +9,7 @@ from functools import lru_cache
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.routes import draw_route
-from mitigate.safeguard.text import MASK
+from mitigate.safeguard.text import MASK, words
 
 ROUTES = 4000  # counted, about one second once (ours)
 SMALL = bag(
@@ -17,14 +17,25 @@ SMALL = bag(
     "some this its be been have has from into for or as when once where which slight other "
     "another our we i"
 )
+HIDDEN = "[hidden]"
+_STAYS = re.compile(
+    r"(?<=[a-z])\[mask\]|\[mask\](?=[a-z])|"
+    r"(?<!\ba )(?<!\bthe )\b(?:turn|turning|bear|veer|rotate|swing)\s+\[mask\](?:\s*\[mask\])*"
+    r"(?=\s*(?:[,.;!?]|$|(?:at|in|into|past|by|near|before|after|when|onto|and|then)\b))",
+    re.IGNORECASE,
+)
 _RUN = re.compile(r"\[mask\](?:\s*\[mask\])+")
 _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 
 
 def fill(text: str) -> str:
     """Return ``text`` with every run of masks replaced by the one small word that fits best between
-    its neighbours; at the start of a sentence it gets a capital."""
-    text = _RUN.sub("[mask]", MASK.sub("[mask]", text))
+    its neighbours; at the start of a sentence it gets a capital. What no small word can be stays
+    hidden: a part of a word, where to turn, a text that is hidden as a whole."""
+    if not words(MASK.sub(" ", text)):
+        return text
+    text = _STAYS.sub(lambda m: m.group().replace("[mask]", HIDDEN), MASK.sub("[mask]", text))
+    text = _RUN.sub("[mask]", text)
     pieces: list[str] = []
     at = 0
     for match in _TOKEN.finditer(text):
@@ -38,7 +49,8 @@ def fill(text: str) -> str:
             word = _best(left if left else ".", right)
             tokens[index] = word.capitalize() if left in ".!?" else word
     pieces[1::2] = tokens
-    return re.sub(r"\s+([.,;!?])", r"\1", " ".join(("".join(pieces) + text[at:]).split()))
+    said = " ".join(("".join(pieces) + text[at:]).split()).replace(HIDDEN, "[MASK]")
+    return re.sub(r"\s+([.,;!?])", r"\1", said)
 
 
 def filled(masked: str, answer: str) -> list[str] | None:

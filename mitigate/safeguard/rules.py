@@ -21,11 +21,13 @@ from mitigate.safeguard.evidence import (
     tells_where,
 )
 from mitigate.safeguard.front import in_front
+from mitigate.safeguard.harmless import harmless
 from mitigate.safeguard.honest import belongs_inside, shows_place
 from mitigate.safeguard.judgement import (
     PLAIN,
     SURE,
     Judged,
+    asked,
     judged,
     leads,
     logit,
@@ -52,6 +54,7 @@ ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 # known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
 SHOUTS, SHOUTED = 2, 0.15
+_SEMICOLON = re.compile(r";\s+")
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
@@ -230,14 +233,28 @@ def _chosen(
         if inside and _route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
-            problem = _refused(found, one)
-            if problem:
+            problem, some = _refused(found, one), _foreign_clauses(text, one)
+            if some:
+                out += some
+            elif problem:
                 reasons.append(f"kept {one.text[:40]!r}: {problem}")
             else:
                 out.append(one.piece)
         elif one.piece in ends and framing(one.text) and not _refused(found, one):
             out.append(one.piece)
     return out, reasons
+
+
+def _foreign_clauses(text: str, one: Judged) -> list[Piece]:
+    """Return the clauses of a sentence, parted by semicolons, that are no part of the route, if
+    others tell the way."""
+    starts = [one.piece.start, *(one.piece.start + m.end() for m in _SEMICOLON.finditer(one.text))]
+    ends = [*starts[1:], one.piece.end]
+    made = [Piece(a, b, one.piece.block) for a, b in zip(starts, ends, strict=True)]
+    foreign = [asked(piece.of(text).strip(" ;"), False) >= SURE for piece in made]
+    rest = [piece for piece, bad in zip(made, foreign, strict=True) if not bad]
+    told = all(gate.route_facts(piece.of(text)) for piece in rest)
+    return [piece for piece, bad in zip(made, foreign, strict=True) if bad] if rest and told else []
 
 
 def _refused(found: Sequence[Judged], one: Judged) -> str:
@@ -247,7 +264,9 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
     last = all(framing(other.text) for other in behind) and not any(
         other.foreign >= SURE for other in found[max(place - 1, 0) : place]
     )
-    return gate.removal_refused(one.text, one.own, one is found[0], last)
+    others = [other.text for other in found if other is not one]
+    kept = harmless(one.text, others, one is found[0], last)
+    return kept or gate.removal_refused(one.text, one.own, one is found[0], last)
 
 
 def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:

@@ -47,7 +47,7 @@ _NO_DENIAL = re.compile(
     r"if (?:needed|possible|necessary|that)|"
     r"not (?:far|long|only|yet|at all|too|very|quite|sure)|"
     r"no (?:problem|worries|hurry|rush|doubt|pressure|sweat|less|fewer)\b|"
-    r"can't miss|don't you\b|not a problem"
+    r"can't miss|don't you\b(?! dare)|not a problem"
 )
 # what is said in many words -> the phrase for it
 _SAYINGS = (

@@ -106,6 +106,19 @@ def test_masks_are_filled_by_the_model_only_if_nothing_else_changes():
     assert not MASK.search(bad.text) and "sofa" in bad.text and bad.route == "fallback"
 
 
+@pytest.mark.parametrize(
+    "heard, said",
+    [
+        ("Turn [MASK] at the sofa, then stop.", "Turn [MASK] at the sofa, then stop."),
+        ("Turn le[MASK]t at the door.", "Turn le[MASK]t at the door."),
+        ("[MASK] [MASK] [MASK]", "[MASK] [MASK] [MASK]"),
+        ("Make a turn [MASK] the left.", "Make a turn to the left."),
+    ],
+)
+def test_what_no_small_word_can_be_stays_hidden(heard, said):
+    assert Safeguard().canonicalise(heard).text == said
+
+
 def test_masks_are_filled_by_neighbours_without_a_model():
     assert masks.fill("Walk past [MASK] sofa.") == "Walk past the sofa."
     filled = masks.fill("Turn left [MASK] walk past <mask> bed.")

@@ -24,6 +24,12 @@ from mitigate.safeguard.manners import plainer
         ),
         ("Kindly reverse your course.", "Turn around."),
         ("Please proceed past the bed, and halt.", "Go past the bed, and stop."),
+        ("Could you kindly stop at the bed?", "Stop at the bed."),
+        ("Would you please walk to the sofa.", "Walk to the sofa."),
+        ("Would you mind going up the stairs?", "Go up the stairs."),
+        ("Do you mind turning left at the door?", "Turn left at the door."),
+        ("Could you be so kind as to walk past the table?", "Walk past the table."),
+        ("May I ask you to reverse your course.", "Turn around."),
     ],
 )
 def test_an_order_is_said_plainly(heard, plain):
@@ -41,6 +47,8 @@ def test_an_order_is_said_plainly(heard, plain):
         "Turn towards the left door.",  # the door, not the side
         "Stop at the halt sign.",
         "When you turn left, the stairs are behind you.",
+        "Can you see the red door?",
+        "Would you mind the gap?",
     ],
 )
 def test_what_is_no_order_or_plain_stays_as_it_is(heard):

@@ -143,10 +143,15 @@ def test_what_is_judged_does_not_depend_on_what_was_judged_before():
     assert rules.repair(text) == before
 
 
+def test_a_request_is_said_plainly_and_what_them_stands_for_stays():
+    heard = "I lost my glasses again, silly me. Can you look for them in the kitchen?"
+    said = "I lost my glasses again, silly me. Look for them in the kitchen."
+    assert given_on(heard) == said
+
+
 @pytest.mark.parametrize(
     "heard",
     [
-        "I lost my glasses again, silly me. Can you look for them in the kitchen?",
         "Never mind the dog, it is friendly. Walk past it and wait by the gate.",
         "Find the bathtub. Do not touch it, and do not go in if somebody is there.",
         "Find the fridge. It is white. It hums. It is to the left of the stove.",

@@ -1,0 +1,29 @@
+"""Instructions that come as a page: marks of how words look are taken off, the words stay.
+
+What looks like a programme's or a model's own markup (``<system>``, ``[INST]``, comments) is left
+to the rules: it is judged with what stands in it.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+
+# struck-through words (s, del) are not meant, so these are no mere looks
+_LOOKS = r"(?:b|i|u|em|strong|span|mark|small|big|sub|sup|font|tt|a|q|abbr|bdi|wbr)"
+_INLINE = re.compile(
+    rf"</?{_LOOKS}(?:\s+[\w-]+\s*=\s*(?:\"[^\"]*\"|'[^']*'|[^\s<>]+))*\s*/?>", re.I
+)
+_BREAK = re.compile(r"\s*<br\s*/?>\s*", re.I)
+_ENTITY = re.compile(r"&(?:amp|nbsp|lt|gt|quot|apos|#0?39|#160|ndash|mdash|[lr][sd]quo|hellip);")
+_HALF = re.compile("[\ud800-\udfff]")  # of a character in two parts, cut in the middle
+
+
+def unformatted(text: str) -> str:
+    """Return ``text`` without marks of how words look, HTML's names of characters and halves of
+    characters; itself if it has none."""
+    if "<" in text:
+        text = _BREAK.sub("\n", _INLINE.sub("", text))
+    if "&" in text:
+        text = _ENTITY.sub(lambda m: html.unescape(m.group()).replace("\xa0", " "), text)
+    return _HALF.sub("", text)
