@@ -58,10 +58,12 @@ def main(
     primary: str,
     check: Callable[[], None] | None = None,
     behind: Sequence[str] = (),
+    again: str = "To go on",
 ) -> None:
     """Call ``check`` and then ``program`` (a ``hydra.main`` function over ``conf/<primary>.yaml``);
     for ``--help`` print the first lines of its module and every option instead. behind: words of
-    the command line that are not Hydra's, to be said behind the options in how to go on.
+    the command line that are not Hydra's, to be said behind the options in the command to go on.
+    again: what that command is for, where it does not go on.
 
     Exits with status 1 and one paragraph for ValueError, OSError, config errors and what asks for
     too much memory, with 130 for Ctrl-C and 143 for SIGTERM, saying how to go on.
@@ -92,8 +94,8 @@ def main(
             raise
         sys.exit(f"error: {told}")
     except KeyboardInterrupt as error:
-        again = shlex.join([*sys.argv[0].split(), *sys.argv[1:], *behind])
-        print(f"\n{str(error) or 'SIGINT'}: stopped. To go on: {again}", file=sys.stderr)
+        command = shlex.join([*sys.argv[0].split(), *sys.argv[1:], *behind])
+        print(f"\n{str(error) or 'SIGINT'}: stopped. {again}: {command}", file=sys.stderr)
         sys.exit(getattr(error, "status", 130))
     finally:
         del os.environ[FULL], os.environ[OURS]

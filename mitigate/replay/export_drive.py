@@ -223,4 +223,5 @@ def main() -> None:
         print(conf.options_text("export_drive"))
         sys.exit(0 if arguments else 2)
     _out[:], sys.argv[1:] = conf.paths_and_options(arguments)
-    conf.main(hydra_main, "export_drive")
+    again = "To run it again, once what it wrote is deleted"
+    conf.main(hydra_main, "export_drive", behind=_out, again=again)

@@ -279,4 +279,4 @@ def main() -> None:
         print(conf.options_text("replay"))
         sys.exit(0 if arguments else 2)
     _paths[:], sys.argv[1:] = conf.paths_and_options(arguments)
-    conf.main(hydra_main, "replay")
+    conf.main(hydra_main, "replay", behind=_paths, again="To run it again")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import json
 import math
+import shlex
 import sys
 from dataclasses import replace
 
@@ -18,7 +19,7 @@ from mitigate.core.locks import FolderLock
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import episode_lists
-from mitigate.replay import export_drive, report
+from mitigate.replay import export_drive, replay, report
 from mitigate.replay.changes import compare
 from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
@@ -220,6 +221,26 @@ def test_a_restorer_of_what_a_drive_does_not_show_is_refused_before_a_frame_is_r
     status, _, wrong = mitigate("replay", str(colours.parent), *options, f"out={tmp_path}/out")
     assert status == 1 and "is for depth, but lab shows rgb: leave restore= out" in wrong
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("module", "options", "told"),
+    [
+        (replay, ["agents=[a]", "seed=1"], "To run it again"),
+        (export_drive, ["episodes=1"], "To run it again, once what it wrote is deleted"),
+    ],
+)
+def test_one_that_is_stopped_says_the_whole_command_and_does_not_promise_to_go_on(
+    monkeypatch, mitigate, module, options, told
+):
+    def stopped(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "run", stopped)
+    name = module.__name__.rpartition(".")[2]
+    status, _, said = mitigate(name, "my drive", *options)
+    command = shlex.join(["mitigate", name, *options, "my drive"])
+    assert status == 130 and f"SIGINT: stopped. {told}: {command}\n" in said
 
 
 @pytest.mark.parametrize("form", ["frames", "bag", "mcap"])
