@@ -20,7 +20,7 @@ from mitigate.bridge.results import Told, without_path
 from mitigate.bridge.server import Listener
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.verdict import lacking
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.names import counted
 from mitigate.core.signals import unbroken
 from mitigate.corruptions import Corruption
@@ -125,7 +125,7 @@ class Cell:
             self._start()
 
     def _start(self) -> None:
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_folder(self.folder)
         self.lock = open(self.folder / "lock", "w", encoding="utf-8")  # noqa: SIM115
         try:
             fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -7,6 +7,7 @@ import gzip
 import hashlib
 import io
 import os
+import stat
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -30,7 +31,7 @@ def find(path: str | Path) -> Path:
     return next((place for place in places if place.exists()), Path(path))
 
 
-def open_text(path: Path | str) -> TextIO:
+def open_text(path: Path | str) -> io.TextIOWrapper:
     """Open ``path`` for reading as UTF-8, behind the byte order mark that editors of Windows put
     first; gzip is told by the first two bytes, not by the name.
 
@@ -79,31 +80,67 @@ class _Unpacked(gzip.GzipFile):
 
 
 @contextmanager
+def writing(path: Path | str) -> Iterator[None]:
+    """Around what writes ``path``, a file or a folder: the error of the system, of the same type,
+    says that it cannot be written and what to do."""
+    try:
+        yield
+    except OSError as error:
+        if error.strerror is None:  # it says so already
+            raise
+        raise type(error)(
+            f"Cannot write {path}: {error.strerror}. Free the space or the permission, or name "
+            "another folder; what was finished is kept whole."
+        ) from error
+
+
+def make_folder(folder: Path | str) -> Path:
+    """Make ``folder`` with those above it, unless it is there; return it. Raises OSError as
+    :func:`writing`."""
+    with writing(folder):
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    return Path(folder)
+
+
+@contextmanager
+def _draft(path: Path) -> Iterator[Path]:
+    """Yield an empty neighbour of ``path``, which is flushed to disk and becomes ``path`` if the
+    block ends without an error, with the mode that the umask gives. Makes the folder."""
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    with writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary.touch()
+    mode = stat.S_IMODE(temporary.stat().st_mode)
+    try:
+        yield temporary
+        with writing(path):
+            temporary.chmod(mode)  # safetensors puts a private file in its place
+            with open(temporary, "rb+") as file:
+                os.fsync(file.fileno())
+            os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+@contextmanager
 def atomic_text(path: Path | str) -> Iterator[TextIO]:
     """Yield a UTF-8 text file that becomes ``path`` only if the block ends without an error.
 
     A name ending in ``.gz`` is gzipped, without time stamp or name: equal text, equal bytes.
+    Raises OSError, as :func:`writing`, if it cannot be written.
     """
     path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with open(temporary, "wb") as raw:
-            if path.suffix == ".gz":
-                with (
-                    gzip.GzipFile("", "wb", fileobj=raw, mtime=0) as packed,
-                    io.TextIOWrapper(packed, encoding="utf-8", newline="\n") as text,
-                ):
-                    yield text
-            else:
-                plain = io.TextIOWrapper(raw, encoding="utf-8", newline="\n")
-                yield plain
-                plain.detach()  # flushes, and leaves the file open
-            raw.flush()
-            os.fsync(raw.fileno())
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with _draft(path) as temporary, open(temporary, "wb") as raw:
+        if path.suffix == ".gz":
+            with (
+                gzip.GzipFile("", "wb", fileobj=raw, mtime=0) as packed,
+                io.TextIOWrapper(packed, encoding="utf-8", newline="\n") as text,
+            ):
+                yield text
+        else:
+            plain = io.TextIOWrapper(raw, encoding="utf-8", newline="\n")
+            yield plain
+            plain.detach()  # flushes, and leaves the file open
 
 
 def put_folder(draft: Path, target: Path, old: Path) -> None:
@@ -129,16 +166,12 @@ def sha256(path: Path | str) -> str:
 
 
 def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Call ``write`` on a temporary neighbour of ``path``, flush it to disk, then rename it."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
+    """Call ``write`` on a temporary neighbour of ``path``, flush it to disk, then rename it.
+
+    Raises OSError, as :func:`writing`, if there is no place for it.
+    """
+    with _draft(path) as temporary:
         write(temporary)
-        with open(temporary, "rb+") as file:
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
     folder = os.open(path.parent, os.O_RDONLY)
     try:
         os.fsync(folder)
@@ -148,18 +181,10 @@ def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
 
 
 def write_bytes(path: Path | str, data: bytes) -> None:
-    """Write ``data`` to ``path``, which is there whole or not at all. Makes the folder."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with open(temporary, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    """Write ``data`` to ``path``, which is there whole or not at all. Makes the folder. Raises
+    OSError as :func:`writing`."""
+    with _draft(Path(path)) as temporary, writing(path):
+        temporary.write_bytes(data)
 
 
 def _absent(path: Path) -> str:

@@ -13,6 +13,8 @@ import sys
 from pathlib import Path
 from typing import IO
 
+from mitigate.core.files import make_folder, writing
+
 NAME = ".lock"
 _LEFT = re.compile(r"\..+\.\d+\.tmp")  # as mitigate/core/files.py names what is not yet whole
 _held: set[Path] = set()  # by this process, which a record lock would let in twice
@@ -25,7 +27,8 @@ class FolderLock:
     however that ends, is not inherited by workers, and holds for other machines where the file
     system has locks for them. Where it has none, nothing is locked.
 
-    Raises ValueError, naming the process, if another one is there.
+    Raises ValueError, naming the process, if another one is there, and OSError if the folder cannot
+    be written.
     """
 
     def __init__(self, folder: str | Path) -> None:
@@ -34,9 +37,10 @@ class FolderLock:
         self._file: IO[str] | None = None
 
     def __enter__(self) -> FolderLock:
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_folder(self.folder)
         while True:
-            file = open(self.path, "a+", encoding="utf-8")
+            with writing(self.folder):
+                file = open(self.path, "a+", encoding="utf-8")
             try:
                 if self.path in _held:
                     raise BlockingIOError

@@ -16,7 +16,6 @@ from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.frame_files import MOST, RGB
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.normalised import check_sensor
 from mitigate.corruptions.plan import Frame, Plan, make_plan, told
 from mitigate.corruptions.registry import known, version
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_name, corrupt
@@ -56,7 +55,12 @@ class Settings:
                 f"unit={self.unit} is not allowed: it is the metres of one count of a 16-bit PNG, "
                 "as mm, cm, m or a number above 0, such as 0.00025."
             )
-        check_sensor(self.sensor)
+        if not self.missing >= 0.0:
+            raise ValueError(
+                f"missing={self.missing:g} is not allowed: it is the metres that a hole of missing "
+                "data reads, 0 (no reading) or more."
+            )
+        DepthSensor(z_max=self.z_max)  # raises ValueError for a range that is none
 
     @property
     def sensor(self) -> DepthSensor:
@@ -71,8 +75,8 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     Returns the summary, which is ``out/corrupt.json`` too: settings, counts and files left out.
 
     Raises FileNotFoundError if there is no folder or no frame, ValueError if one folder lies in the
-    other, if ``out`` was made with other settings or frames or by something else, or if it cannot
-    be written.
+    other or if ``out`` was made with other settings or frames or by something else, OSError if it
+    cannot be written.
     """
     source, out = Path(source), Path(out)
     _check_folders(source, out)
@@ -115,7 +119,7 @@ def _corrupt_file(path: Path, target: Path, frame: Frame, settings: Settings, pl
     except ValueError as error:  # LeftOutError, or a shape that the suite refuses
         plan.left_out[frame.path.as_posix()] = str(error)
         return
-    _write(target, data)
+    write_bytes(target, data)
 
 
 def _output(path: Path, form: str) -> Path:
@@ -207,17 +211,7 @@ def _digest(names: list[str]) -> str:
 
 
 def _write_summary(out: Path, summary: dict) -> None:
-    _write(out / SUMMARY, (json.dumps(summary, indent=1) + "\n").encode())
-
-
-def _write(path: Path, data: bytes) -> None:
-    try:
-        write_bytes(path, data)
-    except OSError as error:
-        raise ValueError(
-            f"Cannot write {path}: {error.strerror}. Free the space or the permission, or name "
-            "another folder; the same command then goes on where it stopped."
-        ) from error
+    write_bytes(out / SUMMARY, (json.dumps(summary, indent=1) + "\n").encode())
 
 
 # ------------------------------------------------------------------------------- user mistakes

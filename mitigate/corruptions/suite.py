@@ -37,6 +37,12 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
     allowed = registry.known("rgb", "depth") if allowed is None else allowed
     if name in allowed:
         return name
+    if name in INSTRUCTION:
+        raise ValueError(
+            f"{name!r} corrupts instructions, and here frames are corrupted, by one of "
+            f"{', '.join(allowed)}. For instructions: mitigate corrupt_episodes, or in Python "
+            "corrupt_instruction."
+        )
     if registry.AND in str(name):
         raise ValueError(
             f"{name!r} is a pair: it is a condition of an evaluation (conditions=[{name}]), and "
@@ -46,9 +52,10 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float in [0, 1], or raise ValueError (NaN included)."""
+    """Return ``severity`` as a float in [0, 1], or raise ValueError (for NaN, text and truth values
+    too)."""
     try:
-        value = float(severity)
+        value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
         value = math.nan
     if not 0.0 <= value <= 1.0:
@@ -105,6 +112,11 @@ class Corruption:
 
 def _check_pair(name: str) -> None:
     found = registry.parts(name)
+    if "clean" in found:
+        raise ValueError(
+            f"{name!r} is no pair: 'clean' is the absence of any corruption. Name the other one "
+            "alone, or a pair of two corruptions, such as low_light+missing_data."
+        )
     for part in found:
         check_name(part, registry.known(*MODALITIES))
     if len(found) != 2 or found[0] == found[1]:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.names import counted, markdown_of
 from mitigate.evaluation.blocks import PROMPT_ONLY, meant
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
@@ -39,8 +39,7 @@ def write(
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = make_folder(folder)
     parts = sorted(sections(rows), key=lambda part: part.grid.rule != first)
     pictures: list[list[str]] = [[] for _ in parts]
     heatmaps = 0

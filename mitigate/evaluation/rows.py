@@ -16,7 +16,7 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from mitigate.core.files import atomic_text, open_text
+from mitigate.core.files import atomic_text, make_folder, open_text, writing
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
 
@@ -65,21 +65,22 @@ def read(path: Path | str) -> list[Row]:
     rows: list[Row] = []
     try:
         with open_text(path) as file:
+            file.reconfigure(errors="surrogateescape")
             number = 0
             while line := file.readline(LONGEST_LINE + 1):
                 number += 1
-                row = _parse(line)
+                row, text = _parse(line), _is_text(line)
                 cut = row is None and len(line) <= LONGEST_LINE and not line.endswith("\n")
-                if cut and not _gzipped(path):
+                if cut and text and not _gzipped(path):
                     break
-                problem = _problem(row)
+                problem = _problem(row) if text else "is not UTF-8"
                 if problem:
                     raise ValueError(
                         f"{path}, line {number} {problem}. A result row is one JSON object a line "
                         f"with {', '.join(REQUIRED)}. Delete the line and evaluate again."
                     )
                 rows.append(row)
-    except (UnicodeDecodeError, OSError) as error:
+    except OSError as error:
         if isinstance(error, FileNotFoundError):
             raise
         raise ValueError(
@@ -98,8 +99,8 @@ def append(path: Path | str, rows: Iterable[Row]) -> None:
     if _gzipped(path):
         write(path, chain(read(path) if path.exists() else [], rows))
         return
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with open(path, "ab+") as file:
+    make_folder(path.parent)
+    with writing(path), open(path, "ab+") as file:
         _mend(file)
         file.write(text.encode())
         file.flush()
@@ -172,6 +173,15 @@ def _holds_rows(path: Path) -> bool:
     if first is None and line.strip() and len(line) <= LONGEST_LINE:
         return True
     return isinstance(first, dict) and IDENTITY.keys() <= first.keys()
+
+
+def _is_text(line: str) -> bool:
+    """Whether the bytes of a line were UTF-8: others were read as half of a surrogate pair."""
+    try:
+        line.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _parse(line: str) -> Any:

@@ -21,7 +21,7 @@ from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
-from mitigate.core.files import atomic_text, write_bytes
+from mitigate.core.files import atomic_text, make_folder, write_bytes
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 
@@ -71,7 +71,7 @@ def run(cfg: DictConfig, out: Path) -> list[Path]:
     with Progress("export_drive", len(chosen), unit="drive") as progress:
         for episode, path in zip(chosen, paths, strict=True):
             steps, words = list(oracle(world, episode)), episode.instruction.text
-            out.mkdir(parents=True, exist_ok=True)
+            make_folder(out)
             with tempfile.TemporaryDirectory(prefix=".drive.", dir=out) as aside:
                 draft = Path(aside) / path.stem
                 if cfg.form == "frames":

@@ -96,6 +96,9 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     file = Path(folder) / checkpoint.WEIGHTS
     if not checksums.sidecar(file).is_file():
         raise ValueError(f"{file} has no {checksums.sidecar(file).name} beside it. {_AGAIN}")
+    wrong = checksums.problem(file)
+    if wrong:  # said here: load_weights would advise to delete the checksum, which must be there
+        raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)
     if restorer.hash != held["hash"]:
         raise ValueError(

@@ -198,7 +198,6 @@ def write(
     scores = measure(restorer.eval(), seen, met, seed)
     about = f"{len(seen)} instants of {about}, seed {seed}, restorer {restorer.hash}"
     text = table(scores, about)
-    folder.mkdir(parents=True, exist_ok=True)
     with atomic_text(folder / "restoration.md") as file:
         file.write(text)
     print(f"{text}\nwrote {folder / 'restoration.md'}")

@@ -93,8 +93,8 @@ class Restorer(nn.Module):
         """A frame of one instant: uint8 [H, W, 3] or [V, H, W, 3], or float32 metres [H, W],
         [H, W, 1] or [V, H, W, 1]. What the gate takes for clean is returned as it came, else a new
         array of the same shape and dtype. Raises KeyError for another sensor, TypeError and
-        ValueError for another dtype or shape, and for depth that is no metres."""
-        net, views = self._net(sensor), self._views(sensor, np.asarray(frame))
+        ValueError for what is no array, another dtype or shape, and depth that is no metres."""
+        net, views = self._net(sensor), self._views(sensor, frame)
         changed, made = net.judged(torch.from_numpy(views))
         return made.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
 
@@ -109,7 +109,7 @@ class Restorer(nn.Module):
 
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
         """How far the gate's logit lies above its threshold; above 0 the frame is restored."""
-        net, views = self._net(sensor), self._views(sensor, np.asarray(frame))
+        net, views = self._net(sensor), self._views(sensor, frame)
         with torch.inference_mode():
             x, valid = net.scaled(torch.from_numpy(views))
             return float(net.judge(*net.small(x, valid), len(views))[2] - net.threshold)
@@ -122,6 +122,11 @@ class Restorer(nn.Module):
     def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """``frame`` as [V, H, W, c] that torch takes as it is."""
         channels, kind = CHANNELS[sensor], np.uint8 if sensor == RGB else np.float32
+        if not isinstance(frame, np.ndarray):
+            raise TypeError(
+                f"A {sensor} frame must be a numpy array, not {type(frame).__name__}: give a torch "
+                "tensor as frame.numpy()."
+            )
         if sensor == RGB and frame.dtype != kind:
             raise TypeError(f"rgb must be uint8 with values 0 to 255, not {frame.dtype}.")
         if sensor == DEPTH and not np.issubdtype(frame.dtype, np.floating):

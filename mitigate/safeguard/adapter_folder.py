@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import tempfile
 from pathlib import Path
 from typing import Any
@@ -39,6 +40,7 @@ def write_adapter(
     with tempfile.TemporaryDirectory(".0.tmp", ".adapter-", folder) as temporary:
         network.save_pretrained(temporary, state_dict=tensors, save_embedding_layers=False)
         (Path(temporary) / CARD).write_text(json.dumps(card, indent=1) + "\n", "utf-8")
+        shutil.copymode(Path(temporary) / CARD, Path(temporary) / ADAPTER)  # which was private
         digest = checksums.announce(folder / ADAPTER, Path(temporary) / ADAPTER)
         for name in (CONFIG, ADAPTER, CARD):
             os.replace(Path(temporary) / name, folder / name)

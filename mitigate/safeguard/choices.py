@@ -8,13 +8,36 @@ import re
 from pathlib import Path
 
 from mitigate.core.files import find, sha256
+from mitigate.core.names import unknown
 from mitigate.safeguard import weights
 
 CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
     "http://host/v1@model")  # fmt: skip
 ADAPTER = "checkpoints/safeguard"
 TAGGERS = {"tagger": "checkpoints/safeguard_tagger", "reader": "checkpoints/safeguard_reader"}
+FOLDER = (
+    "A safeguard's folder holds model.safetensors of a tagger or a reader (`make train "
+    "RECIPE=safeguard_tagger` or RECIPE=safeguard_reader), or card.json, adapter_config.json and "
+    "adapter_model.safetensors of an adapter (RECIPE=safeguard_lora)."
+)
 VERSION = "6"  # of what the rules give on: another one where any text is repaired otherwise
+
+
+def check(choice: object) -> None:
+    """Raise ValueError for a choice that is no text or empty, FileNotFoundError for a folder that
+    holds no safeguard; names, addresses and what is not there pass."""
+    text = choice if isinstance(choice, str) else ""
+    first, plus, second = text.partition("+")
+    named = second if plus and first in TAGGERS else text
+    if not named:
+        raise ValueError(f"{unknown('safeguard', choice, CHOICES)} Or name a folder. {FOLDER}")
+    if named not in CHOICES and Path(named).is_dir() and not _holds_one(named):
+        raise FileNotFoundError(not_in(named))
+
+
+def not_in(folder: str | Path) -> str:
+    """Return what is said of a folder that holds no safeguard."""
+    return f"There is no safeguard in {folder}. {FOLDER} Or choose one of: {', '.join(CHOICES)}."
 
 
 def label(choice: str) -> str:
@@ -47,6 +70,13 @@ def identity(choice: str) -> str:
     files = [file for folder in folders if (file := _weights(find(folder)))]
     held = " ".join([VERSION, *(sha256(file) for file in (weights.USED, *files))])
     return f"{label(choice)} {hashlib.sha256(held.encode()).hexdigest()[:DIGITS]}"
+
+
+def _holds_one(folder: str) -> bool:
+    """Whether a folder holds weights, or the config of an adapter that lacks them."""
+    from mitigate.safeguard.adapter_folder import CONFIG
+
+    return _weights(folder) is not None or (Path(folder) / CONFIG).is_file()
 
 
 def _weights(folder: str | Path) -> Path | None:

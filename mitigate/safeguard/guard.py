@@ -108,6 +108,9 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     ``http://host/v1@model`` for an OpenAI-compatible endpoint; "tagger+" or "reader+" before one of
     the last three. Raises ValueError or FileNotFoundError.
     """
+    from mitigate.safeguard.choices import check
+
+    check(choice)
     made = _opened(choice, log)
     if made is not None:
         made.identity = identity(choice)

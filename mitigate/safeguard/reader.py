@@ -19,6 +19,7 @@ from mitigate.core.checkpoint import WEIGHTS, load_tensors, load_weights
 from mitigate.core.public_weights import borrow
 from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard import edits, minilm
+from mitigate.safeguard.choices import not_in
 from mitigate.safeguard.plain_words import PHRASES
 from mitigate.safeguard.plainly_said import Tagged
 from mitigate.safeguard.tagger import (
@@ -159,10 +160,16 @@ class Reader(nn.Module):
 
 
 def open_tags(folder: str | Path) -> Reader | Tagger:
-    """Return the reader or tagger of a folder, told apart by the names of its weights. Raises
-    FileNotFoundError or ValueError, naming the file."""
+    """Return the reader or tagger of a folder, told apart by the names of its weights; a
+    ``config.yaml`` beside them is not read, as both are built with the sizes they have by default.
+    Raises FileNotFoundError or ValueError, naming the file."""
     file = Path(folder) / WEIGHTS
-    if not file.is_file() or "public" not in load_tensors(file):
+    if not file.is_file():
+        raise FileNotFoundError(not_in(folder))
+    names = load_tensors(file).keys()
+    if "public" not in names:
+        if "keys" not in names:
+            raise ValueError(f"{file} holds weights of another network. {not_in(folder)}")
         return open_tagger(folder)
     reader = Reader()
     load_weights(reader, folder)

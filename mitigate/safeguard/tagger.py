@@ -157,7 +157,9 @@ class Tagger(nn.Module):
 
 
 def open_tagger(folder: str | Path) -> Tagger:
-    """Return the tagger of a folder. Raises FileNotFoundError or ValueError, naming the file."""
+    """Return the tagger of a folder; a ``config.yaml`` beside its weights is not read, as it is
+    built with the sizes it has by default. Raises FileNotFoundError or ValueError, naming the file.
+    """
     tagger = Tagger()
     load_weights(tagger, folder)
     return tagger.eval()

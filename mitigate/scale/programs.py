@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
+from mitigate.core.files import make_folder
 from mitigate.core.progress import Progress
 from mitigate.scale import launcher as launchers
 from mitigate.scale import tied
@@ -55,7 +56,7 @@ class Running:
     def __init__(self, chain: Chain) -> None:
         self.chain, self.outcome = chain, Outcome()
         self.left = list(chain.programs)
-        chain.log.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(chain.log.parent)
         self._next()
 
     def _next(self) -> None:

@@ -26,7 +26,7 @@ from torch import Tensor
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, settings
-from mitigate.core.files import find, put_folder, sha256
+from mitigate.core.files import find, make_folder, put_folder, sha256
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.rows import Row
 from mitigate.shipping import hardened, others, programs
@@ -72,7 +72,7 @@ def export(
             f"{target} exists already: choose another name, or replace it with --overwrite."
         )
     cfg, agent = _finished(run, walks)
-    out.mkdir(parents=True, exist_ok=True)
+    make_folder(out)
     with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
         draft = Path(aside) / name
         draft.mkdir()

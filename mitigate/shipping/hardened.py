@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -39,8 +40,13 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
         agent: an agent of a class of your own, with the settings of the one that was exported, to
             be filled in place; None: one of ours, built here.
     Raises FileNotFoundError or ValueError, naming the file, if the folder is not whole or not what
-    its card states.
+    its card states, TypeError for a folder that is no path.
     """
+    if not isinstance(folder, (str, os.PathLike)):
+        raise TypeError(
+            f"folder must be the path of a hardened checkpoint, not {folder!r:.60}: name one, such "
+            "as checkpoints/hardened/ts_distill."
+        )
     folder = Path(folder)
     card = check(folder)
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are

@@ -212,6 +212,12 @@ def test_a_hardened_folder_whose_card_is_none_is_refused(tmp_path, made):
     assert str(tmp_path) in refused(lambda: hardened.load_hardened(tmp_path))
 
 
+@pytest.mark.parametrize("folder", [None, 3, True])
+def test_a_hardened_folder_that_is_no_path_is_refused(folder):
+    with pytest.raises(TypeError, match=f"path of a hardened checkpoint, not {folder}: name one"):
+        hardened.load_hardened(folder)
+
+
 @pytest.mark.parametrize("name", [OTHER, "/etc/passwd", "..", "", ".", "a/b", "./x", "a\\..\\/b"])
 def test_a_card_reads_no_file_outside_its_folder(tmp_path, name):
     needed = (*hardened.FILES, checkpoint.WEIGHTS)

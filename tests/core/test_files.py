@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import gzip
 import json
+import os
 import resource
 import zlib
+from pathlib import Path
 
 import pytest
+from torch import nn
 
-from mitigate.core import files, json_files
+from mitigate.core import checkpoint, files, json_files
 
 TEXT = "".join(f'{{"line": {n}}}\n' for n in range(20_000))
 
@@ -112,3 +115,55 @@ def test_a_folder_takes_the_place_of_another_or_that_stays(tmp_path):
     files.put_folder(draft, target, old)
     assert (target / "a").read_text() == "behind" and (old / "a").read_text() == "before"
     assert not draft.exists()
+
+
+def text_to(path):
+    with files.atomic_text(path) as file:
+        file.write("text")
+
+
+def private(path):
+    """As safetensors writes: a file of mode 0600 takes the place of what was there."""
+    path.unlink(missing_ok=True)
+    os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
+
+
+WRITERS = {
+    "text": text_to,
+    "bytes": lambda path: files.write_bytes(path, b"data"),
+    "a private file": lambda path: files.write_atomically(path, private),
+    "weights": lambda path: checkpoint.save_weights(nn.Linear(3, 2), f"{path}.safetensors"),
+}
+
+
+@pytest.mark.parametrize("umask", [0o022, 0o027])
+@pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
+def test_a_file_has_the_mode_that_the_umask_gives(tmp_path, write, umask):
+    before = os.umask(umask)
+    try:
+        write(tmp_path / "made")
+    finally:
+        os.umask(before)
+    made = [*tmp_path.iterdir()]
+    assert made and {path.stat().st_mode & 0o777 for path in made} == {0o666 & ~umask}
+
+
+@pytest.mark.parametrize("write", WRITERS.values(), ids=WRITERS)
+def test_what_cannot_be_written_is_named_and_not_its_temporary_neighbour(tmp_path, write):
+    (tmp_path / "file").write_text("x")
+    for place in (tmp_path / "file/under", Path("/proc/under")):
+        with pytest.raises(
+            OSError, match=f"Cannot write {place}.* or name another folder"
+        ) as error:
+            write(place)
+        assert ".tmp" not in str(error.value)
+    assert [*tmp_path.iterdir()] == [tmp_path / "file"]
+
+
+def test_an_error_of_what_is_read_meanwhile_stays_as_it_is(tmp_path):
+    with (
+        pytest.raises(FileNotFoundError, match="No such file .*/gone'"),
+        files.atomic_text(tmp_path / "made"),
+    ):
+        (tmp_path / "gone").read_bytes()
+    assert not [*tmp_path.iterdir()]

@@ -309,6 +309,9 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     ("options", "part"),
     [
         (("corruption=spater", "severity=0.5"), "Did you mean spatter"),
+        (("corruption=mask", "severity=0.5"), "For instructions: mitigate corrupt_episodes"),
+        ((*SPATTER, "missing=-7"), "missing=-7 is not allowed"),
+        ((*SPATTER, "missing=nan"), "0 (no reading) or more"),
         (("corruption=spatter", "severity=1.2"), "from 0 (clean) to 1 (worst), but it is 1.2"),
         (("corruption=spatter", "severity=much"), "severity=much has the wrong type"),
         (("corruption=spatter", "severity=nan"), "from 0 (clean) to 1"),

@@ -64,7 +64,8 @@ def test_a_rows_version_is_that_of_its_unseen_parts():
     ("name", "said"),
     [
         ("spatter+fogg", "There is no corruption 'fogg'"),
-        ("spatter+clean", "There is no corruption 'clean'"),
+        ("spatter+clean", "'clean' is the absence of any corruption"),
+        ("clean+flare", "Name the other one alone"),
         ("spatter+spatter", "two different names"),
         ("spatter+flare+haze", "two different names"),
         ("spatter+", "There is no corruption ''"),

@@ -117,7 +117,10 @@ def test_odd_and_tiny_frames_work(name, size):
     assert corrupt(frame, name, 0.9, key=KEY).shape == frame.shape
 
 
-@pytest.mark.parametrize("severity", [1.2, -0.1, float("nan"), float("inf"), "much", None])
+BAD_SEVERITIES = [1.2, -0.1, float("nan"), float("inf"), "much", None, "0.5", True, False, np.True_]
+
+
+@pytest.mark.parametrize("severity", BAD_SEVERITIES)
 def test_a_severity_outside_zero_to_one_is_refused(severity, panorama):
     with pytest.raises(ValueError, match="from 0 .clean. to 1"):
         corrupt(panorama[0], "flare", severity, key=KEY)

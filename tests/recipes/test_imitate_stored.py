@@ -86,6 +86,8 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
         store.build()
     clean, again = (store.features(SCENE).views for store in stores)
     assert np.array_equal(clean, again)
+    made = [path for path in tmp_path.rglob("*") if path.is_dir()]
+    assert len({path.stat().st_mode for path in made}) == 1  # all that may read one read the others
     variants = [stores[1].features(SCENE, v) for v in (1, 2)]
     assert all(not np.array_equal(v.views, clean) for v in variants)
     assert not np.array_equal(variants[0].views, variants[1].views)

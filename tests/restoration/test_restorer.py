@@ -64,14 +64,18 @@ def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
         (RGB, np.zeros((8, 8, 3), np.float32), "uint8"),
         (DEPTH, np.zeros((8, 8, 1), np.uint16), "float32 metres"),
         (DEPTH, np.full((8, 8), 2500, np.float32), "in millimetres"),
+        (RGB, torch.zeros(8, 8, 3, dtype=torch.uint8), r"not Tensor: .*numpy\(\)"),
+        (DEPTH, [[1.0]], "must be a numpy array, not list"),
+        (RGB, None, "must be a numpy array, not NoneType"),
         (RGB, np.zeros((8, 8), np.uint8), r"\[H, W, 3\]"),
         (RGB, np.zeros((37, 8, 8, 3), np.uint8), "36 views"),
         ("sound", np.zeros(3), "rgb, depth, not for sound"),
     ],
 )
 def test_frames_of_another_form_are_refused(untrained, sensor, frame, words):
-    with pytest.raises((TypeError, ValueError, KeyError), match=words):
-        untrained.restore(sensor, frame)
+    for call in (untrained.restore, untrained.doubt):
+        with pytest.raises((TypeError, ValueError, KeyError), match=words):
+            call(sensor, frame)
 
 
 def test_a_large_frame_keeps_its_detail_under_a_correction_computed_small():
@@ -193,6 +197,10 @@ def damaged_weights(folder: Path) -> None:
     file.write_bytes(bytes(raw))
 
 
+def damaged_sum(folder: Path) -> None:
+    (folder / "model.safetensors.sha256").write_text("x")
+
+
 def no_sum(folder: Path) -> None:
     (folder / "model.safetensors.sha256").unlink()
 
@@ -212,6 +220,7 @@ def card_with(**changed):
     ("change", "words"),
     [
         (damaged_weights, "cut short or damaged"),
+        (damaged_sum, "cannot be compared with model.safetensors.sha256 .* Fetch the folder again"),
         (no_sum, "no model.safetensors.sha256"),
         (card_with(hash="0" * 12), "not those of its card"),
         (card_with(width=1 << 30), "whole number from 4 to 128"),
@@ -225,8 +234,9 @@ def card_with(**changed):
 def test_a_damaged_folder_is_refused(untrained, tmp_path, change, words):
     untrained.save(tmp_path)
     change(tmp_path)
-    with pytest.raises((ValueError, FileNotFoundError), match=words):
+    with pytest.raises((ValueError, FileNotFoundError), match=words) as error:
         load_restorer(tmp_path)
+    assert "delete" not in str(error.value)  # it needs every file
 
 
 # what is shipped ---------------------------------------------------------------------------------

@@ -5,9 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 
+import pytest
+
+from mitigate.core.files import find
 from mitigate.corruptions.instruction import Key, corrupt_instruction
 from mitigate.corruptions.suite import INSTRUCTION
-from mitigate.safeguard import weights
+from mitigate.safeguard import adapter_folder, weights
 from mitigate.safeguard.choices import VERSION, identity, label
 from mitigate.safeguard.guard import open_safeguard
 
@@ -63,3 +66,28 @@ def test_rules_that_say_something_else_have_another_version():
             heard = corrupt_instruction(text, name, 1.0, Key(0, str(n)))
             said.append(rules.canonicalise(heard).text)
     assert hashlib.sha256(json.dumps(said).encode()).hexdigest()[:12] == SAID, f"of {VERSION}"
+
+
+@pytest.mark.parametrize("choice", ["", None, 5, "tagger+", "reader+"])
+def test_what_names_no_safeguard_is_answered_with_the_choices(choice):
+    with pytest.raises(ValueError, match=r"no safeguard .* one of: none, rules, .* folder"):
+        open_safeguard(choice)
+
+
+@pytest.mark.parametrize("first", ["", "tagger+", "reader+"])
+def test_a_folder_without_weights_is_told_what_a_safeguards_folder_holds(tmp_path, first):
+    (tmp_path / "config.yaml").write_text("agent: {}")
+    said = r"no safeguard in .* holds model\.safetensors of a tagger or a reader .*, or card\.json"
+    with pytest.raises(FileNotFoundError, match=said):
+        open_safeguard(f"{first}{tmp_path}")
+
+
+def test_weights_of_another_network_are_told_what_a_safeguards_folder_holds():
+    with pytest.raises(ValueError, match="of another network.* of a tagger or a reader"):
+        open_safeguard(str(find("checkpoints/base")))
+
+
+def test_an_adapter_that_lacks_files_names_them(tmp_path):
+    (tmp_path / adapter_folder.CONFIG).write_text("{}")
+    with pytest.raises(FileNotFoundError, match="adapter_model.safetensors missing"):
+        open_safeguard(str(tmp_path))

@@ -93,6 +93,7 @@ def test_a_saved_adapter_says_the_same_after_a_reload(model, tmp_path):
     names = {path.name for path in (tmp_path / "adapter").iterdir()}
     weights = "adapter_model.safetensors"
     assert names == {"adapter_config.json", weights, f"{weights}.sha256", "card.json"}
+    assert len({path.stat().st_mode for path in (tmp_path / "adapter").iterdir()}) == 1
     card = json.loads((tmp_path / "adapter" / "card.json").read_text())
     assert len(card["base_sha256"]) == 64 and card["base"] == model.base
 

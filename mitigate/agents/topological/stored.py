@@ -9,7 +9,6 @@ one corruption is kept.
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -185,14 +184,15 @@ def lattice(points: np.ndarray) -> np.ndarray:
 
 def _save(poses: ScenePoses, path: Path) -> None:
     """Write ``poses`` aside and rename the folder: it is whole or not there."""
-    aside = Path(tempfile.mkdtemp(prefix=f".{path.name}.", dir=path.parent))
-    try:
-        poses.memmap(aside, num_threads=0)  # type: ignore[attr-defined]
-        aside.rename(path)
-    except BaseException:
-        shutil.rmtree(aside, ignore_errors=True)
-        if not path.is_dir():  # else another process was quicker
-            raise
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as aside:
+        draft = Path(aside) / path.name  # which others may read, unlike aside
+        draft.mkdir()
+        poses.memmap(draft, num_threads=0)  # type: ignore[attr-defined]
+        try:
+            draft.rename(path)
+        except OSError:
+            if not path.is_dir():  # else another process was quicker
+                raise
 
 
 def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
