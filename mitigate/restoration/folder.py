@@ -17,7 +17,7 @@ from mitigate.core.observation import DEPTH, RGB
 if TYPE_CHECKING:
     from mitigate.restoration.restorer import Restorer
 
-FORMAT, CARD = 3, "card.json"
+FORMAT, CARD = 4, "card.json"
 LIMITS = {"width": (4, 128), "depth_width": (4, 128), "size": (32, 512)}  # (ours)
 FARTHEST = 1000.0  # metres (ours)
 _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=restore`."

@@ -2,7 +2,7 @@
 
     low, high = least and greatest of what the other views of the panorama show
     lost, gain, bias = U-Net(x, low - x, high - x) zero-initialised: at first nothing changes
-    trust = sigmoid(-lost - alone * how far x lies outside of low and high)
+    trust = sigmoid(-lost - alone * how far x lies outside of low and high), of each colour
     y = x gain + bias                              light, blur, noise
     out = y where trusted, else what other views of the panorama show, else what is around
 
@@ -34,7 +34,7 @@ GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; lo
 
 
 class Restored(NamedTuple):
-    """out [n, c, H, W]: the restored frames; trust [n, 1, H, W]; gate [instants]: logits of
+    """out [n, c, H, W]: the restored frames; trust [n, c, H, W]; gate [instants]: logits of
     "corrupted"."""
 
     out: Tensor
@@ -57,7 +57,7 @@ class SensorRestorer(nn.Module):
         self.sensor, self.size, self.far = sensor, size, far
         channels = CHANNELS[sensor]
         inputs = 3 * channels + 1 + (sensor == DEPTH)
-        self.net = UNet(inputs, 2 * channels + 1, width)
+        self.net = UNet(inputs, 3 * channels, width)
         self.gate = Gate(width)
         self.alone = nn.Parameter(torch.tensor(ALONE))
         self.register_buffer("threshold", torch.zeros(()))
@@ -97,7 +97,7 @@ class SensorRestorer(nn.Module):
 
     def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor, Tensor]:
         """Of frames at the working size: the U-Net's maps, how far each pixel is contradicted
-        [n, 1, h, w], in margins, and the gate's logits [instants]."""
+        [n, c, h, w], in margins, and the gate's logits [instants]."""
         shown, outside = self.seen(x, valid, views)
         maps = self.net.encode(shown, views)
         return maps, outside, self.gate(maps.stats, texture(x, valid), views)
@@ -107,16 +107,16 @@ class SensorRestorer(nn.Module):
         below and above it the other views of its panorama are; and how far it lies outside."""
         own = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
         if not ring.is_ring(views, *x.shape[-2:]):
-            none = torch.zeros_like(x[:, :1])
-            return torch.cat([*own, torch.zeros_like(x), torch.zeros_like(x), none], 1), none
+            none = torch.zeros_like(x)
+            return torch.cat([*own, none, none, none[:, :1]], 1), none
         low, high, seen = ring.compared(x, valid, self.sensor == DEPTH)
-        off = torch.maximum(low - x, x - high).clamp(min=0).amax(1, keepdim=True)
+        off = torch.maximum(low - x, x - high).clamp(min=0)
         outside = (off / MARGIN[self.sensor] - 1).clamp(min=0)
         return torch.cat([*own, (low - x) * 2, (high - x) * 2, seen], 1), outside
 
     def _corrections(self, maps: Encoded, outside: Tensor) -> Tensor:
         """Gain, bias and how surely lost each pixel is, at the working size."""
-        gain_bias, lost = self.net.decode(maps).tensor_split([-1], 1)
+        gain_bias, lost = self.net.decode(maps).tensor_split([2 * CHANNELS[self.sensor]], 1)
         return torch.cat([gain_bias, lost + self.alone * outside], 1)
 
     def _composed(
@@ -125,7 +125,7 @@ class SensorRestorer(nn.Module):
         """Frames [n, c, H, W] with the U-Net's ``maps`` at the working size."""
         channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
         maps = maps if full == small else _resized(maps, full)
-        gain, bias, lost = maps.split([channels, channels, 1], 1)
+        gain, bias, lost = maps.split(channels, 1)
         trust = (-SUREST * ((lost + LOST) / SUREST).tanh()).sigmoid() * valid
         y = (x * gain.clamp(*GAINS).exp() + bias).clamp(0, 1)
         known, values = trust, y

@@ -54,7 +54,7 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
     reading, and whether one has, [P * 12, 1, s, s] in 0 and 1.
     """
     low, high = torch.full_like(values, torch.inf), torch.full_like(values, -torch.inf)
-    for value, sure, scale in _turned(torch.cat([values * valid, valid], 1)):
+    for value, sure, scale in _turned(values * valid, valid):
         shown = (value / sure.clamp(min=0.5) / (scale if depth else 1.0)).clamp(max=1)
         low = torch.where(sure > 0.5, torch.minimum(low, shown), low)
         high = torch.where(sure > 0.5, torch.maximum(high, shown), high)
@@ -62,36 +62,36 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
     return torch.where(seen, low, values), torch.where(seen, high, values), seen[:, :1].float()
 
 
-def _turned(maps: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-    """Of each neighbour, in the view's own frame: its ``maps`` [P * 12, c + 1, s, s] but the last;
-    that last, which says how much they count; and the metres along its axis for one along the own.
-    """
-    grid, ahead = (part.to(maps.device) for part in neighbours(maps.shape[-1]))
-    ring = maps.unflatten(0, (-1, VIEWS))
+def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
+    """Of each neighbour, in the view's own frame: its ``values`` [P * 12, c, s, s]; how much they
+    count, ``weights`` [P * 12, 1 or c, s, s]; the metres along its axis for one along the own."""
+    grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
+    parts = [values.shape[1], weights.shape[1]]
+    ring = torch.cat([values, weights], 1).unflatten(0, (-1, VIEWS))
     shifts = [sign * step for step in STEPS for sign in (1, -1)]
     for shift, turned, scale in zip(shifts, grid, ahead, strict=True):
         rolled = ring.roll(shift, 1).flatten(0, 1)
         seen = F.grid_sample(rolled, turned.expand(len(rolled), -1, -1, -1), align_corners=False)
-        yield seen[:, :-1], seen[:, -1:], scale
+        yield *seen.split(parts, 1), scale
 
 
 def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor, Tensor]:
     """What the other views of each panorama say of every pixel.
 
     Args: values float [P * 12, c, s, s]: colours, or (``depth``) metres along each view's axis over
-    anything. trust [P * 12, 1, s, s] in [0, 1]: which of them are to be believed.
-    Returns their mean [P * 12, c, s, s] and how sure it is, [P * 12, 1, s, s] in [0, 1).
+    anything. trust [P * 12, 1 or c, s, s] in [0, 1]: which of them are to be believed.
+    Returns their mean [P * 12, c, s, s] and how sure it is, as ``trust`` in [0, 1).
     """
     total = torch.zeros_like(values)
     weight = torch.zeros_like(trust)
-    for value, sure, scale in _turned(torch.cat([values * trust, trust], 1)):
+    for value, sure, scale in _turned(values * trust, trust):
         total = total + value * sure / (scale if depth else 1.0)
         weight = weight + sure.square()
     return total / (weight + 1e-4), weight / (weight + SURE)
 
 
 def from_around(values: Tensor, trust: Tensor) -> Tensor:
-    """``values`` [n, c, h, w] where ``trust`` [n, 1, h, w] is 1, and elsewhere the mean of what is
+    """``values`` [n, c, h, w] where ``trust`` [n, 1 or c, h, w] is 1, and elsewhere the mean of what is
     trusted around, the nearer the more: a pyramid of halvings, filled from its top."""
     sums, weights = [values * trust], [trust]
     while min(sums[-1].shape[-2:]) > 1:
