@@ -91,8 +91,8 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
 
 
 def from_around(values: Tensor, trust: Tensor) -> Tensor:
-    """``values`` [n, c, h, w] where ``trust`` [n, 1 or c, h, w] is 1, and elsewhere the mean of what
-    is trusted around, the nearer the more: a pyramid of halvings, filled from its top."""
+    """``values`` [n, c, h, w] where ``trust`` [n, 1 or c, h, w] is 1, and elsewhere the mean of
+    what is trusted around, the nearer the more: a pyramid of halvings, filled from its top."""
     sums, weights = [values * trust], [trust]
     while min(sums[-1].shape[-2:]) > 1:
         sums.append(F.avg_pool2d(sums[-1], 2, ceil_mode=True, count_include_pad=False))
