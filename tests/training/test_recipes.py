@@ -56,7 +56,8 @@ def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 
-def test_a_language_model_in_eight_bits_is_trained_and_says_so_once(tmp_path, capfd):
+def test_a_language_model_in_eight_bits_is_trained_without_a_line_a_product(tmp_path, capfd):
+    pytest.importorskip("bitsandbytes")
     base = write_tiny_model(tmp_path / "tiny-llama")
     options = ["recipe=safeguard_lora", "debug=smoke", "evaluation.enabled=false", "workers=0"]
     options += [f"runs={tmp_path}", f"agent.base={base}", "agent.precision=int8"]
