@@ -10,10 +10,11 @@ from typing import Any
 
 from torch import Tensor
 
+from mitigate.core.precision import to_device
 from mitigate.core.seeding import generator
 from mitigate.safeguard.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.safeguard.model import LanguageModel, collate
-from mitigate.training.recipe import Recipe, to_device
+from mitigate.training.recipe import Recipe
 
 Encoded = tuple[int, list[int], list[int]]  # of a pair: its number, prompt and completion
 _HELD = 10**9  # pairs from here on are for evaluation

@@ -12,6 +12,7 @@ import time
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import torch
 import torch.nn.functional as F
@@ -86,6 +87,18 @@ def device_of(name: str) -> torch.device:
         f"trainer.device={name} cannot be used here ({cause}). Choose one of: {', '.join(there)}; "
         "`make doctor` says what this machine has."
     )
+
+
+def to_device(value: Any, device: torch.device) -> Any:
+    """Move what has ``to`` (tensors, batches of them) in nested dicts, lists and tuples to
+    ``device``; leave the rest."""
+    if hasattr(value, "to"):
+        return value.to(device)
+    if isinstance(value, dict):
+        return {name: to_device(item, device) for name, item in value.items()}
+    if isinstance(value, (list, tuple)) and not hasattr(value, "_fields"):
+        return type(value)(to_device(item, device) for item in value)
+    return value
 
 
 def computing(precision: str, device: torch.device) -> AbstractContextManager[None]:

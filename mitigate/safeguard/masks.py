@@ -17,7 +17,6 @@ SMALL = bag(
     "some this its be been have has from into for or as when once where which slight other "
     "another our we i"
 )
-HIDDEN = "[hidden]"
 _STAYS = re.compile(
     r"(?<=[a-z])\[mask\]|\[mask\](?=[a-z])|"
     r"(?<!\ba )(?<!\bthe )\b(?:turn|turning|bear|veer|rotate|swing)\s+\[mask\](?:\s*\[mask\])*"
@@ -34,7 +33,7 @@ def fill(text: str) -> str:
     hidden: a part of a word, where to turn, a text that is hidden as a whole."""
     if not words(MASK.sub(" ", text)):
         return text
-    text = _STAYS.sub(lambda m: m.group().replace("[mask]", HIDDEN), MASK.sub("[mask]", text))
+    text = _STAYS.sub(lambda m: m.group().replace("[mask]", "[MASK]"), MASK.sub("[mask]", text))
     text = _RUN.sub("[mask]", text)
     pieces: list[str] = []
     at = 0
@@ -49,8 +48,7 @@ def fill(text: str) -> str:
             word = _best(left if left else ".", right)
             tokens[index] = word.capitalize() if left in ".!?" else word
     pieces[1::2] = tokens
-    said = " ".join(("".join(pieces) + text[at:]).split()).replace(HIDDEN, "[MASK]")
-    return re.sub(r"\s+([.,;!?])", r"\1", said)
+    return re.sub(r"\s+([.,;!?])", r"\1", " ".join(("".join(pieces) + text[at:]).split()))
 
 
 def filled(masked: str, answer: str) -> list[str] | None:

@@ -16,6 +16,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.core.checkpoint import WEIGHTS, load_tensors, load_weights
+from mitigate.core.precision import to_device
 from mitigate.core.public_weights import borrow
 from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard import edits, minilm
@@ -29,7 +30,6 @@ from mitigate.safeguard.tagger import (
     flags,
     only_with_plain_form,
     open_tagger,
-    placed,
     tagged,
 )
 
@@ -105,7 +105,9 @@ class Reader(nn.Module):
             return Tagged((), (), ())
         self.eval()
         parts = [found[i : i + LONGEST] for i in range(0, len(found), LONGEST)]
-        read = [placed(self.collate([self.encode(part)]), self.act.weight.device) for part in parts]
+        read = [
+            to_device(self.collate([self.encode(part)]), self.act.weight.device) for part in parts
+        ]
         logits = [[part[0].cpu() for part in self(batch)] for batch in read]
         acts, before, attack = (torch.cat(part) for part in zip(*logits, strict=True))
         return tagged(found, acts, before, attack.sigmoid().tolist(), SPEECH, LED)

@@ -20,6 +20,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.core.checkpoint import load_weights
+from mitigate.core.precision import to_device
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, COLOURS
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.tagger import Token
@@ -114,7 +115,7 @@ class Tagger(nn.Module):
             return Tagged((), (), ())
         self.eval()
         read = self.collate([self.encode(found)])
-        acts, before = (part[0].cpu() for part in self(placed(read, self.act.weight.device)))
+        acts, before = (part[0].cpu() for part in self(to_device(read, self.act.weight.device)))
         return tagged(found, acts, before)
 
     def encode(self, found: Sequence[Token]) -> Encoded:
@@ -169,11 +170,6 @@ def only_with_plain_form(acts: Tensor, plain: Tensor) -> Tensor:
     """Return logits of the acts [B, T, 3] that say a word plainly only if it has a plain form."""
     barred = (torch.arange(3, device=plain.device) == PLAIN) & ~plain[..., None]
     return acts.masked_fill(barred, -30.0)
-
-
-def placed(batch: dict[str, Tensor], device: torch.device) -> dict[str, Tensor]:
-    """Return a batch on the device of the weights that read it."""
-    return {name: part.to(device) for name, part in batch.items()}
 
 
 def tagged(

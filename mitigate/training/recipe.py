@@ -142,15 +142,3 @@ def accumulate(
         fresh = {name: torch.as_tensor(value).detach() for name, value in found.items()}
         values = {name: values.get(name, 0) + value for name, value in fresh.items()}
     return values
-
-
-def to_device(value: Any, device: torch.device) -> Any:
-    """Move what has ``to`` (tensors, batches of them) in nested dicts, lists and tuples to
-    ``device``; leave the rest."""
-    if hasattr(value, "to"):
-        return value.to(device)
-    if isinstance(value, dict):
-        return {name: to_device(item, device) for name, item in value.items()}
-    if isinstance(value, (list, tuple)) and not hasattr(value, "_fields"):
-        return type(value)(to_device(item, device) for item in value)
-    return value

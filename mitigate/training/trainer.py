@@ -19,14 +19,14 @@ from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate.core import checkpoint, seeding
 from mitigate.core.memory import give_back
-from mitigate.core.precision import choose, computing, device_of
+from mitigate.core.precision import choose, computing, device_of, to_device
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, held
 from mitigate.training import limits, states
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe, accumulate, to_device
+from mitigate.training.recipe import Recipe, accumulate
 
 SCHEDULES = ("cosine", "constant", "linear")
 

@@ -13,8 +13,9 @@ import pytest
 import torch
 
 from mitigate.core import seeding
+from mitigate.core.precision import to_device
 from mitigate.training import states
-from mitigate.training.trainer import LossNotFinite, Trainer, differences, to_device
+from mitigate.training.trainer import LossNotFinite, Trainer, differences
 from tests.core.test_checksums import FLIPS, flipped
 from tests.tiny import TinyRecipe
 
