@@ -6,6 +6,7 @@ pairs are grouped by length into micro-batches.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from torch import Tensor
@@ -13,7 +14,7 @@ from torch import Tensor
 from mitigate.core.precision import to_device
 from mitigate.core.seeding import generator
 from mitigate.safeguard.data import Pair, draw_pair, read_chats, read_texts
-from mitigate.safeguard.model import LanguageModel, collate
+from mitigate.safeguard.model import LanguageModel, collate, encode_pair
 from mitigate.training.recipe import Recipe
 
 Encoded = tuple[int, list[int], list[int]]  # of a pair: its number, prompt and completion
@@ -29,8 +30,8 @@ class SafeguardLora(Recipe):
     share: of a step's pairs that come from either, if given.
     """
 
-    here = True  # a pair is quick, and the model is large
-    needs = ("encode_pair", "tokenizer")
+    ahead = True
+    needs = ("rewrite", "tokenizer")
     otherwise = "It takes a language model in an agent's place: agent=safeguard."
 
     def __init__(
@@ -49,6 +50,7 @@ class SafeguardLora(Recipe):
                 f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.pairs ({pairs})."
             )
         self.agent, self.pairs, self.micro_batch = agent, pairs, micro_batch
+        self.encode_pair = partial(encode_pair, agent.tokenizer, agent.prompt)  # without the agent
         self.texts = read_texts(files or [])
         self.chats = [pair for path in chats or [] for pair in read_chats(path)]
         self.share, self.seed = share, seed
@@ -66,7 +68,11 @@ class SafeguardLora(Recipe):
         return list(range(step * self.pairs, (step + 1) * self.pairs))
 
     def work(self, job: int) -> Encoded:
-        return (job, *self.agent.encode_pair(self.pair(job)))
+        return (job, *self.encode_pair(self.pair(job)))
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What workers need: all but the language model, which is large."""
+        return {**self.__dict__, "_modules": {}}
 
     def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:
         return self._batch(pieces)

@@ -70,16 +70,8 @@ class LanguageModel(nn.Module):
         return self.network.device
 
     def encode(self, text: str) -> list[int]:
-        """Token ids of the chat that asks for ``text`` to be rewritten, up to the answer."""
-        ids = self.tokenizer.apply_chat_template(
-            prompt_messages(text, self.prompt), add_generation_prompt=True, return_dict=False
-        )
-        return list(ids)
-
-    def encode_pair(self, pair: Pair) -> tuple[list[int], list[int]]:
-        """Token ids of the prompt, and of the completion with its end mark."""
-        answer = self.tokenizer(pair.target, add_special_tokens=False)["input_ids"]
-        return self.encode(pair.source), [*answer, self.tokenizer.eos_token_id]
+        """See :func:`encode`."""
+        return encode(self.tokenizer, self.prompt, text)
 
     def loss(self, inputs: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
         """Return summed cross-entropy over the completions of :func:`collate`, and right tokens."""
@@ -230,6 +222,20 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     if precision == "fp32":
         model.network.merge_adapter()
     return model.eval()
+
+
+def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
+    """Token ids of the chat that asks for ``text`` to be rewritten, up to the answer."""
+    ids = tokenizer.apply_chat_template(
+        prompt_messages(text, prompt), add_generation_prompt=True, return_dict=False
+    )
+    return list(ids)
+
+
+def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], list[int]]:
+    """Token ids of the prompt, and of the completion with its end mark."""
+    answer = tokenizer(pair.target, add_special_tokens=False)["input_ids"]
+    return encode(tokenizer, prompt, pair.source), [*answer, tokenizer.eos_token_id]
 
 
 def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str, Tensor]:

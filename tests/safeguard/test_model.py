@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import pickle
 import shutil
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -12,7 +14,7 @@ import torch
 from mitigate.core import checkpoint
 from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.safeguard.data import Pair
-from mitigate.safeguard.model import LanguageModel, collate, open_adapter
+from mitigate.safeguard.model import LanguageModel, collate, encode_pair, open_adapter
 from mitigate.training import states
 from mitigate.training.recipe import accumulate
 from mitigate.training.trainer import Trainer
@@ -67,10 +69,18 @@ def test_micro_batches_give_the_gradient_of_the_whole_batch(model):
     torch.testing.assert_close(gradients[0], gradients[2], rtol=1e-4, atol=1e-6)
 
 
+def test_workers_encode_pairs_without_the_language_model(model):
+    recipe = SafeguardLora(model, pairs=4, micro_batch=2)
+    there = pickle.loads(pickle.dumps(recipe))
+    assert not list(there.parameters())
+    assert [there.work(job) for job in there.jobs(3)] == [recipe.work(j) for j in recipe.jobs(3)]
+
+
 def test_the_loss_counts_the_completion_and_its_end_mark_and_nothing_else(model):
-    prompt, answer = model.encode_pair(Pair("TURN left.", "Turn left.", "capitalize"))
+    coded = partial(encode_pair, model.tokenizer, model.prompt)
+    prompt, answer = coded(Pair("TURN left.", "Turn left.", "capitalize"))
     assert answer[-1] == model.tokenizer.eos_token_id == model.tokenizer.pad_token_id
-    short = model.encode_pair(Pair("Go.", "", "black_box"))
+    short = coded(Pair("Go.", "", "black_box"))
     inputs = collate([(prompt, answer), short], model.tokenizer.pad_token_id)
     assert inputs["completion"].sum(1).tolist() == [len(answer), 1]
     logits = model.network(torch.tensor([[*prompt, *answer]])).logits[0, len(prompt) - 1 : -1]
