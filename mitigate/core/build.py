@@ -24,6 +24,7 @@ from mitigate.core.names import unknown
 # attribute of an agent's class: arguments that name code or files, which no config that came with
 # weights may set
 OWN_CONFIG_ONLY = "own_config_only"
+LORA = "adapter_model.safetensors"  # PEFT's name for it
 NOT_LOADED = "Error loading"  # so begins what Hydra says of a _target_ that it cannot import
 PARTIAL = "_partial_"  # Hydra's mark: give a function that makes this
 
@@ -127,6 +128,8 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     from mitigate.shipping import hardened
 
     weights = str(find(weights))
+    if _is_lora(node, weights):
+        return {}
     if hardened.adapters_only(weights):
         file = Path(weights) / hardened.CONFIG
     else:
@@ -164,6 +167,13 @@ def build_agent(
     elif weights is not None and hardened.adapters_only(weights):
         hardened.check(Path(weights))
         hardened.fill(agent, weights)
+    elif weights is not None and _is_lora(node, weights):
+        agent.load(weights)
     elif weights is not None:
         checkpoint.load_agent(agent, weights)
     return agent
+
+
+def _is_lora(node: DictConfig, weights: str) -> bool:
+    """Whether ``node`` is a language model and ``weights`` the folder of an adapter for one."""
+    return hasattr(located(node._target_), "load") and (Path(weights) / LORA).is_file()

@@ -3,15 +3,23 @@ a language model; what each did and could not do."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from mitigate.safeguard import gate, masks, rules
 from mitigate.safeguard.formatting import unformatted
 from mitigate.safeguard.manners import plainer, restyled
 from mitigate.safeguard.object_goal import object_goal
-from mitigate.safeguard.plainly_said import Tags, is_speech, judging, plainly_said
+from mitigate.safeguard.plainly_said import (
+    Said,
+    Tags,
+    is_speech,
+    judging,
+    plainly_said,
+    together,
+)
 from mitigate.safeguard.refusals import refusal
-from mitigate.safeguard.text import MASK, passages, tidy, words
+from mitigate.safeguard.text import MASK, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
@@ -66,23 +74,23 @@ class Draft:
 
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
+        self.spoken = self.tagged = self.styled = False
+        self.passages: list[Said] = []
         if self.plain:
-            self.repaired, self.passages, self.styled = self.heard, [self.heard], False
-            self.same, self.tagged = True, False
+            self.repaired, self.same = self.heard, True
             self.reasons = [why] if (why := self._left()) else []
             return
         done = rules.repair(self.heard, empty.__contains__, self.judge)
         self.same = done.text == self.heard
         self.repaired, self.reasons = tidy(done.text), list(done.reasons)
         self.styled = done.marks >= MARKS
-        self.tagged, self.passages = False, [self.repaired]
         if len(words(self.repaired)) > TOO_LONG:
             self.reasons.append(f"over {TOO_LONG} words: rules alone")
             return
         if not self._say_goal():
             self._say_orders()
-            self.tagged = self._say_speech()
-        self.passages = passages(self.repaired, PASSAGE)
+            parts = self._say_speech() or [Said(part, part) for part in sentences(self.repaired)]
+            self.passages = _passages(parts)
 
     def _left(self) -> str:
         """Why the rules do not look at the text, "" if they do."""
@@ -108,38 +116,41 @@ class Draft:
             self.reasons.append("orders said in plain words")
             self.repaired, self.same = plain, False
 
-    def _say_speech(self) -> bool:
-        """Let the tagger say speech in plain words; return whether it changed any."""
+    def _say_speech(self) -> list[Said]:
+        """Let the tagger say speech in plain words; return its sentences, none of what is no
+        speech."""
         tagged = self.tagger.tag(self.repaired) if self.tagger else None
         if tagged is None or not is_speech(tagged):
-            return False
-        said, kept = plainly_said(self.repaired, tagged)
+            return []
+        self.spoken = True
+        parts, kept = plainly_said(self.repaired, tagged)
         self.reasons += kept
-        changed = said != self.repaired
-        if changed:
+        said = together(parts)
+        self.tagged = said != self.repaired
+        if self.tagged:
             self.reasons.append("said in plain words by the tagger")
             self.repaired, self.same = said, False
-        return changed
+        return parts
 
     @property
     def wanted(self) -> list[str]:
-        """The passages that the model is to say again."""
-        if self.plain or len(words(self.repaired)) > TOO_LONG:
-            return []
-        return [p for p in self.passages if MASK.search(p) or self.styled]
+        """The passages that the model is to say again, as they were heard."""
+        found = [part.heard for part in self.passages]
+        return found if self.styled or self.spoken else [p for p in found if MASK.search(p)]
 
     def take(self, said: dict[str, str | None]) -> None:
         """Put safe answers in the place of their passages."""
         wanted = set(self.wanted)
-        for index, passage in enumerate(self.passages):
-            if passage not in wanted:
+        for index, part in enumerate(self.passages):
+            if part.heard not in wanted:
                 continue
             self.asked += 1
-            problem = refusal(passage, said.get(passage), index == len(self.passages) - 1)
+            answer, last = said.get(part.heard), index == len(self.passages) - 1
+            problem = refusal(part, answer, last, self.spoken)
             if problem:
-                self.reasons.append(f"kept {passage[:40]!r}: {problem}")
+                self.reasons.append(f"kept {part.heard[:40]!r}: {problem}")
             else:
-                self.passages[index] = said[passage] or ""
+                self.passages[index] = replace(part, said=answer or "")
                 self.taken += 1
 
     def decision(self, seconds: float) -> Decision:
@@ -159,14 +170,29 @@ class Draft:
         return Decision(self.original, text, route, tuple(self.reasons), seconds)
 
     def _said(self, text: str) -> str:
-        """Return the model's answers and the kept passages, or ``text`` if the whole is unsafe."""
-        said = " ".join(passage for passage in self.passages if passage).strip()
-        problem = gate.result_refused(self.repaired, said)
+        """Return the model's answers and the other passages, or ``text`` if the whole is unsafe."""
+        heard, said = " ".join(part.heard for part in self.passages), together(self.passages)
+        problem = gate.result_refused(heard, said)
+        problem = problem or (gate.goal_refused(heard, said) if self.spoken else "")
         if problem:
             self.taken = 0
             self.reasons.append(f"kept all: {problem}")
             return text
         return said
+
+
+def _passages(parts: Sequence[Said]) -> list[Said]:
+    """Return ``parts`` in passages of about ``PASSAGE`` words as heard, at most."""
+    found: list[Said] = []
+    for part in parts:
+        last = found[-1] if found else None
+        if last and len(last.heard.split()) + len(part.heard.split()) <= PASSAGE:
+            found[-1] = Said(
+                f"{last.heard} {part.heard}", together([last, part]), last.aside + part.aside
+            )
+        else:
+            found.append(part)
+    return found
 
 
 def _readable(text: str) -> bool:

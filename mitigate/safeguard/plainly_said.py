@@ -7,7 +7,7 @@ tagger is sure of, and else left as it was heard.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 from mitigate.corruptions.language.tagger import Token
@@ -71,6 +71,16 @@ class Tagged:
         return sum(found) / max(1, len(found))
 
 
+@dataclass(frozen=True)
+class Said:
+    """A sentence, or several in a row, as it was ``heard``, and as it is ``said`` plainly;
+    ``aside``: words of it, in lower case, that surely tell nothing of the way."""
+
+    heard: str
+    said: str
+    aside: tuple[str, ...] = ()
+
+
 class Tags(Protocol):
     """What tags a text."""
 
@@ -102,30 +112,37 @@ def led(found: Sequence[Token]) -> float:
     return sum(told) / max(1, len(told))
 
 
-def plainly_said(text: str, tagged: Tagged) -> tuple[str, list[str]]:
-    """Return ``text`` in plain words, and what was kept for which reason."""
+def plainly_said(text: str, tagged: Tagged) -> tuple[list[Said], list[str]]:
+    """Return what becomes of each sentence of ``text``, and what was kept for which reason."""
     reasons: list[str] = []
     for tries in (TRIES, TRIES[-1:]):
-        said, kept = _all_said(text, tagged, tries)
+        found, kept = _all_said(text, tagged, tries)
+        said = together(found)
         problem = gate.result_refused(text, said) or gate.goal_refused(text, said)
         reasons += [*kept, *([f"kept all: {problem}"] if problem else [])]
         if not problem:
-            return said, reasons
-    return text, reasons
+            return found, reasons
+    return [replace(part, said=part.heard) for part in found], reasons
+
+
+def together(found: Sequence[Said]) -> str:
+    """Return what all of them say."""
+    return " ".join(part.said for part in found if part.said)
 
 
 def _all_said(
     text: str, tagged: Tagged, tries: Sequence[tuple[float, bool]]
-) -> tuple[str, list[str]]:
-    given, reasons = [], []
-    spans = [(piece.start, piece.end) for piece in sentence_pieces(text)]
-    for start, end in spans:
-        places = [i for i, t in enumerate(tagged.tokens) if start <= t.start < end]
-        said, problem = _sentence(text, text[start:end], tagged, places, tries)
-        given.append(said)
+) -> tuple[list[Said], list[str]]:
+    found, reasons = [], []
+    for piece in sentence_pieces(text):
+        heard = text[piece.start : piece.end]
+        places = [i for i, t in enumerate(tagged.tokens) if piece.start <= t.start < piece.end]
+        said, problem = _sentence(text, heard, tagged, places, tries)
+        aside = tuple(tagged.tokens[i].lower for i in places if tagged.drop[i] >= SURE)
+        found.append(Said(heard, said, aside))
         if problem:
-            reasons.append(f"kept {text[start:end][:40]!r}: {problem}")
-    return " ".join(part for part in given if part), reasons
+            reasons.append(f"kept {heard[:40]!r}: {problem}")
+    return found, reasons
 
 
 def _sentence(

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.safeguard import gate, masks
+from mitigate.safeguard.plainly_said import Said
 from mitigate.safeguard.text import MASK, words
 
 
-def refusal(passage: str, answer: str | None, last: bool = False) -> str:
-    """Return why ``answer`` may not stand for ``passage``, the ``last`` of its text or another;
-    empty if it may."""
+def refusal(part: Said, answer: str | None, last: bool = False, spoken: bool = False) -> str:
+    """Return why ``answer`` may not stand for ``part``, the ``last`` of its text or another; empty
+    if it may. What a tagger takes for speech (``spoken``) passes as its edits do."""
     if answer is None:
         return "no answer in time"
-    if MASK.search(passage):
-        return _refused_filling(passage, answer)
-    if len(words(answer)) > len(words(passage)) + 3:
+    if MASK.search(part.heard):
+        return _refused_filling(part.heard, answer)
+    if len(words(answer)) > len(words(part.heard)) + 3:
         return "longer than what it replaces"
-    return gate.rewrite_refused(passage, answer, last)
+    if not spoken:
+        return gate.rewrite_refused(part.heard, answer, last)
+    if part.said and not answer:
+        return "the tagger would keep some of it"
+    return gate.edit_refused(part.heard, answer, part.aside)
 
 
 def _refused_filling(passage: str, answer: str) -> str:

@@ -16,6 +16,7 @@ from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import masks, rules
 from mitigate.safeguard.data import draw_pair
 from mitigate.safeguard.guard import Safeguard, open_safeguard
+from mitigate.safeguard.plainly_said import Said
 from mitigate.safeguard.refusals import refusal
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.rules import style_marks
@@ -188,8 +189,9 @@ def test_the_judge_decides_on_doubtful_sentences():
 
 
 def test_a_refusal_names_what_changed():
-    assert refusal("Turn left.", "Turn left.") == ""
-    assert "left" in refusal("Turn left.", "Turn right.")
+    part = Said("Turn left.", "Turn left.")
+    assert refusal(part, "Turn left.") == ""
+    assert "left" in refusal(part, "Turn right.")
 
 
 @pytest.mark.parametrize("choice", ["rule", "checkpoints/nothing", "http://localhost:1/v1"])
@@ -235,7 +237,7 @@ def test_real_instructions_pass():
 )
 def test_a_hidden_word_may_not_be_guessed_to_say_where_what_or_how_many(answer, taken):
     masked = "Walk on [MASK] until you see [MASK] [MASK] rug."
-    assert (refusal(masked, answer) == "") is taken
+    assert (refusal(Said(masked, masked), answer) == "") is taken
 
 
 def test_a_sentence_of_a_route_stays_though_words_in_it_are_hidden():

@@ -12,10 +12,15 @@ from mitigate.safeguard.edits import KEEP, Edit, tokens
 from mitigate.safeguard.guard import Safeguard, open_safeguard
 from mitigate.safeguard.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
-from mitigate.safeguard.plainly_said import Tagged, is_speech, led, plainly_said
+from mitigate.safeguard.plainly_said import Tagged, is_speech, led, plainly_said, together
 from mitigate.safeguard.report import voices
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.tagger import Tagger, open_tagger
+
+SPEECH = (
+    "Ooh, hello love, so, er, what you want to do is, you want to walk past the piano, lovely old "
+    "thing, and then, um, turn left at the sofa, if you would be so kind, and stop there."
+)
 
 
 @pytest.fixture(scope="module")
@@ -56,13 +61,32 @@ def test_plain_routes_come_back_byte_for_byte(shipped):
 
 
 def test_speech_is_said_in_plain_words_and_the_decision_says_so(shipped):
-    heard = (
-        "Ooh, hello love, so, er, what you want to do is, you want to walk past the piano, lovely "
-        "old thing, and then, um, turn left at the sofa, if you would be so kind, and stop there."
-    )
-    decision = Safeguard(tagger=shipped).canonicalise(heard)
-    assert decision.route == "tagger" and len(decision.text) < 0.8 * len(heard)
+    decision = Safeguard(tagger=shipped).canonicalise(SPEECH)
+    assert decision.route == "tagger" and len(decision.text) < 0.8 * len(SPEECH)
     assert all(word in decision.text for word in ("piano", "left", "stop"))
+
+
+@pytest.mark.parametrize(
+    "answer, taken",
+    [
+        ("Walk past the piano, then turn left at the sofa and stop there.", True),
+        ("Walk past the piano, then turn right at the sofa and stop there.", False),
+        ("Walk past the piano and the lamp, then turn left at the sofa and stop there.", False),
+        ("", False),
+        (None, False),
+    ],
+)
+def test_of_speech_the_models_answer_is_taken_if_it_is_safe_and_else_the_taggers(
+    shipped, answer, taken
+):
+    class Says:
+        def rewrite(self, texts, seconds=None):
+            return [answer for _ in texts]
+
+    alone = Safeguard(tagger=shipped).canonicalise(SPEECH)
+    decision = Safeguard(Says(), tagger=shipped).canonicalise(SPEECH)
+    assert decision.text == (answer if taken else alone.text)
+    assert decision.route == ("model" if taken else "fallback")
 
 
 def test_hidden_words_and_texts_of_nothing_are_left_alone(shipped):
@@ -70,8 +94,8 @@ def test_hidden_words_and_texts_of_nothing_are_left_alone(shipped):
     assert safeguard.canonicalise("").text == ""
     assert safeguard.canonicalise("...").text == "..."
     tagged = shipped.tag("Um, well, so, [MASK] to the sofa, er, dear.")
-    said, reasons = plainly_said("Um, well, so, [MASK] to the sofa, er, dear.", tagged)
-    assert "[MASK]" in said and reasons
+    parts, reasons = plainly_said("Um, well, so, [MASK] to the sofa, er, dear.", tagged)
+    assert "[MASK]" in together(parts) and reasons
 
 
 def test_a_tagger_that_drops_everything_loses_nothing_of_the_way():
@@ -83,7 +107,7 @@ def test_a_tagger_that_drops_everything_loses_nothing_of_the_way():
     heard = "Do not go up. Turn left. Then step into it, and go straight. Stop."
     tagged = Deaf().tag(heard)
     assert is_speech(tagged)
-    assert plainly_said(heard, tagged)[0] == heard
+    assert together(plainly_said(heard, tagged)[0]) == heard
     assert Safeguard(tagger=Deaf()).canonicalise(heard).text == heard
 
 
