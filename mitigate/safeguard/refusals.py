@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from mitigate.corruptions.language.fidelity import facts
+from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
 from mitigate.safeguard import gate, masks
+from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.plainly_said import Said
 from mitigate.safeguard.text import MASK, words
 
@@ -18,10 +19,17 @@ def refusal(part: Said, answer: str | None, last: bool = False, spoken: bool = F
     if len(words(answer)) > len(words(part.heard)) + 3:
         return "longer than what it replaces"
     if not spoken:
-        return gate.rewrite_refused(part.heard, answer, last)
+        return gate.rewrite_refused(part.heard, answer, last) or _plainer(part.heard, answer)
     if part.said and not answer:
         return "the tagger would keep some of it"
     return gate.edit_refused(part.heard, answer, part.aside)
+
+
+def _plainer(heard: str, said: str) -> str:
+    """Return what of a thing ``heard`` tells and ``said`` does not: small, open, wooden ..."""
+    old, new = ({plain_form(word) for word in words(text)} & ATTRIBUTES for text in (heard, said))
+    lost = old - new
+    return f"attributes: {', '.join(sorted(lost))} less" if lost else ""
 
 
 def _refused_filling(passage: str, answer: str) -> str:

@@ -192,6 +192,8 @@ def test_a_refusal_names_what_changed():
     part = Said("Turn left.", "Turn left.")
     assert refusal(part, "Turn left.") == ""
     assert "left" in refusal(part, "Turn right.")
+    door = Said("Push the open door. Stop.", "Push the open door. Stop.")
+    assert "open" in refusal(door, "Push the door. Stop.")
 
 
 @pytest.mark.parametrize("choice", ["rule", "checkpoints/nothing", "http://localhost:1/v1"])
