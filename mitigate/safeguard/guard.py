@@ -90,7 +90,8 @@ class Safeguard:
         answers = self.rewriter.rewrite(doubtful, budget) if doubtful else []
         empty = {s for s, answer in zip(doubtful, answers, strict=True) if answer == ""}
         for draft in drafts:
-            draft.repair(empty)
+            if not empty.isdisjoint(draft.doubtful):
+                draft.repair(empty)
         wanted = list(dict.fromkeys(p for draft in drafts for p in draft.wanted))
         left = max(0.0, budget - (time.monotonic() - began))
         found = self.rewriter.rewrite(wanted, left) if wanted else []

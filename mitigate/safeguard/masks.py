@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from functools import lru_cache
+from itertools import takewhile
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.words import bag
@@ -24,6 +25,7 @@ _STAYS = re.compile(
     re.IGNORECASE,
 )
 _RUN = re.compile(r"\[mask\](?:\s*\[mask\])+")
+_PART = re.compile(r"\[mask\]|[\w'’-]+|[^\w\s]", re.IGNORECASE)
 _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 
 
@@ -52,13 +54,36 @@ def fill(text: str) -> str:
 
 
 def filled(masked: str, answer: str) -> list[str] | None:
-    """Return what ``answer`` has in place of each mask of ``masked``, up to three words for one;
-    None if anything else differs, but for case and marks at the ends."""
-    body = re.sub(r"\s+", " ", MASK.sub(" [mask] ", masked)).strip(" .")
-    parts = [re.escape(part.strip()) for part in body.split("[mask]")]
-    pattern = r"\s*((?:[\w'’-]+\s*){0,3})".join(re.sub(r"\\ ", r"\\s+", part) for part in parts)
-    found = re.fullmatch(pattern, " ".join(answer.split()).strip(" ."), re.IGNORECASE)
-    return None if found is None else [words.strip() for words in found.groups()]
+    """Return what ``answer`` has in place of each mask of ``masked``, up to three words for one, as
+    many as fit for the first; None if anything else differs, but for case and marks at the ends."""
+    hidden, said = _tokens(MASK.sub(" [mask] ", masked)), _tokens(answer)
+    rest = [[False] * (len(said) + 1) for _ in range(len(hidden) + 1)]  # hidden[i:] fits said[j:]
+    rest[-1][-1] = True
+    for i in reversed(range(len(hidden))):
+        for j in range(len(said) + 1):
+            ends = _ends(hidden[i], said, j)
+            rest[i][j] = any(rest[i + 1][end] for end in ends)
+    if not rest[0][0]:
+        return None
+    found, at = [], 0
+    for i, token in enumerate(hidden):
+        start, at = at, max(end for end in _ends(token, said, at) if rest[i + 1][end])
+        if token == "[mask]":
+            found.append(" ".join(said[start:at]))
+    return found
+
+
+def _tokens(text: str) -> list[str]:
+    return _PART.findall(text.strip(" ."))
+
+
+def _ends(token: str, said: list[str], start: int) -> list[int]:
+    """Where what ``token`` stands for may end in ``said``, if it begins at ``start``."""
+    if token != "[mask]":
+        same = start < len(said) and said[start].lower() == token.lower()
+        return [start + 1] if same else []
+    run = takewhile(lambda part: part[0].isalnum(), said[start : start + 3])
+    return [start + n for n in range(sum(1 for _ in run) + 1)]
 
 
 @lru_cache(maxsize=4096)

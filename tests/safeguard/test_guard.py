@@ -129,6 +129,13 @@ def test_masks_are_filled_by_neighbours_without_a_model():
     )
 
 
+def test_what_fills_many_masks_is_found_at_once():
+    began = time.monotonic()
+    assert masks.filled("[MASK] " * 40 + "sofa", "the word " * 30 + "lamp") is None
+    assert masks.filled("[MASK] [MASK] sofa", "go on to the big sofa") == ["go on to", "the big"]
+    assert time.monotonic() - began < 1  # a regular expression took hours
+
+
 def test_a_late_model_costs_no_more_than_its_budget():
     class Slow:
         def rewrite(self, texts, seconds=None):
