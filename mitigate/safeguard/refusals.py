@@ -2,11 +2,28 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
+from mitigate.corruptions.language.tagger import tag
+from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate, masks
+from mitigate.safeguard.evidence import VERBS
+from mitigate.safeguard.goal_words import SAYINGS
+from mitigate.safeguard.neighbours import SEEKS, STOPS
 from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.plainly_said import Said
+from mitigate.safeguard.steps import MOVES
 from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.wording import in_equal_words
+
+_CONDITIONS = bag("if unless until till before otherwise")
+_WHICH = bag("first second third fourth fifth sixth seventh eighth ninth tenth last other another")
+# what plain routes say of whatever was heard
+_PLAIN = frozenset(VERBS | MOVES | STOPS | SEEKS) | bag(
+    "be is are do have keep face start begin reach use see along front end way side again straight"
+)
+_STEM = 4  # letters in which a word and what was heard agree: surplices, surplice (ours)
 
 
 def refusal(part: Said, answer: str | None, last: bool = False, spoken: bool = False) -> str:
@@ -19,10 +36,38 @@ def refusal(part: Said, answer: str | None, last: bool = False, spoken: bool = F
     if len(words(answer)) > len(words(part.heard)) + 3:
         return "longer than what it replaces"
     if not spoken:
-        return gate.rewrite_refused(part.heard, answer, last) or _plainer(part.heard, answer)
-    if part.said and not answer:
-        return "the tagger would keep some of it"
-    return gate.edit_refused(part.heard, answer, part.aside)
+        problem = gate.rewrite_refused(part.heard, answer, last) or _plainer(part.heard, answer)
+    elif part.said and not answer:
+        problem = "the tagger would keep some of it"
+    else:
+        problem = gate.edit_refused(part.heard, answer, part.aside) or _which(part, answer)
+    return problem or _conditions(part.heard, answer) or _invented(part.heard, answer)
+
+
+def _conditions(heard: str, said: str) -> str:
+    """Return a condition that ``heard`` makes and ``said`` does not, politeness aside."""
+    old = Counter(words(SAYINGS.sub(" ", heard.lower())))
+    lost = [w for w in sorted(_CONDITIONS) if old[w] > Counter(words(said))[w]]
+    return f"condition lost: {', '.join(lost)}" if lost else ""
+
+
+def _which(part: Said, said: str) -> str:
+    """Return what ``part`` tells of which one is meant and ``said`` does not."""
+    old, new = Counter(words(part.heard)), Counter(words(said))
+    lost = [w for w in sorted(_WHICH - set(part.aside)) if old[w] > new[w]]
+    return f"which one lost: {', '.join(lost)}" if lost else ""
+
+
+def _invented(heard: str, said: str) -> str:
+    """Return a word of ``said`` that says something and of which nothing was heard."""
+    known = {*words(heard), *words(in_equal_words(heard.lower()))}
+    known |= {plain_form(word) for word in known}
+    stems = {word[:_STEM] for word in known}
+    for token in tag(said):
+        word, tells = token.lower, token.tag in ("NOUN", "PROPN", "ADJ", "NUM", "VERB")
+        if tells and word[:_STEM] not in stems and not {word, plain_form(word)} & (_PLAIN | known):
+            return f"invented: {word}"
+    return ""
 
 
 def _plainer(heard: str, said: str) -> str:

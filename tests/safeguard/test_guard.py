@@ -203,6 +203,23 @@ def test_a_refusal_names_what_changed():
     assert "open" in refusal(door, "Push the door. Stop.")
 
 
+@pytest.mark.parametrize(
+    "heard, answer, what",
+    [
+        ("If you reach the door, you went too far.", "Go to the door.", "condition"),
+        ("You enter the first room, love.", "Enter the room.", "first"),
+        ("Then you go out of the glass doors.", "Go out of the sliding glass doors.", "sliding"),
+        ("If you could, walk past the rows of surplices.", "Walk past the surplice rows.", ""),
+        ("Now saunter over to the wooden chest.", "Walk to the wooden chest.", ""),
+    ],
+)
+def test_of_speech_an_answer_keeps_conditions_and_which_one_and_says_nothing_new(
+    heard, answer, what
+):
+    found = refusal(Said(heard, heard, ("now", "love")), answer, spoken=True)
+    assert what in found if what else not found
+
+
 @pytest.mark.parametrize("choice", ["rule", "checkpoints/nothing", "http://localhost:1/v1"])
 def test_an_unknown_choice_is_explained(choice):
     with pytest.raises(ValueError, match="rules|name of the model"):
