@@ -74,7 +74,7 @@ class Tagged:
 @dataclass(frozen=True)
 class Said:
     """A sentence, or several in a row, as it was ``heard``, and as it is ``said`` plainly;
-    ``aside``: words of it, in lower case, that surely tell nothing of the way."""
+    ``aside``: words of it, in lower case, that went and surely tell nothing of the way."""
 
     heard: str
     said: str
@@ -138,7 +138,9 @@ def _all_said(
         heard = text[piece.start : piece.end]
         places = [i for i, t in enumerate(tagged.tokens) if piece.start <= t.start < piece.end]
         said, problem = _sentence(text, heard, tagged, places, tries)
-        aside = tuple(tagged.tokens[i].lower for i in places if tagged.drop[i] >= SURE)
+        kept = set(words(said))
+        sure = (tagged.tokens[i].lower for i in places if tagged.drop[i] >= SURE)
+        aside = tuple(word for word in sure if word not in kept)
         found.append(Said(heard, said, aside))
         if problem:
             reasons.append(f"kept {heard[:40]!r}: {problem}")
