@@ -128,8 +128,8 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     from mitigate.shipping import hardened
 
     weights = str(find(weights))
-    if _is_lora(node, weights):
-        return {}
+    if (Path(weights) / LORA).is_file() and hasattr(located(node._target_), "load"):
+        return {}  # a language model says itself whose adapter it takes
     if hardened.adapters_only(weights):
         file = Path(weights) / hardened.CONFIG
     else:
@@ -167,13 +167,6 @@ def build_agent(
     elif weights is not None and hardened.adapters_only(weights):
         hardened.check(Path(weights))
         hardened.fill(agent, weights)
-    elif weights is not None and _is_lora(node, weights):
-        agent.load(weights)
     elif weights is not None:
         checkpoint.load_agent(agent, weights)
     return agent
-
-
-def _is_lora(node: DictConfig, weights: str) -> bool:
-    """Whether ``node`` is a language model and ``weights`` the folder of an adapter for one."""
-    return hasattr(located(node._target_), "load") and (Path(weights) / LORA).is_file()

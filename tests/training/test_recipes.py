@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import pytest
+import torch
 from omegaconf import OmegaConf
 
 from mitigate.agents.topological import stored
 from mitigate.core import checkpoint, conf
-from mitigate.core.build import build, carried
+from mitigate.core.build import LORA, build, carried
+from mitigate.core.checkpoint import load_tensors
 from mitigate.training import states, train
 from tests.safeguard.conftest import write_tiny_model
 
@@ -66,6 +68,21 @@ def test_a_language_model_in_eight_bits_is_trained_without_a_line_a_product(tmp_
     said = "".join(capfd.readouterr())
     assert "evaluated at step 2" in said and "MatMul8bitLt" not in said
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
+
+
+def test_a_language_model_goes_on_from_an_adapter(tmp_path):
+    base = write_tiny_model(tmp_path / "tiny-llama")
+    options = ["recipe=safeguard_lora", "debug=smoke", "evaluation.enabled=false", "workers=1"]
+    options += [f"agent.base={base}", "agent.lora.dropout=0"]
+    first = train.run(conf.load_config("train", [*options, f"runs={tmp_path}/first"]))
+    options += [f"init={first}/agent", "trainer.lr=1e-12", f"runs={tmp_path}/second"]
+    second = train.run(conf.load_config("train", options))
+    one, two = (load_tensors(folder / "agent" / LORA) for folder in (first, second))
+    assert one.keys() == two.keys()
+    assert all(torch.allclose(one[name], two[name], atol=1e-9) for name in one)
+    assert any(value.any() for name, value in one.items() if "lora_B" in name)  # it had learned
+    with pytest.raises(ValueError, match=r"agent\.lora\.r"):
+        train.run(conf.load_config("train", [*options, "agent.lora.r=4"]))
 
 
 @pytest.mark.parametrize("agent,recipe,weights", OTHERS)
