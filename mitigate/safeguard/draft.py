@@ -125,11 +125,10 @@ class Draft:
         self.spoken = True
         parts, kept = plainly_said(self.repaired, tagged)
         self.reasons += kept
-        said = together(parts)
-        self.tagged = said != self.repaired
+        self.tagged = any(part.said != part.heard for part in parts)
         if self.tagged:
             self.reasons.append("said in plain words by the tagger")
-            self.repaired, self.same = said, False
+            self.repaired, self.same = together(parts), False
         return parts
 
     @property
