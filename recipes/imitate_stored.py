@@ -68,7 +68,7 @@ class ImitateStored(Recipe):
     def start(self) -> None:
         """Make the store, in the precision of the training."""
         self.store = self.agent.store(self.world, self.folder, **self.variants)
-        self.store.build()
+        self.store.build(self.workers)
 
     def jobs(self, step: int) -> list[tuple]:
         """(step, piece, of how many, episodes) of each piece."""

@@ -12,7 +12,9 @@ import time
 from collections import deque
 from contextlib import suppress
 from multiprocessing.connection import Connection
-from typing import Any
+from queue import SimpleQueue
+from threading import Thread
+from typing import Any, NamedTuple
 
 import torch
 
@@ -58,17 +60,22 @@ class Workers:
 
         Raises ValueError if the recipe cannot be pickled.
         """
+        packed = _packed(recipe)
         for worker in self._all:
-            worker.take(recipe, kind)
+            worker.take(packed, kind)
 
     def send_weights(self, recipe: Recipe) -> None:
-        """Bring the copies of the trained weights and of all buffers up to date."""
+        """Bring the copies of the trained weights and of all buffers up to date.
+
+        They are sent as they are now: tensors would be shared, and change while a worker reads.
+        """
         trained = {
             name: p.detach().cpu() for name, p in recipe.named_parameters() if p.requires_grad
         }
         buffers = {name: buffer.detach().cpu() for name, buffer in recipe.named_buffers()}
+        packed = pickle.dumps({**trained, **buffers})
         for worker in self._all:
-            worker.send(("weights", {**trained, **buffers}))
+            worker.renew(packed)
 
     def order(self, jobs: list[Any], turn: int = 0) -> None:
         """Have ``jobs`` done; :meth:`receive` returns what they give. What is ordered at once goes
@@ -92,7 +99,9 @@ class Workers:
 class Batches:
     """The batches of ``recipe`` up to ``steps``, made on ``device`` in the precision ``kind``.
 
-    Pieces that do not depend on the weights (``recipe.ahead``) are ordered ``AHEAD`` steps early.
+    Pieces that do not depend on the weights (``recipe.ahead``) are ordered ``AHEAD`` steps early,
+    those that do ``lag`` steps, if that is above 0: they are made with weights that old. None is
+    ordered across a multiple of ``save_every``, so a run resumed from there makes the same ones.
     """
 
     def __init__(
@@ -103,29 +112,43 @@ class Batches:
         kind: str,
         device: torch.device,
         ranks: Ranks | None = None,
+        lag: int = 0,
+        save_every: int = 0,
     ) -> None:
         self.recipe, self.steps, self.kind, self.device = recipe, steps, kind, device
         self.workers = workers if workers is not None and len(workers) else None
-        self.ranks = ranks or Ranks()
-        self._ordered: deque[tuple[int, int]] = deque()  # steps and how many jobs they have
+        self.ranks, self.lag, self.save_every = ranks or Ranks(), lag, save_every
+        self._ordered: deque[_Order] = deque()
         self._taken = False
 
     def batch(self, step: int) -> dict[str, Any]:
         """Return the batch of ``step``; steps are asked for in order."""
         recipe = self.recipe
-        if not self._ordered:
-            jobs = [] if self.workers is None or recipe.here else self._jobs(step)
-            if not jobs:
-                with precision.computing(self.kind, self.device):
-                    return self._alone(step)
+        early = not recipe.here and (self.workers is not None or (self.lag and not recipe.ahead))
+        jobs = self._jobs(step) if early and not self._ordered else []
+        if not self._ordered and not jobs:
+            with precision.computing(self.kind, self.device):
+                return self._alone(step)
+        fresh = self._taken and not recipe.ahead and self._last(step) > self._newest(step)
+        if fresh and self.workers is not None:
+            self.workers.send_weights(recipe)
+        if jobs:
             self._order(step, jobs)
-        while recipe.ahead and self._ordered[-1][0] < min(step + AHEAD, self.steps - 1):
-            later = self._ordered[-1][0] + 1
+        while self._newest(step) < self._last(step):
+            later = self._newest(step) + 1
             self._order(later, self._jobs(later))
-        ordered, count = self._ordered.popleft()
-        assert ordered == step, f"step {step} was asked for, {ordered} is next"
-        assert self.workers is not None
-        return recipe.collate(step, self.workers.receive(count, self._turn(step)))
+        return self._made(step)
+
+    def _last(self, step: int) -> int:
+        """The last step whose pieces may be ordered when ``step`` is due."""
+        if self.recipe.ahead:
+            return min(step + AHEAD, self.steps - 1)
+        saved = step - step % self.save_every + self.save_every if self.save_every else self.steps
+        return min(step + self.lag, saved - 1, self.steps - 1)
+
+    def _newest(self, step: int) -> int:
+        """The last step whose pieces are ordered."""
+        return self._ordered[-1].step if self._ordered else step - 1
 
     def _jobs(self, step: int) -> list[Any]:
         """This rank's jobs of a step; none if the recipe makes its batches alone."""
@@ -140,38 +163,62 @@ class Batches:
         return self.recipe.collate(step, [do(self.recipe, job) for job in jobs])
 
     def _order(self, step: int, jobs: list[Any]) -> None:
-        assert self.workers is not None
+        """Have the pieces of ``step`` made, with the weights of now."""
+        if self.workers is None:
+            with precision.computing(self.kind, self.device):
+                self._ordered.append(_Order(step, 0, [do(self.recipe, job) for job in jobs]))
+            return
         if not self._taken:
             self.workers.take(self.recipe, self.kind)
             self._taken = True
-        elif not self.recipe.ahead:
-            self.workers.send_weights(self.recipe)
         self.workers.order(jobs, self._turn(step))
-        self._ordered.append((step, len(jobs)))
+        self._ordered.append(_Order(step, len(jobs), []))
+
+    def _made(self, step: int) -> dict[str, Any]:
+        """The batch of ``step`` from the pieces that were ordered."""
+        order = self._ordered.popleft()
+        assert order.step == step, f"step {step} was asked for, {order.step} is next"
+        if self.workers is None:
+            return self.recipe.collate(step, order.pieces)
+        return self.recipe.collate(step, self.workers.receive(order.awaited, self._turn(step)))
 
     def _turn(self, step: int) -> int:
-        """Jobs that need the weights are never of two steps at once."""
-        return step if self.recipe.ahead else 0
+        """Whose turn ``step`` is; jobs that need the weights of now are never of two steps at
+        once."""
+        return step if self.recipe.ahead or self.lag else 0
+
+
+class _Order(NamedTuple):
+    """A step, how many pieces of it workers make, or those that were made here."""
+
+    step: int
+    awaited: int
+    pieces: list[Any]
 
 
 class _Worker:
-    """One process and what it was given to do."""
+    """One process and what it was given to do, each job with the weights that it is done with."""
 
     def __init__(self, number: int) -> None:
         self.number, self.deaths = number, 0
-        self.recipe: tuple[Recipe, str] | None = None
-        self.pending: deque[Any] = deque()
+        self.recipe: tuple[bytes, str] | None = None
+        self.weights: bytes | None = None  # None: those of the recipe
+        self.pending: deque[tuple[bytes | None, Any]] = deque()
         self._start()
 
-    def take(self, recipe: Recipe, kind: str) -> None:
+    def take(self, packed: bytes, kind: str) -> None:
         if self.pending:  # of a recipe that was given up: nobody will ask for them
             self._restart()
             self.pending.clear()
-        self.recipe = (recipe, kind)
-        self.send(("recipe", _packed(recipe), kind))
+        self.recipe, self.weights = (packed, kind), None
+        self.send(("recipe", packed, kind))
+
+    def renew(self, weights: bytes) -> None:
+        self.weights = weights
+        self.send(("weights", weights))
 
     def order(self, job: Any) -> None:
-        self.pending.append(job)
+        self.pending.append((self.weights, job))
         self.send(("job", job))
 
     def send(self, message: tuple) -> None:
@@ -219,10 +266,15 @@ class _Worker:
         self.deaths += 1
         say(f"{what}; a new one does its work again")
         self._restart()
-        recipe, kind = self.recipe
-        self.send(("recipe", _packed(recipe), kind))
-        for job in self.pending:
+        self.send(("recipe", *self.recipe))
+        given: bytes | None = None
+        for weights, job in self.pending:
+            if weights is not None and weights is not given:
+                self.send(("weights", weights))
+            given = weights
             self.send(("job", job))
+        if self.weights is not None and self.weights is not given:
+            self.send(("weights", self.weights))
 
     def _restart(self) -> None:
         self.connection.close()
@@ -249,22 +301,33 @@ def _packed(recipe: Recipe) -> bytes:
 def _serve(connection: Connection) -> None:
     """The life of a worker: messages in, the results of jobs out, until the connection ends."""
     leave_to_parent()
+    told: SimpleQueue[tuple | None] = SimpleQueue()
+    Thread(target=_listen, args=(connection, told), daemon=True).start()
     recipe, kind, weights, done = Recipe(), "fp32", {}, 0
-    with suppress(EOFError, BrokenPipeError, ConnectionResetError):
-        while True:
-            name, *given = connection.recv()
+    with suppress(BrokenPipeError, ConnectionResetError):
+        while (message := told.get()) is not None:
+            name, *given = message
             if name == "recipe":
                 recipe, kind = pickle.loads(given[0]), given[1]
                 weights = {**dict(recipe.named_parameters()), **dict(recipe.named_buffers())}
             elif name == "weights":
                 with torch.no_grad():
-                    for entry, value in given[0].items():
+                    for entry, value in pickle.loads(given[0]).items():
                         weights[entry].copy_(value)
             else:
                 connection.send(_answer(recipe, given[0], kind))
                 done += 1
                 if done % TRIM_EVERY == 0:
                     give_back()
+
+
+def _listen(connection: Connection, told: SimpleQueue) -> None:
+    """Hear the parent while a piece is made or given back: it may have weights to send meanwhile,
+    and neither would go on if both waited to be heard. None at the end."""
+    with suppress(EOFError, OSError):
+        while True:
+            told.put(connection.recv())
+    told.put(None)
 
 
 def _answer(recipe: Recipe, job: Any, kind: str) -> tuple[str, Any]:

@@ -13,6 +13,7 @@ LIMITS: dict[str, tuple[float, float]] = {  # least and greatest; all are finite
     "lr": (1e-12, 100.0),
     "weight_decay": (0.0, 100.0),
     "grad_clip": (0.0, 1e9),
+    "lag": (0, 64),
     **dict.fromkeys(("warmup", "log_every", "save_every"), (0, COUNT)),
     **dict.fromkeys(("eval_every", "figure_every"), (0, COUNT)),
 }

@@ -62,6 +62,7 @@ class TrainerConfig:
     eval_every: int | None = None
     figure_every: int | None = None
     keep: int | None = None
+    lag: int | None = None
     precision: str | None = None
     device: str | None = None
 

@@ -49,6 +49,9 @@ class Trainer:
         log_every, save_every, eval_every, figure_every: in updates; 0 means never (a checkpoint is
             always written at the end).
         keep: how many checkpoints to keep.
+        lag: updates that the weights may be behind which batches are made with, so that workers
+            make several steps' batches at once; 0 waits for each. What it trains depends on it,
+            not on the number of workers.
         seed: of data order and noise.
         precision: one of ``precision.CHOICES``, of all that networks compute here; bf16 is
             autocast, weights stay float32. A checkpoint keeps what "auto" was; a run that is
@@ -80,6 +83,7 @@ class Trainer:
         eval_every: int = 0,
         figure_every: int = 0,
         keep: int = 2,
+        lag: int = 0,
         seed: int = 0,
         precision: str = "auto",
         device: str = "auto",
@@ -95,7 +99,7 @@ class Trainer:
         self.eval_every, self.figure_every = eval_every, figure_every
         self.device = device_of(device)
         self.asked, self.precision = precision, choose(precision, self.device)
-        self.workers, self.ranks = workers, ranks or Ranks()
+        self.workers, self.ranks, self.lag = workers, ranks or Ranks(), lag
         self.recipe = recipe.to(self.device)
         self.name = name or type(recipe).__name__
         self.config = {
@@ -109,6 +113,7 @@ class Trainer:
                 "grad_clip": grad_clip,
                 "seed": seed,
                 "precision": self.precision,
+                **({"lag": lag} if lag else {}),
             },
         }
         groups = _trainable(recipe.parameter_groups(), self.name)
@@ -143,7 +148,14 @@ class Trainer:
             self.recipe.start()
         self.recipe.train()
         batches = Batches(
-            self.recipe, self.workers, self.steps, self.precision, self.device, self.ranks
+            self.recipe,
+            self.workers,
+            self.steps,
+            self.precision,
+            self.device,
+            self.ranks,
+            self.lag,
+            self.save_every,
         )
         done = start
         with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.topological import TopologicalAgent, stored
+from mitigate.agents.topological import TopologicalAgent, scene_poses
 from mitigate.core import seeding
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate_stored import ImitateStored
@@ -32,7 +32,7 @@ def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -
 def few_poses():
     """A sixteenth of those that a training stores."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stored, "SPACING", 2.0)
+        patch.setattr(scene_poses, "SPACING", 2.0)
         yield
 
 

@@ -7,6 +7,7 @@ import signal
 import threading
 from functools import partial
 
+import numpy as np
 import pytest
 import torch
 
@@ -14,7 +15,7 @@ from mitigate.core import checkpoint, seeding
 from mitigate.core.seeding import torch_generator
 from mitigate.core.workers import WorkersDied
 from mitigate.training import batches, states
-from mitigate.training.batches import Workers
+from mitigate.training.batches import Batches, Workers
 from mitigate.training.trainer import Trainer
 from tests.deaths import die_in_a_message
 from tests.tiny import TinyRecipe
@@ -52,10 +53,24 @@ class Shared(TinyRecipe):
         return super(TinyRecipe, self).batch(step)
 
 
-def trained(folder, workers: Workers | None, **settings) -> str:
+class Bulky(Shared):
+    """Its weights and its pieces are larger than what a pipe holds."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.register_buffer("bulk", torch.zeros(1 << 20))
+
+    def work(self, job: tuple) -> tuple:
+        return super().work(job), np.zeros(1 << 20)
+
+    def collate(self, step: int, pieces: list) -> dict:
+        return super().collate(step, [piece for piece, _ in pieces])
+
+
+def trained(folder, workers: Workers | None, lag: int = 0, save_every: int = 2, **settings) -> str:
     seeding.seed_everything(0, "init")
     recipe = Shared(**settings)
-    Trainer(recipe, steps=6, folder=folder, workers=workers, save_every=2).fit()
+    Trainer(recipe, steps=6, folder=folder, workers=workers, save_every=save_every, lag=lag).fit()
     return checkpoint.weights_sha(recipe.agent)
 
 
@@ -89,14 +104,54 @@ def test_more_workers_than_pieces_work_at_several_steps_at_once(ahead, busy, tmp
     assert [given[n] for n in range(7)] == [18 // busy] * busy + [0] * (7 - busy)
 
 
+def test_weights_that_lag_give_other_batches_but_the_same_for_any_number_of_workers(two, tmp_path):
+    alone = trained(tmp_path / "alone", None, lag=2, save_every=3)
+    assert alone != trained(tmp_path / "prompt", None, save_every=3)
+    assert trained(tmp_path / "two", two, lag=2, save_every=3) == alone
+    states.checkpoints(tmp_path / "two")[-1].unlink()  # back to step 3
+    assert trained(tmp_path / "two", two, lag=2, save_every=3) == alone
+    with Workers(7) as workers:
+        assert trained(tmp_path / "seven", workers, lag=2, save_every=3) == alone
+
+
+def test_weights_and_pieces_that_fill_the_pipes_are_sent_while_workers_make_others(tmp_path):
+    seeding.seed_everything(0, "init")
+    recipe = Bulky()
+    with Workers(1) as workers:
+        Trainer(recipe, steps=7, folder=tmp_path, workers=workers, lag=3, save_every=0).fit()
+    assert states.checkpoints(tmp_path)
+
+
+def test_the_weights_that_lag_are_those_of_so_many_updates_before(tmp_path):
+    seeding.seed_everything(0, "init")
+    recipe, seen = Shared(), []
+    recipe.work = lambda job: (
+        seen.append(float(recipe.agent.body[0].weight.sum())) or np.ones((3, 4), np.float32)
+    )
+    made = Batches(recipe, None, 6, "fp32", torch.device("cpu"), lag=2, save_every=4)
+    for step in range(6):
+        made.batch(step)
+        with torch.no_grad():
+            recipe.agent.body[0].weight += 1.0
+    updates = [
+        round((value - seen[0]) / recipe.agent.body[0].weight.numel()) for value in seen[::3]
+    ]
+    assert updates == [0, 0, 0, 1, 4, 4]
+
+
+def test_batches_made_of_no_weights_know_no_lag(two, tmp_path):
+    prompt = trained(tmp_path / "prompt", None, ahead=True)
+    assert trained(tmp_path / "lag", two, ahead=True, lag=2) == prompt
+
+
 @pytest.mark.parametrize("where", ["job", "message"])
-@pytest.mark.parametrize("ahead", [True, False])
-def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(ahead, where, tmp_path, capsys):
+@pytest.mark.parametrize("how", [{"ahead": True}, {}, {"lag": 2, "save_every": 0}], ids=str)
+def test_a_worker_that_is_killed_is_replaced_and_nothing_is_lost(how, where, tmp_path, capsys):
     mark = tmp_path / where
     mark.touch()
     with Workers(2) as workers:
-        found = trained(tmp_path / "killed", workers, ahead=ahead, fatal=str(mark))
-    assert found == trained(tmp_path / "whole", None, ahead=ahead)
+        found = trained(tmp_path / "killed", workers, fatal=str(mark), **how)
+    assert found == trained(tmp_path / "whole", None, **how)
     assert "ended with code -9; a new one does its work again" in capsys.readouterr().out
 
 

@@ -1,16 +1,16 @@
 """Stored features of a lattice of poses: training the planner without rendering.
 
-Poses lie about ``SPACING`` metres apart and look along heading 0. Headings are multiples of 30
-degrees, where a panorama is the heading-0 one with its views rolled. Built once, in order,
-resumable: each scene is a folder of memory-mapped arrays that is there whole or not at all, and
-that worker processes share. Beside the clean scene there may be *variants* of it, in each of which
-one corruption is kept.
+``scene_poses.py`` makes them: poses lie about ``SPACING`` metres apart and look along heading 0.
+Headings are multiples of 30 degrees, where a panorama is the heading-0 one with its views rolled.
+Built once, resumable: each scene is a folder of memory-mapped arrays that is there whole or not at
+all, and that worker processes share. Beside the clean scene there may be *variants* of it, in each
+of which one corruption is kept.
 """
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from hashlib import blake2b
 from pathlib import Path
@@ -18,25 +18,24 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
-from torch import Tensor
 
 from mitigate.agents.topological.rollout import Piece, roll_out
+from mitigate.agents.topological.scene_poses import ScenesTask
 from mitigate.agents.topological.stored_walk import Features, ScenePoses, StoredWalk, look
-from mitigate.agents.topological.waypoints import COUNT, select
 from mitigate.core import precision
+from mitigate.core import workers as processes
 from mitigate.core.checkpoint import weights_sha
-from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.observation import RGB
 from mitigate.core.progress import Progress
 from mitigate.core.signals import unbroken
-from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.corruptions import Schedule
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.world import depth_sensor
 
 if TYPE_CHECKING:
     from mitigate.agents.topological.agent import TopologicalAgent
 
-SPACING = 0.5  # metres
-_BATCH = 16  # panoramas encoded at once
+WORTH = 4  # scenes that make a process worth its start (ours): some 5 s each
+ON_GPU = 8  # processes at most that encode on one GPU, each of which takes 0.5 GB of it for itself
 
 
 class Store:
@@ -78,22 +77,32 @@ class Store:
             )
         self._held: dict[tuple[str, int], Features] = {}
 
-    @torch.no_grad()
-    def build(self) -> None:
+    def build(self, workers: int | None = None) -> None:
         """Fill the store; what is there is kept. It holds what the encoders see, also those of a
-        blind agent (:meth:`Features.blank`)."""
+        blind agent (:meth:`Features.blank`). ``workers``: processes, to the same bits for any
+        number; None: one a core if there is work for them, 0: this one alone."""
         (self.corrupted if self.variants else self.folder).mkdir(parents=True, exist_ok=True)
         scenes, every = self.world.scenes, range(self.variants + 1)
-        missing = [s for s in scenes if not all(self.path(s, v).exists() for v in every)]
-        if not missing:
+        missing = [
+            (scene, [v for v in every if not self.path(scene, v).exists()]) for scene in scenes
+        ]
+        jobs = [(scene, variants) for scene, variants in missing if variants]
+        if not jobs:
             return
-        done = len(scenes) - len(missing)
-        self.agent.eval()
+        kind = precision.current(self.agent.device)
+        task = ScenesTask(self.agent, self.make_world, self.schedule, self.seed, kind)
+        started = processes.count(1 if workers == 0 else workers, len(jobs), WORTH)
+        if self.agent.device.type != "cpu":
+            started = min(started, ON_GPU)
+        done = len(scenes) - len(jobs)
         with Progress("stored features", len(scenes), unit="scene", start=done) as progress:
-            for scene in missing:
+            for item in processes.results(task, [[job] for job in jobs], started, progress):
+                if item is None:
+                    continue
+                number, made = item
                 with unbroken():  # as far as it is worth keeping
-                    for variant, poses in self._poses(scene):
-                        _save(poses, self.path(scene, variant))
+                    for variant, arrays in made:
+                        _save(arrays, self.path(jobs[number][0], variant))
                 progress.advance()
 
     def path(self, scene: str, variant: int = 0) -> Path:
@@ -144,46 +153,11 @@ class Store:
             },
         )
 
-    def _poses(self, scene: str) -> Iterator[tuple[int, ScenePoses]]:
-        """What is stored of ``scene``: each variant that is missing."""
-        self.world.enter(scene)
-        points = self.world.points()
-        xy = points[lattice(points)]
-        clean = [_frames(self.world, p) for p in xy]
-        known = _features(self.agent, clean)
-        for variant in range(self.variants + 1):
-            if self.path(scene, variant).exists():
-                continue
-            frames = clean if not variant else self._corrupted(clean, f"{scene}-{variant}")
-            made = {**known, **_features(self.agent, frames, clean)}
-            tensors = {name: torch.from_numpy(array) for name, array in _stored(made).items()}
-            poses = ScenePoses(**tensors, xy=torch.from_numpy(xy), batch_size=[len(xy)])  # type: ignore[call-arg]
-            yield variant, poses
 
-    def _corrupted(self, frames: list[tuple], name: str) -> list[tuple]:
-        """Frames of all poses under the corruption of the variant ``name``."""
-        assert self.schedule is not None
-        schedule, sensor = replace(self.schedule, clean_share=0.0), depth_sensor(self.world.sensors)
-        made = []
-        for number, (rgb, depth, seen) in enumerate(frames):
-            drawn = schedule.draw(self.seed, name, number)
-            found = corrupt_observation({RGB: rgb, DEPTH: depth}, *drawn, sensor)
-            made.append((found[RGB], found[DEPTH], seen))
-        return made
-
-
-def lattice(points: np.ndarray) -> np.ndarray:
-    """Indices of the points [n, 2] on a ``SPACING`` lattice: the nearest to each lattice point."""
-    key = np.floor(points / SPACING).astype(int)
-    middle = np.abs(points / SPACING - key - 0.5).sum(1)
-    order = np.lexsort((middle, key[:, 1], key[:, 0]))
-    first = np.ones(len(order), bool)
-    first[1:] = (np.diff(key[order], axis=0) != 0).any(1)
-    return np.sort(order[first])
-
-
-def _save(poses: ScenePoses, path: Path) -> None:
-    """Write ``poses`` aside and rename the folder: it is whole or not there."""
+def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
+    """Write the entries of ``ScenePoses`` aside and rename the folder: it is whole or not there."""
+    tensors = {name: torch.from_numpy(array) for name, array in arrays.items()}
+    poses = ScenePoses(**tensors, batch_size=[len(arrays["xy"])])  # type: ignore[call-arg]
     with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as aside:
         draft = Path(aside) / path.name  # which others may read, unlike aside
         draft.mkdir()
@@ -193,59 +167,3 @@ def _save(poses: ScenePoses, path: Path) -> None:
         except OSError:
             if not path.is_dir():  # else another process was quicker
                 raise
-
-
-def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """RGB, depth and, for each view, which things show (bits of a uint64)."""
-    frames, truth = world.put(xy, 0.0)
-    seen = truth["seen"]
-    bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(
-        1, dtype=np.uint64
-    )
-    return frames[RGB], frames[DEPTH], bits
-
-
-def _features(
-    agent: TopologicalAgent, frames: list[tuple], known: list[tuple] | None = None
-) -> dict[str, np.ndarray]:
-    """Features of frames by what made them; those of frames that ``known`` holds are left out."""
-    seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch maps no uint64
-    found = {"seen": seen}
-    rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
-    same_rgb, same_depth = (
-        known is not None and all(a[i] is b[i] for a, b in zip(frames, known, strict=True))
-        for i in (0, 1)
-    )
-    if not same_rgb:
-        found["rgb"] = np.concatenate([_rgb(agent, part) for part in _parts(agent, rgb)])
-    if not same_depth:
-        views, logits = zip(*(_depth(agent, part) for part in _parts(agent, depth)), strict=True)
-        found["depth"] = np.concatenate(views)
-        found["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
-        for row, grid in enumerate(np.concatenate(logits)):
-            chosen = select(grid)
-            found["waypoints"][row, : len(chosen)] = chosen
-    return found
-
-
-def _parts(agent: TopologicalAgent, frames: list[np.ndarray]) -> Iterator[Tensor]:
-    for first in range(0, len(frames), _BATCH):
-        yield torch.from_numpy(np.stack(frames[first : first + _BATCH])).to(agent.device)
-
-
-def _rgb(agent: TopologicalAgent, frames: Tensor) -> np.ndarray:
-    """float16 [n, 12, rgb + concepts]."""
-    features, concepts = agent.encode_rgb(frames)
-    return torch.cat([features, concepts.sigmoid()], -1).half().cpu().numpy()
-
-
-def _depth(agent: TopologicalAgent, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
-    """float16 [n, 12, depth] and waypoint logits."""
-    features, logits = agent.encode_depth(frames)
-    return features.half().cpu().numpy(), logits.float().cpu().numpy()
-
-
-def _stored(made: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The entries of ``ScenePoses`` but xy."""
-    views = np.concatenate([made["rgb"], made["depth"]], -1)
-    return {"views": views, "waypoints": made["waypoints"], "seen": made["seen"]}

@@ -10,7 +10,9 @@ import torch
 
 from mitigate.agents.text import Vocabulary, pad
 from mitigate.agents.topological.rollout import STOP_BEST, LiveWalk, roll_out
-from mitigate.agents.topological.stored import SPACING, Store, StoredWalk
+from mitigate.agents.topological.scene_poses import SPACING
+from mitigate.agents.topological.stored import Store
+from mitigate.agents.topological.stored_walk import StoredWalk
 from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import VIEWS
 from mitigate.corruptions import CLEAN
@@ -153,6 +155,18 @@ def test_building_again_keeps_what_is_there(stored):
     before = store.path(SCENE).stat().st_mtime_ns
     store.build()
     assert store.path(SCENE).stat().st_mtime_ns == before
+
+
+def test_two_processes_store_what_one_stores(stored, tmp_path):
+    agent, features, _ = stored
+    store = Store(agent, partial(ApartmentsWorld, SIZE, 2), tmp_path)
+    store.build(workers=2)
+    again = store.features(SCENE)
+    assert np.array_equal(again.views, features.views) and np.array_equal(again.xy, features.xy)
+    assert np.array_equal(again.waypoints, features.waypoints)
+    assert {path.name for path in store.folder.iterdir()} == {
+        store.path(scene).name for scene in store.world.scenes
+    }
 
 
 class Unguided(ApartmentsWorld):
