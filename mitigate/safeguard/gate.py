@@ -169,14 +169,20 @@ def _named_before(text: str) -> bool:
 
 
 def rewrite_refused(heard: str, said: str, last: bool = False) -> str:
-    """Return why ``said`` may not stand for ``heard``; ``last``: with which the text ends, where to
-    stop may be meant and not said ("and there's your sofa")."""
-    if last and "stop" not in facts(heard).directions and "stop" in facts(said).directions:
-        heard = f"{heard.rstrip(' .!?;,')}, and stop."
+    """Return why ``said`` may not stand for ``heard``; ``last``: with which the text ends."""
+    heard = stopped(heard, said) if last else heard
     wanted, found = sought(heard), sought(said)
     if wanted and found and wanted.isdisjoint(found) and not route_turns(heard):
         return f"another thing is to be found: {', '.join(sorted(found))}"
     return differs(heard, said)
+
+
+def stopped(heard: str, said: str) -> str:
+    """Return ``heard``, with which a text ends, with a stop if ``said`` has one: at the end it may
+    be meant and not said ("and there's your sofa")."""
+    if "stop" in facts(heard).directions or "stop" not in facts(said).directions:
+        return heard
+    return f"{heard.rstrip(' .!?;,')}, and stop."
 
 
 def goal_refused(heard: str, said: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
@@ -23,6 +24,20 @@ _WHICH = bag("first second third fourth fifth sixth seventh eighth ninth tenth l
 _PLAIN = frozenset(VERBS | MOVES | STOPS | SEEKS) | bag(
     "be is are do have keep face start begin reach use see along front end way side again straight"
 )
+# what people say, and plain routes in other words; a little is no size, a little chapel has one
+_IN_OTHER_WORDS = tuple(
+    (re.compile(rf"\b(?:{pattern})\b", re.IGNORECASE), said)
+    for pattern, said in (
+        (r"(?<!\ba )little(?! (?:bit|way|further|more|to|left|right)\b)(?= [a-z])", "small"),
+        (r"turn (?:you|yourself)(?: about| around| round)?|turn about", "turn around"),
+        (r"descend(?:s|ed|ing)", "go down the stairs"),
+        (r"ascend(?:s|ed|ing)", "go up the stairs"),
+    )
+)
+_POLITE_IF = re.compile(
+    r"\bif (?:\w+ )?(?:would|will|could|can|might|may) (?:\w+ )?be (?:so|as) \w+ as to\b|"
+    r"\b(?:obliged|grateful|thankful|delighted|glad|pleased|happy|kind|appreciate it) if\b"
+)
 _STEM = 4  # letters in which a word and what was heard agree: surplices, surplice (ours)
 
 
@@ -40,13 +55,22 @@ def refusal(part: Said, answer: str | None, last: bool = False, spoken: bool = F
     elif part.said and not answer:
         problem = "the tagger would keep some of it"
     else:
-        problem = gate.edit_refused(part.heard, answer, part.aside) or _which(part, answer)
+        heard = _in_plain_words(part.heard)
+        heard = gate.stopped(heard, answer) if last else heard
+        problem = gate.edit_refused(heard, answer, part.aside) or _which(part, answer)
     return problem or _conditions(part.heard, answer) or _invented(part.heard, answer)
+
+
+def _in_plain_words(heard: str) -> str:
+    """Return ``heard`` with what plain routes say in the words that the gate reads."""
+    for pattern, said in _IN_OTHER_WORDS:
+        heard = pattern.sub(said, heard)
+    return heard
 
 
 def _conditions(heard: str, said: str) -> str:
     """Return a condition that ``heard`` makes and ``said`` does not, politeness aside."""
-    old = Counter(words(SAYINGS.sub(" ", heard.lower())))
+    old = Counter(words(_POLITE_IF.sub(" ", SAYINGS.sub(" ", heard.lower()))))
     lost = [w for w in sorted(_CONDITIONS) if old[w] > Counter(words(said))[w]]
     return f"condition lost: {', '.join(lost)}" if lost else ""
 

@@ -195,6 +195,22 @@ def test_the_judge_decides_on_doubtful_sentences():
     assert doubtful in Safeguard(Scripted(lambda s: s)).canonicalise(text).text
 
 
+@pytest.mark.parametrize(
+    "heard, answer, last, refused",
+    [
+        ("Turn you into the little chapel.", "Turn around into the small chapel.", False, ""),
+        ("Walk a little down the hall.", "Walk down the small hall.", False, "small"),
+        ("And there, next to the sofa, you be.", "Stop next to the sofa.", True, ""),
+        ("And there, next to the sofa, you be.", "Stop next to the sofa.", False, "stop"),
+        ("I should be obliged if you went past the sofa.", "Go past the sofa.", False, ""),
+        ("If you see a sofa, go past the sofa.", "Go past the sofa.", False, "condition lost: if"),
+    ],
+)
+def test_what_people_say_in_other_words_is_no_loss(heard, answer, last, refused):
+    found = refusal(Said(heard, heard), answer, last, spoken=True)
+    assert refused in found and bool(refused) == bool(found)
+
+
 def test_a_refusal_names_what_changed():
     part = Said("Turn left.", "Turn left.")
     assert refusal(part, "Turn left.") == ""
