@@ -261,7 +261,7 @@ class Trainer:
         cost = (
             "which is up to 2 times slower here"
             if kept == "fp32"
-            else "which this machine emulates, 3 to 10 times slower"
+            else "which is slower here (3 to 10 times on a processor without bf16)"
         )
         say(
             f"{self.name}: goes on in {kept}, as it began, {cost} than {self.precision}. To train "

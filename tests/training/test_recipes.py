@@ -6,7 +6,7 @@ import pytest
 import torch
 from omegaconf import OmegaConf
 
-from mitigate.agents.topological import stored
+from mitigate.agents.topological import scene_poses
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import LORA, build, carried
 from mitigate.core.checkpoint import load_tensors
@@ -36,7 +36,7 @@ RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
 
 @pytest.mark.parametrize("name", RECIPES)
 def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
-    monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, of which to store features
+    monkeypatch.setattr(scene_poses, "SPACING", 2.0)  # few poses, of which to store features
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
     options.append("workers=0")  # two a stage take longer to start than to work
     cfg = conf.load_config("train", options)

@@ -28,7 +28,8 @@ from mitigate.training.trainer import Trainer
 from tests.tiny import TinyRecipe
 torch.set_num_threads(1)
 seeding.seed_everything(0, "init")
-Trainer(TinyRecipe(pause=0.05), steps=60, folder=sys.argv[1], save_every=7, log_every=0).fit()
+settings = {"steps": 60, "save_every": 7, "log_every": 0, "precision": "fp32"}
+Trainer(TinyRecipe(pause=0.05), folder=sys.argv[1], **settings).fit()
 """
 
 
@@ -81,7 +82,7 @@ def test_a_run_killed_in_the_middle_resumes_to_the_same_weights(tmp_path):
     killed.wait()
     step = states.load(states.checkpoints(tmp_path / "killed")[-1])["step"]
     assert step < 60
-    settings = {"steps": 60, "save_every": 7, "log_every": 0}
+    settings = {"steps": 60, "save_every": 7, "log_every": 0, "precision": "fp32"}
     resumed, whole = (trained(tmp_path / name, **settings) for name in ("killed", "whole"))
     assert same(resumed, whole)
 
