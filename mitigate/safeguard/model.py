@@ -23,6 +23,7 @@ from mitigate.safeguard.adapter_folder import ADAPTER, read_adapter, write_adapt
 from mitigate.safeguard.base import PRECISIONS, SMOLLM2, base_sha256, load_base
 from mitigate.safeguard.data import PROMPTS, Pair, prompt_messages
 
+TURNS = ("<|im_start|>", "<|start_header_id|>")  # begin a turn: ChatML's (SmolLM2), Llama 3's
 LONGEST = 512  # prompt tokens; a longer text is not rewritten (ours)
 
 
@@ -138,7 +139,7 @@ class LanguageModel(nn.Module):
         first = first.expand(len(prompts), -1)
         inputs = torch.cat([first, rest["input_ids"].to(self.device)], 1)
         mask = torch.cat([torch.ones_like(first), rest["attention_mask"].to(self.device)], 1)
-        width, end = inputs.shape[1], self.tokenizer.eos_token_id
+        width, ends = inputs.shape[1], self._ends()
         text_length = width - len(self.encode(""))
         out = self.network.generate(
             input_ids=inputs,
@@ -150,15 +151,21 @@ class LanguageModel(nn.Module):
             temperature=None,
             top_p=None,
             top_k=None,
-            eos_token_id=end,
+            eos_token_id=ends,
             pad_token_id=self.tokenizer.pad_token_id,
         )[:, width:].tolist()
-        return [
-            self.tokenizer.decode(ids[: ids.index(end)], skip_special_tokens=True).strip()
-            if end in ids
-            else None
-            for ids in out
-        ]
+        found: list[str | None] = []
+        for ids in out:
+            stop = next((place for place, token in enumerate(ids) if token in ends), None)
+            said = self.tokenizer.decode(ids[:stop], skip_special_tokens=True).strip()
+            found.append(None if stop is None else said)
+        return found
+
+    def _ends(self) -> list[int]:
+        """Tokens that end an answer: the end mark, and those that begin another turn."""
+        turns = self.tokenizer.convert_tokens_to_ids(list(TURNS))
+        known = [token for token in turns if token not in (None, self.tokenizer.unk_token_id)]
+        return list(dict.fromkeys([self.tokenizer.eos_token_id, *known]))
 
     def save(self, folder: str | Path, *, half: bool = False) -> None:
         """Write the adapter in PEFT's folder format, with a card that names the base.

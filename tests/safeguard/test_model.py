@@ -205,6 +205,20 @@ def test_prompts_that_begin_with_nothing_in_common_are_rewritten_too(model):
     assert model.rewrite(texts) == [model.rewrite([text])[0] for text in texts]
 
 
+@pytest.mark.parametrize("end", ["</s>", "<s>", None])
+def test_an_answer_ends_at_its_end_mark_or_where_another_turn_begins(model, monkeypatch, end):
+    monkeypatch.setattr("mitigate.safeguard.model.TURNS", ("<s>", "<|no such token|>"))
+    said = model.tokenizer.encode("turn left")
+    mark = [] if end is None else [model.tokenizer.convert_tokens_to_ids(end)]
+
+    def generate(input_ids, eos_token_id, **others):
+        assert set(mark) <= set(eos_token_id)
+        return torch.cat([input_ids, torch.tensor([[*said, *mark, *said]])], 1)
+
+    monkeypatch.setattr(model.network, "generate", generate)
+    assert model.rewrite(["Turn left."]) == [None if end is None else "turn left"]
+
+
 def test_a_text_too_long_for_the_model_gets_no_answer(model):
     assert model.rewrite(["walk on " * 5000]) == [None]
 
