@@ -21,6 +21,7 @@ FOLDER = (
     "adapter_model.safetensors of an adapter (RECIPE=safeguard_lora)."
 )
 VERSION = "6"  # of what the rules give on: another one where any text is repaired otherwise
+ANSWERS = "2"  # of what is taken of a language model's answers
 
 
 def check(choice: object) -> None:
@@ -59,7 +60,8 @@ def label(choice: str) -> str:
 
 def identity(choice: str) -> str:
     """Return the label of a safeguard and a hash over the version and weights of its rules and
-    over the weights of its networks (an endpoint's stay unknown). "none" has no hash."""
+    over the weights of its networks (an endpoint's stay unknown); with a language model, over how
+    its answers are judged too. "none" has no hash."""
     if choice == "none":
         return choice
     from mitigate.core.identity import DIGITS
@@ -68,7 +70,8 @@ def identity(choice: str) -> str:
     parts = [first, second] if plus and first in TAGGERS else [choice]
     folders = [{**TAGGERS, "lora": ADAPTER}.get(part, part) for part in parts]
     files = [file for folder in folders if (file := _weights(find(folder)))]
-    held = " ".join([VERSION, *(sha256(file) for file in (weights.USED, *files))])
+    versions = [VERSION] if set(parts) <= {"rules", *TAGGERS} else [VERSION, ANSWERS]
+    held = " ".join([*versions, *(sha256(file) for file in (weights.USED, *files))])
     return f"{label(choice)} {hashlib.sha256(held.encode()).hexdigest()[:DIGITS]}"
 
 

@@ -10,7 +10,7 @@ import pytest
 from mitigate.core.files import find
 from mitigate.corruptions.instruction import Key, corrupt_instruction
 from mitigate.corruptions.suite import INSTRUCTION
-from mitigate.safeguard import adapter_folder, weights
+from mitigate.safeguard import adapter_folder, choices, weights
 from mitigate.safeguard.choices import VERSION, identity, label
 from mitigate.safeguard.guard import open_safeguard
 
@@ -51,6 +51,16 @@ def test_rows_tell_weights_of_the_rules_and_of_networks_apart(tmp_path, monkeypa
     rules.write_text(weights.FILE.read_text() + " ")
     monkeypatch.setattr(weights, "USED", rules)
     assert not set(before) & {identity(name) for name in names}
+
+
+def test_rows_tell_apart_how_answers_are_judged_where_a_language_model_gives_them(monkeypatch):
+    names = ["rules", "tagger", "reader", "lora", "reader+lora", "http://one:80/v1@m"]
+    before = [identity(name) for name in names]
+    monkeypatch.setattr(choices, "ANSWERS", "another")
+    assert [identity(name) == old for name, old in zip(names, before, strict=True)] == [
+        *[True] * 3,
+        *[False] * 3,
+    ]
 
 
 def test_an_opened_safeguard_says_what_it_is():
