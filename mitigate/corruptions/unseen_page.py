@@ -21,7 +21,9 @@ TEXT = """# Unseen corruptions
 An agent is trained on what is on its list, and measured on the same list. A robot meets what is on
 no list. These {rgb} corruptions of RGB and {depth} of depth differ in mechanism from the [twelve of
 the suite](corruptions.md); no recipe and no schedule draws them unless one is named
-(`schedule.names=[haze]`), and `suite=full` and `suite=all` do without them. They keep the suite's
+(`schedule.names=[haze]`), though random compositions (`schedule.broad_share`) [come close to
+some](broad-augmentation.md#how-unseen-are-the-unseen-ones). `suite=full` and `suite=all` do without
+them. They keep the suite's
 [rules](corruptions.md#rules): keyed draws, s = 0 changes no bit, more s never changes less, lengths
 are shares of the frame, invalid depth comes back as it was.
 
