@@ -40,7 +40,7 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     # gradients of padded texts in bf16 were no numbers on a GPU (H200, torch 2.11)
     how: dict[str, Any] = {"attn_implementation": "eager"}
     # its products are of float16 whatever comes in, which it would say at every one of them
-    logging.getLogger("bitsandbytes.autograd").setLevel(logging.ERROR)
+    logging.getLogger("bitsandbytes").setLevel(logging.ERROR)
     with _explained(base, precision):
         tokenizer = AutoTokenizer.from_pretrained(place, trust_remote_code=False, **gguf)
         if precision == "int8" and gguf:  # bitsandbytes quantises a dense checkpoint, not GGUF

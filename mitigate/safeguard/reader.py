@@ -8,6 +8,7 @@ head sees the first and the last piece of a word, and what the safeguard's word 
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -48,6 +49,7 @@ class Reader(nn.Module):
     """
 
     def __init__(self, rank: int = 16, width: int = 256, dropout: float = 0.1) -> None:
+        logging.getLogger("bitsandbytes").setLevel(logging.ERROR)  # peft loads it; not used here
         from peft import LoraConfig, inject_adapter_in_model
 
         super().__init__()

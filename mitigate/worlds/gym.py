@@ -32,7 +32,7 @@ class GymWorld(SeededWorld):
         success: str | None = None,
         unit: float = 1.0,
         limit: int = 500,
-        rule: str = "reward > 0 at the end",
+        rule: str | None = None,
     ) -> None:
         if not hasattr(env.action_space, "n"):
             raise ValueError(f"The actions {env.action_space} are not discrete: wrap it.")

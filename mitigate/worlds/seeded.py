@@ -19,7 +19,7 @@ class SeededWorld:
     entries: names of its frames by ours ("rgb", "depth", "pose"). success: the entry that says at
     the end whether it went well; None: a reward above 0 in the last step. unit: metres of one unit
     of depth. limit: steps after which an episode is over at the latest. rule: what success means,
-    in words, for the rows.
+    in words, for the rows; None: what ``success`` says.
 
     Raises ValueError if an entry is not there, or RGB is not uint8.
     """
@@ -33,10 +33,11 @@ class SeededWorld:
         success: str | None,
         unit: float,
         limit: int,
-        rule: str,
+        rule: str | None,
     ) -> None:
         self.entries, self.success, self.unit = dict(entries), success, unit
-        self.limit, self.rule = limit, rule
+        self.limit = limit
+        self.rule = rule or (f"{success} at the end" if success else "reward > 0 at the end")
         lacking = [entry for entry in self.entries.values() if entry not in found]
         if lacking or not self.entries:
             raise ValueError(

@@ -151,7 +151,7 @@ class EnvWorld(SeededWorld):
         success: str | None = None,
         unit: float = 1.0,
         limit: int = 500,
-        rule: str = "reward > 0 at the end",
+        rule: str | None = None,
     ) -> None:
         if env.batch_size.numel() != 1:
             raise ValueError(

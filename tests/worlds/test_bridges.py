@@ -89,6 +89,7 @@ def test_a_gymnasium_environment_is_a_world(entry):
     named = {} if entry is None else {"entries": {"rgb": entry}, "success": "won"}
     world, agent = GymWorld(Room(entry), **named), Brightness()
     assert world.sensors[RGB] == Sensor(RGB, (SIZE, SIZE, 3), "uint8")
+    assert world.rule == ("reward > 0 at the end" if entry is None else "won at the end")
     measures = run_episode(agent, world, episode(3), CLEAN, 0)
     assert measures["success"] == 1 and measures["steps"] == 4 == measures["decisions"]
     dark = run_episode(agent, world, episode(3), Corruption("low_light", 1.0), 0)
