@@ -126,8 +126,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if (error.name or "mitigate").startswith("mitigate"):
             raise
         sys.exit(
-            f"mitigate {name} needs {error.name}, which is not installed: pip install "
-            f"'mitigate[{COMMANDS[name].extra}]' (in a checkout: make install)."
+            f"mitigate {name} needs {error.name}, which is not installed: in a "
+            f"checkout, make install, or pip install -e '.[{COMMANDS[name].extra}]'."
         )
     try:
         status = module.main()

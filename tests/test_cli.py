@@ -47,7 +47,7 @@ def test_a_missing_package_says_what_to_install(monkeypatch):
     for module in list(sys.modules):
         if module.startswith("mitigate.corruptions.f"):
             monkeypatch.delitem(sys.modules, module)
-    with pytest.raises(SystemExit, match=r"needs tqdm.*pip install 'mitigate\[files\]'"):
+    with pytest.raises(SystemExit, match=r"needs tqdm.*pip install -e '.\[files\]'"):
         cli.main(["corrupt", "--list"])
 
 

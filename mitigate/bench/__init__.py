@@ -1,1 +1,2 @@
-"""What things cost: the corruptions beside their peers, their share of training, the renderer."""
+"""What things cost and whether they grow: corruptions beside their peers, training, evaluation, the
+renderer, the bridge, one process and two, an hour under load."""

@@ -110,7 +110,7 @@ def measured(steps: int, episodes: int) -> dict[str, tuple[float, float]]:
             return load(1, amount, places[0] / "run"), load(2, amount, places[1] / "run")
 
         return {
-            "training, steps of 24 episodes": both(training, steps),
+            "training, steps of 20 episodes (`experiment=frozen`)": both(training, steps),
             "evaluation, rows": (
                 episodes * SUITE / seconds[1],
                 episodes * SUITE / seconds.get(2, float("nan")),

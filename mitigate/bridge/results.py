@@ -108,7 +108,8 @@ def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | 
     agent's Success measure. An agent without either has the common one alone.
     """
     found = []
-    common = COMMON["words" if told.first.get("text") else "objects"]
+    routes = told.first.get("text") and not told.first.get("category")
+    common = COMMON["words" if routes else "objects"]
     for name, end in told.ends.items():
         row = {
             "agent": label["agent"],

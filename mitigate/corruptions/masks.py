@@ -2,8 +2,8 @@
 
 Darkening, dirt and glare are one operation, ``out = x + (colour - x) alpha``, with an opacity mask
 of 16 bits. Masks are cached by the 64-bit digest of the episode scope that they are drawn from, so
-a frame in the course of an episode pays for the look-up alone. Formulas and sources: SUITE
-section 2; constants without a source were chosen by this project.
+a frame in the course of an episode pays for the look-up alone. Formulas and sources:
+docs/corruptions.md; constants without a source were chosen by this project.
 """
 
 from __future__ import annotations

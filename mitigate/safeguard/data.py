@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mitigate.core.files import atomic_text, open_text
+from mitigate.core.files import open_text
 from mitigate.core.seeding import digest, generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
@@ -258,18 +258,6 @@ def read_texts(files: Iterable[str | Path], limit: int | None = None) -> list[st
             if language.startswith("en") and len(text.split()) > 2:
                 texts[text] = None
     return list(texts)
-
-
-def write_chats(path: str | Path, pairs: Iterable[Pair], prompt: str = "tuned") -> Path:
-    """Write one ``{"messages": [...], "kind": ...}`` a line; the file is whole or not there."""
-    with atomic_text(path) as file:
-        for pair in pairs:
-            messages = [
-                *prompt_messages(pair.source, prompt),
-                {"role": "assistant", "content": pair.target},
-            ]
-            file.write(json.dumps({"messages": messages, "kind": pair.kind}) + "\n")
-    return Path(path)
 
 
 def read_chats(path: str | Path) -> Iterator[Pair]:

@@ -43,7 +43,7 @@ def connect(launcher: RayConfig) -> Any:
     try:
         import ray
     except ModuleNotFoundError as error:
-        raise ValueError("launcher=ray needs ray: pip install 'mitigate[cluster]'.") from error
+        raise ValueError("launcher=ray needs ray: pip install -e '.[cluster]'.") from error
     if not ray.is_initialized():
         try:
             ray.init(launcher.address, log_to_driver=False, include_dashboard=False)

@@ -102,7 +102,7 @@ def _executor(launcher: SlurmConfig, folder: Path) -> Any:
     try:
         import submitit
     except ModuleNotFoundError as error:
-        needed = "launcher=slurm needs submitit: pip install 'mitigate[cluster]'."
+        needed = "launcher=slurm needs submitit: pip install -e '.[cluster]'."
         raise ValueError(needed) from error
     if launcher.cluster not in CLUSTERS:
         raise ValueError(unknown("launcher.cluster", launcher.cluster, CLUSTERS))

@@ -70,8 +70,14 @@ class HabitatWorld:
         gpu: int = -1,
     ) -> None:
         rules = {"apartments": metrics.Rule("vln", 2.0), **metrics.RULES}
-        if rule not in rules:
-            raise ValueError(unknown("success rule", rule, rules))
+        allowed = [name for name, known in rules.items() if not known.view_points]
+        if rule in rules and rule not in allowed:
+            raise ValueError(
+                f"rule={rule} counts from view points, which this world does not read. Choose one "
+                f"of: {', '.join(allowed)}."
+            )
+        if rule not in allowed:
+            raise ValueError(unknown("success rule", rule, allowed))
         if views not in (1, VIEWS):
             raise ValueError(f"views={views}: an agent sees {VIEWS} views, or 1 ahead.")
         self._given = {"scenes": str(scenes), "size": size, "views": views, "rule": rule}

@@ -15,6 +15,7 @@ from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
 from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption, Key, corrupt
+from mitigate.evaluation.metrics import RULES
 from tests.encoders.test_token_adapters import shaken
 
 from .conftest import condition, python
@@ -35,6 +36,8 @@ def test_wmnav_is_corrupted_and_measured_without_a_lab(tmp_path):
     found = rows(told, Corruption("low_light", 0.6), label, None)
     own = [row for row in found if row["rule"] == OWN]
     assert [(row["success"], row["spl"]) for row in own] == [(1.0, 0.75)] * 3
+    common = {row["rule"] for row in found} - {OWN}
+    assert common == {str(RULES["wmnav"])}  # its goals are categories, told as words
 
 
 def test_wmnav_hears_the_corrupted_category(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import re
 
@@ -11,7 +12,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.safeguard import data, routes
-from mitigate.safeguard.data import KINDS, Pair, draw_pair, read_chats, write_chats
+from mitigate.safeguard.data import KINDS, Pair, draw_pair, read_chats
 from mitigate.worlds.apartments.instructions import TEMPLATES
 from mitigate.worlds.episodes import read_episodes
 
@@ -91,7 +92,13 @@ def test_texts_of_the_user_take_their_share():
 
 
 def test_chats_come_back_as_written(tmp_path, pairs):
-    write_chats(tmp_path / "a.jsonl.gz", pairs[:20])
+    lines = []
+    for pair in pairs[:20]:
+        said = [("system", "Repair."), ("user", pair.source), ("assistant", pair.target)]
+        messages = [{"role": role, "content": content} for role, content in said]
+        lines.append(json.dumps({"messages": messages, "kind": pair.kind}))
+    with gzip.open(tmp_path / "a.jsonl.gz", "wt", encoding="utf-8") as file:
+        file.write("\n".join(lines))
     assert list(read_chats(tmp_path / "a.jsonl.gz")) == pairs[:20]
 
 

@@ -26,7 +26,7 @@ STAGES = (
     (11, 16),
 )  # blocks; maps of 1/4, 1/8, 1/16, 1/32
 BORROWED = ("stem.", "stages.")
-INSTALL = "pip install 'mitigate[encoders]'"
+INSTALL = "pip install -e '.[encoders]'"
 
 
 class ImageNetEncoder(nn.Module):

@@ -712,7 +712,7 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
     _thread.walk = walk = getattr(_thread, "walk", None) or Walk()
     told = env.all_episodes[number]
     words = told["object_category"]
-    answer = walk.begin(told["scene_id"], told["episode_id"], text=words, loop=True)
+    answer = walk.begin(told["scene_id"], told["episode_id"], text=words, category=words, loop=True)
     begin = env._initialize_episode
 
     def initialize(*numbers):

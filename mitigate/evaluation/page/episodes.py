@@ -21,7 +21,6 @@ from mitigate.evaluation.sections import Section
 MOST = 500_000  # episodes of cells in one page (ours): 4 MB
 MISSING = 65_535
 SCALE = 1000  # of success and SPL
-FIELDS = 3  # success, SPL, steps
 _Place = tuple[str, str, float, int]  # column, corruption, severity, seed
 
 

@@ -86,7 +86,7 @@ class Bag:
             from rosbags.typesys import Stores, get_typestore
         except ModuleNotFoundError as error:
             raise ValueError(
-                "Bags are read by rosbags, which is not installed: pip install 'mitigate[bags]'."
+                "Bags are read by rosbags, which is not installed: pip install -e '.[bags]'."
             ) from error
         try:
             usual = get_typestore(Stores.ROS2_HUMBLE)

@@ -1,0 +1,48 @@
+"""What a Habitat world is told before its simulator starts; walks in it are run by hand
+(docs/habitat.md)."""
+
+import json
+import pickle
+
+import pytest
+
+from mitigate.core.build import maker
+from mitigate.core.conf import load_config
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.worlds.habitat_world import NAVMESH, HabitatWorld
+
+
+def world(*options):
+    cfg = load_config("evaluate", ["env=habitat", *options])
+    return maker(cfg.env.world)()
+
+
+def test_the_config_makes_a_world_that_processes_can_be_sent(tmp_path):
+    made = world(f"env.scenes={tmp_path}", "env.size=32", "env.rule=etpnav", "env.views=1")
+    sent = pickle.loads(pickle.dumps(made))
+    for each in (made, sent):
+        assert each.sensors[RGB].shape == (32, 32, 3) and each.sensors[DEPTH].unit == "m"
+        assert each.rule == "etpnav: geodesic <= 3.0 m, STOP or not"
+
+
+def test_a_navmesh_is_the_named_one_or_lies_beside_the_scenes(tmp_path):
+    assert HabitatWorld(str(tmp_path / "scenes")).navmesh == NAVMESH
+    (tmp_path / "navmesh.json").write_text(json.dumps({"agent_radius": 0.2, "camera_height": 1.0}))
+    assert HabitatWorld(str(tmp_path / "scenes")).navmesh == {**NAVMESH, "agent_radius": 0.2}
+    (tmp_path / "mine.json").write_text(json.dumps({"agent_height": 1.5}))
+    named = world(f"env.scenes={tmp_path}/scenes", f"env.navmesh={tmp_path}/mine.json")
+    assert named.navmesh == {**NAVMESH, "agent_height": 1.5}
+
+
+@pytest.mark.parametrize(
+    "given, words",
+    [
+        ({"rule": "etpnaw"}, "no success rule 'etpnaw'. Did you mean etpnav"),
+        ({"rule": "objectnav"}, "view points, which this world does not read. Choose .*vln_ce"),
+        ({"rule": "wmnav"}, "view points"),
+        ({"views": 4}, "12 views, or 1 ahead"),
+    ],
+)
+def test_what_it_cannot_do_is_refused_before_the_simulator_starts(given, words):
+    with pytest.raises(ValueError, match=words):
+        HabitatWorld("scenes", **given)
