@@ -125,8 +125,8 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
         f"threads; {LAYOUTS} apartments, so that making them, which a training pays once, does not "
         "count. **Waiting**: the share of a step in which the trainer waits for its batch; **no "
         f"network computes**: the same without the networks of rollouts (aim: at most {AIM:.0%}). "
-        "The last columns are milliseconds on one core to make a step's batch, by part. Medians of a "
-        "few steps; corruption and all others are timed in one run.",
+        "The last columns are milliseconds on one core to make a step's batch, by part. Medians of "
+        "a few steps; corruption and all others are timed in one run.",
     ]
     for caps, found in stages.items():
         name = " ".join(f"{key}={value}" for key, value in CAPS.items())
