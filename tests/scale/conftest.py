@@ -20,7 +20,7 @@ HEAD = {
 @pytest.fixture(scope="session")
 def cluster():
     """Ray's own cluster for tests: three nodes on this machine, one CPU each."""
-    ray = pytest.importorskip("ray", reason="ray is not installed (mitigate[cluster])")
+    ray = pytest.importorskip("ray", reason="ray is not installed (the extra cluster)")
     from ray.cluster_utils import Cluster
 
     path = os.environ.get("PYTHONPATH")
@@ -41,7 +41,7 @@ def ray_launcher(cluster):
 @pytest.fixture
 def slurm_launcher(tmp_path, monkeypatch):
     """Makes a launcher of jobs that are processes here."""
-    pytest.importorskip("submitit", reason="submitit is not installed (mitigate[cluster])")
+    pytest.importorskip("submitit", reason="submitit is not installed (the extra cluster)")
     from submitit.core.core import Job
 
     # where a job that ended left no result: its file system is this machine's, which is never late
