@@ -85,7 +85,8 @@ def _are_words(value: Any) -> bool:
 
 
 VOCABULARY = Kind(f"null or a list of at most {MOST_WORDS} words of the letters a to z", _are_words)
-FUSION = {"rate": number(0, 1e6), "cap": number(0, 1e6)}
+TRUTH = Kind("true or false", lambda value: type(value) is bool)
+FUSION = {"learned": TRUTH, "rate": number(0, 1e6), "cap": number(0, 1e6)}
 PLANNER = {
     "width": whole(4, 1024),
     "heads": whole(1, 64),

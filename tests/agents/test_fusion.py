@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import torch
 
-from mitigate.agents.fusion import CAP, RATE, fuse, reliability
+from mitigate.agents.fusion import CAP, RATE, LearnedReliability, fuse, reliability, weigher
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.core import seeding
 from mitigate.core.observation import VIEWS
@@ -75,6 +75,48 @@ def test_negative_constants_are_refused(views, bad):
         reliability(views, **bad)
 
 
+def test_a_learned_reliability_starts_with_equal_weights(views):
+    torch.manual_seed(0)
+    weights = LearnedReliability(64)(torch.stack([views, views * torch.arange(12)[:, None]]))
+    assert torch.allclose(weights, torch.full((2, 12), 1 / 12))
+
+
+def test_a_learned_reliability_finds_what_the_magnitude_hides():
+    """Something of their magnitude has replaced views: the rule cannot tell, it learns to."""
+    torch.manual_seed(0)
+    marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # what a broken view shows
+
+    def draw() -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+        mixed = torch.randn(32, 1, 64) + 0.5 * torch.randn(32, 12, 64)
+        clean = torch.nn.functional.normalize(mixed, dim=-1)
+        broken = torch.rand(32, 12) < 0.25
+        shown = torch.where(broken[..., None], marks[torch.randint(8, (32, 12))], clean)
+        return shown, clean.mean(1), broken
+
+    learned = LearnedReliability(64)
+    optimiser = torch.optim.Adam(learned.parameters(), lr=1e-2)
+    for _ in range(150):
+        shown, wanted, _ = draw()
+        fused = (shown * learned(shown).unsqueeze(-1)).sum(1)
+        optimiser.zero_grad()
+        (fused - wanted).square().sum(-1).mean().backward()
+        optimiser.step()
+    shown, _, broken = draw()
+    with torch.no_grad():
+        weights, ruled = learned(shown), reliability(shown)
+    assert weights[broken].mean() < 0.2 * weights[~broken].mean()
+    assert ruled[broken].mean() > 0.9 * ruled[~broken].mean()
+    least, most = weights.min(-1).values, weights.max(-1).values
+    assert (most <= least * torch.tensor(2 * CAP).exp() * 1.001).all()
+
+
+def test_a_learned_reliability_has_no_rate():
+    with pytest.raises(ValueError, match="rate=4 belongs to the rule"):
+        weigher(8, learned=True, rate=4)
+    with pytest.raises(ValueError, match="at least 0"):
+        weigher(8, learned=True, cap=-1)
+
+
 def planner(fusion: dict | None) -> Planner:
     """One and the same untrained planner, with or without fusion."""
     seeding.seed_everything(0, "planner")
@@ -115,6 +157,25 @@ def test_in_the_planner_the_weights_of_a_ghosts_views_add_up_to_one(features):
     fused = ghosts({"rate": 4.0, "cap": 3.0}, features, seen)
     assert torch.allclose(fused[:2], plain[:2], atol=1e-5)
     assert not torch.allclose(fused[2], plain[2], atol=1e-3)
+
+
+def test_in_the_planner_a_learned_reliability_changes_nothing_until_it_has_learned(features):
+    """And the rest of the planner starts with the same weights."""
+    seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
+    plain, learned = planner(None), planner({"learned": True})
+    others = {k: v for k, v in learned.state_dict().items() if not k.startswith("fusion.")}
+    assert others.keys() == plain.state_dict().keys() and len(learned.state_dict()) > len(others)
+    assert all(value.equal(others[name]) for name, value in plain.state_dict().items())
+    level = ghosts({"learned": True}, features, seen)
+    assert torch.allclose(ghosts(None, features, seen), level, atol=1e-5)
+
+
+def test_a_planner_trains_its_learned_reliability():
+    made, step = planner({"learned": True}), decision(3)
+    looked = made.look(torch.rand(3, VIEWS, sum(made.widths)))
+    out = made(made.read(torch.tensor([[2, 3, 4]])), looked, collate([step], [0], [0]))
+    out["nodes"].square().sum().backward()
+    assert made.fusion.score.weight.grad.abs().sum() > 0
 
 
 def test_a_planner_with_fusion_scores_what_it_looked_at():

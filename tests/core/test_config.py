@@ -176,7 +176,7 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
     (plain, agent), (name, changed) = met.items()
     assert plain == "ts_distill" and agent.blind == () and agent.planner.fusion is None
     assert name == "ts_distill+blind-rgb+planner-fusion-rate-4-cap-3+env.size-32"
-    assert changed.blind == ("rgb",) and changed.planner.fusion == {"rate": 4, "cap": 3}
+    assert changed.blind == ("rgb",) and changed.planner.fusion.keywords == {"rate": 4, "cap": 3}
 
 
 def test_options_of_the_agent_and_its_views_are_in_the_name():

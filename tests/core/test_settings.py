@@ -17,7 +17,7 @@ from torch import nn
 
 from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.fusion import reliability
+from mitigate.agents.fusion import weigher
 from mitigate.agents.recurrent.policy import Policy
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.agents.topological.planner import Planner
@@ -253,6 +253,7 @@ def test_a_file_without_settings_is_refused(tmp_path, text):
         ({"planner": {"heads": 3}}, "a multiple of agent.planner.heads (3)"),
         ({"planner": {"dropout": 2}}, "a number from 0 to 1"),
         ({"planner": {"fusion": {"rate": "4"}}}, "a number from 0"),
+        ({"planner": {"fusion": {"learned": 1}}}, "true or false"),
         ({"planner": {"fusion": {"views": None}}}, "no setting of agent.planner.fusion 'views'"),
         ({"adapters": {"model": None}}, "no setting of agent.adapters 'model'"),
         ({"adapters": {"ring": ["stages.0"]}}, "lacks target_modules"),
@@ -281,7 +282,7 @@ def test_the_schema_has_the_arguments_of_what_it_describes():
     assert schema.POLICY.keys() == names(Policy, "rgb", "depth", "vocabulary")
     assert schema.PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
     assert schema.ADAPTERS.keys() == names(insert_adapters, "model", "run", "gate", "middle")
-    assert schema.FUSION.keys() == names(reliability, "views", "valid")
+    assert schema.FUSION.keys() == names(weigher, "width")
 
 
 def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config(tmp_path):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 import torch
@@ -17,7 +18,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.attention import Layer
 from mitigate.agents.concepts import CONCEPTS, NEAR, THINGS
-from mitigate.agents.fusion import reliability
+from mitigate.agents.fusion import weigher
 from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
 from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS, Decision
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
@@ -73,8 +74,9 @@ def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) 
 class Planner(nn.Module):
     """See the module's docstring.
 
-    ``fusion``: keyword arguments of ``fusion.reliability`` (rate, cap): nodes and ghosts are then
-    means of their views weighted by the reliability of the encoder features; None: plain means.
+    ``fusion``: keyword arguments of ``fusion.weigher`` (rate, cap, learned): nodes and ghosts are
+    then means of their views weighted by the reliability of the encoder features; None: plain
+    means.
     ``vocabulary``: of the instructions.
     """
 
@@ -90,11 +92,10 @@ class Planner(nn.Module):
         text_layers: int = 2,
         layers: int = 3,
         dropout: float = 0.1,
-        fusion: dict[str, float] | None = None,
+        fusion: dict[str, Any] | None = None,
         vocabulary: Vocabulary | None = None,
     ) -> None:
         super().__init__()
-        self.fusion = fusion
         self.widths = (rgb_width, len(CONCEPTS), depth_width)
         vocabulary = vocabulary or Vocabulary()
         self.words = nn.Embedding(len(vocabulary), width, padding_idx=PAD)
@@ -119,6 +120,8 @@ class Planner(nn.Module):
         self.stop = nn.Sequential(nn.Linear(width, width), nn.GELU(), nn.Linear(width, 1))
         self.distance = nn.Linear(width, 1)
         self.grounding = nn.Linear(width, 1)
+        # last, so that with it or without the other weights start the same
+        self.fusion = None if fusion is None else weigher(rgb_width + depth_width, **fusion)
         yaws = torch.arange(VIEWS) * math.radians(VIEW_STEP_DEGREES)
         self.register_buffer(
             "yaws",
@@ -155,7 +158,7 @@ class Planner(nn.Module):
         x = self.view_norm(x)
         if self.fusion is None:
             return x
-        weights = reliability(torch.cat([rgb, depth], -1).float(), **self.fusion)  # type: ignore[arg-type]
+        weights = self.fusion(torch.cat([rgb, depth], -1).float())
         return torch.cat([x, weights.unsqueeze(-1).to(x.dtype)], -1)
 
     def forward(
