@@ -53,7 +53,7 @@ INPUTS = {  # name: dtype, shape, meaning
     },
 }
 MEANINGS = {
-    "views": "float32 [P, 12, width]: view tokens",
+    "views": "float32 [P, 12, width]: view tokens (with fusion, the view's weight as last channel)",
     "waypoints": "float32 [P, 120, 12]: logit that the way is free; angle a looks 3 a - 13.5 "
     "degrees right, distance d is 0.25 (d + 1) m",
     "logits": "float32 [B, 1 + N + G]: scores, -inf where not allowed",
@@ -173,7 +173,7 @@ def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor
         "rgb": integers(0, 256, p, VIEWS, size, size, 3).to(torch.uint8),
         "depth": 5 * torch.rand(p, VIEWS, size, size, 1, generator=draw),
         "tokens": integers(1, len(agent.vocabulary), 2, words),
-        "views": torch.randn(p, VIEWS, agent.planner.view_norm.bias.numel(), generator=draw),
+        "views": torch.randn(p, VIEWS, agent.planner.looked_width, generator=draw),
         "episode": torch.arange(b),
         "panorama": torch.tensor([p - 1, p - 2]),
         "nodes": torch.tensor([[0, 1, 2], [0, 1, -1]]),

@@ -388,6 +388,15 @@ def test_the_check_finds_other_outputs(place, tmp_path):
         export.check_outputs(str(place / "hardened/whole"), str(tmp_path / "other.safetensors"))
 
 
+@pytest.mark.parametrize("fusion", [{"rate": 4.0, "cap": 3.0}, {"learned": True}], ids=str)
+def test_the_programs_weigh_the_views_as_the_agent_does(fusion):
+    agent = TopologicalAgent(**{**TINY, "planner": {**TINY["planner"], "fusion": fusion}}).eval()
+    made = {name: p.module() for name, p in programs.export_programs(agent, SIZE).items()}
+    given = programs.probe(agent, SIZE)
+    wanted = programs.outputs(programs.networks(agent), given)
+    assert programs.difference(wanted, programs.outputs(made, given)) < 1e-5
+
+
 def test_rows_of_another_agent_are_no_metrics_of_this_one(place, tmp_path):
     rows.write(tmp_path / "rows.jsonl", [a_row("0123456789ab", 0, "clean", 1.0)])
     with pytest.raises(ValueError, match="not of this agent"):

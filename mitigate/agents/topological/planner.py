@@ -129,6 +129,11 @@ class Planner(nn.Module):
             persistent=False,
         )
 
+    @property
+    def looked_width(self) -> int:
+        """Channels of what :meth:`look` gives."""
+        return self.view_kind.numel() + (self.fusion is not None)
+
     def read(self, tokens: Tensor) -> tuple[Tensor, Tensor]:
         """Token ids [E, L] to (text features [E, L, width], mask [E, L])."""
         mask = tokens != PAD
@@ -139,7 +144,7 @@ class Planner(nn.Module):
 
     def look(self, views: Tensor) -> Tensor:
         """View features [P, 12, view_width] to view tokens [P, 12, width]; with ``fusion`` each
-        view's reliability follows as one channel more."""
+        view's reliability follows as one channel more (``looked_width`` in all)."""
         rgb, concepts, depth = views.split(self.widths, -1)
         meaning = self.concept_words @ self.words.weight  # [concepts, width]
         seen = concepts[..., THINGS] @ meaning[THINGS]
