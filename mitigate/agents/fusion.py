@@ -79,7 +79,7 @@ class LearnedReliability(nn.Module):
     def forward(self, views: Tensor) -> Tensor:
         """Features ``[..., V, F]`` to weights ``[..., V]`` that add up to 1."""
         x = self.norm(torch.cat([views, views - views.mean(-2, keepdim=True)], -1))
-        score = self.score(torch.nn.functional.gelu(self.hidden(x))).squeeze(-1)
+        score = self.score(nn.functional.gelu(self.hidden(x))).squeeze(-1)
         return (self.cap * score.float().tanh()).softmax(-1)
 
 
