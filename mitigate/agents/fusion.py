@@ -42,17 +42,6 @@ def reliability(
     return weights / weights.sum(-1, keepdim=True)
 
 
-def fuse(
-    views: Tensor, rate: float = RATE, cap: float = CAP, valid: Tensor | None = None
-) -> tuple[Tensor, Tensor]:
-    """Weighted average of views ``[..., V, F]``: (fused ``[..., F]``, weights ``[..., V]``).
-
-    Arguments and errors as :func:`reliability`; ``rate = 0`` is the plain mean.
-    """
-    weights = reliability(views, rate, cap, valid)
-    return (views * weights.unsqueeze(-1)).sum(-2), weights
-
-
 class LearnedReliability(nn.Module):
     """Weights of views by a learned score of their features and of how these differ from the
     panorama's:

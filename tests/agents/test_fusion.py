@@ -5,11 +5,17 @@ from __future__ import annotations
 import pytest
 import torch
 
-from mitigate.agents.fusion import CAP, RATE, LearnedReliability, fuse, reliability, weigher
+from mitigate.agents.fusion import CAP, RATE, LearnedReliability, reliability, weigher
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.core import seeding
 from mitigate.core.observation import VIEWS
 from tests.agents.topological.test_planner import decision
+
+
+def fuse(views: torch.Tensor, **how) -> tuple[torch.Tensor, torch.Tensor]:
+    """The mean of views by their reliability, and the weights."""
+    weights = reliability(views, **how)
+    return (views * weights.unsqueeze(-1)).sum(-2), weights
 
 
 @pytest.fixture
