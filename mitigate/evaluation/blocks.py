@@ -15,6 +15,7 @@ BLOCKS = {  # of ours; a corruption of another package is no part of them
     "unseen RGB": unseen_names("rgb"),
     "unseen depth": unseen_names("depth"),
 }
+FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))  # the paper's twelve
 SUITE, UNSEEN_KIND, PAIRS = "", "unseen corruptions", "pairs of corruptions"  # a table each
 PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt: these have no row
 

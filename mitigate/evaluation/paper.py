@@ -10,12 +10,14 @@ from mitigate.evaluation.sections import Section, label
 SEVERITY = 0.6  # of the paper's Table II (its caption); other severities stand alone
 
 
-def beside(section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, float]) -> str:
-    """Return Markdown of ``section`` with the paper's figures and the CPU minutes of training.
+def beside(
+    section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, Mapping[str, float]]
+) -> str:
+    """Return Markdown of ``section`` with the paper's figures and the CPU minutes that it cost.
 
     Args:
         paper: "columns" -> names of its columns, and by row ("PRS-SR (RGB)", "motion_blur") its
-            figures in their order. spent: CPU minutes by column.
+            figures in their order. spent: CPU minutes by what they were spent on, and by column.
     """
     theirs = {
         name: dict(zip(paper["columns"], values, strict=True))
@@ -42,8 +44,9 @@ def beside(section: Section, paper: Mapping[str, Sequence], spent: Mapping[str, 
             lines.append(cells(label(name), name, rates))
     held = (" ".join(map(str, section.grid.seeds[c, section.severity])) for c in section.columns)
     lines.append(["Seeds", *held])
-    minutes = (f"{spent[c]:.0f}" if c in spent else "–" for c in section.columns)
-    lines.append(["Training, CPU minutes", *minutes])
+    for kind, minutes in spent.items():
+        cost = (f"{minutes[c]:.1f}" if c in minutes else "–" for c in section.columns)
+        lines.append([f"CPU minutes, {kind}", *cost])
     table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
     return f"{_header(section, bool(theirs))}\n\n{table}\n"
 

@@ -135,7 +135,7 @@ def _section(grid: Grid, kind: str, severity: float) -> Section:
     every = tuple(name for names in blocks.values() for name in names)
     for column in columns:
         if parts := grid.retention([column], every, severity, METRICS["SR"]):
-            corrupted[column] = _mean_sr(parts)
+            corrupted[column] = mean_sr(parts)
         if column != reference:
             found = _compared(grid, severity, (column, reference), blocks)
             gained |= {(column, *place): value for place, value in found.gained.items()}
@@ -191,7 +191,7 @@ def _compared(
             if held := both.retention(pair, names, severity, key):
                 gained[block, metric] = _retained(held)
     return Compared(
-        bootstrap.mean(known) if len(known) else None, _mean_sr(parts) if parts else None, gained
+        bootstrap.mean(known) if len(known) else None, mean_sr(parts) if parts else None, gained
     )
 
 
@@ -220,7 +220,7 @@ def _retained(parts: list[Retention]) -> Retained:
     return Retained(estimate, parts[0].corruptions, len(parts[0].clean), bool(near_floor))
 
 
-def _mean_sr(parts: list[Retention]) -> Retained:
+def mean_sr(parts: list[Retention]) -> Retained:
     """Return the mean SR under corruption of one part, or the first's minus the second's."""
     means = [part.corrupted.mean(axis=0) for part in parts]
     alone = len(means) == 1

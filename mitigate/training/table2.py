@@ -4,7 +4,8 @@ Table II is all methods with our reference agent, Table I all kinds of agent (``
 Trains and evaluates every column for every seed, several cells at a time, each in processes of its
 own, on this machine or on those of ``launcher``. The same command again goes on where the last one
 stopped: trainings resume, evaluations go on, finished cells are kept. Then the report is written
-from the rows of all cells.
+from the rows of all cells. ``evaluations=beyond`` measures each cell under more than the table's
+suite; each of these has a report of its own.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import Progress
-from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import ROWS, load
 from mitigate.scale import launcher, programs
+from mitigate.training.cells import Cell, cells, check
 
-COST, LOG, REPORT = "cost.json", "log.txt", "overview.md"
+COST, REPORT = "cost.json", "overview.md"
 
 
 @dataclass
@@ -44,6 +45,7 @@ class Table2Config:
     suite: Any = MISSING
     conditions: list[str] | None = None
     severity: float = 0.6
+    evaluations: dict[str, Any] = field(default_factory=dict)
     train: list[str] = field(default_factory=list)
     jobs: int = 2
     launcher: Any = MISSING
@@ -52,81 +54,6 @@ class Table2Config:
 
 
 ConfigStore.instance().store(name="table2_schema", node=Table2Config)
-
-
-@dataclass(frozen=True)
-class Cell:
-    """One column under one seed, in a folder of its own."""
-
-    column: str
-    options: tuple[str, ...]
-    seed: int
-    folder: Path
-
-    @property
-    def trains(self) -> bool:
-        """Whether the agent is trained; else its options name one that is there already."""
-        return any(option.startswith("recipe=") for option in self.options)
-
-    @property
-    def agent(self) -> tuple[str, ...]:
-        """What an evaluation must know of the agent: its kind and its weights."""
-        if self.trains:
-            kind = tuple(option for option in self.options if option.startswith("agent="))
-            return (*kind, f"checkpoint={self.folder / 'run' / 'agent'}")
-        return self.options
-
-    @property
-    def evaluation(self) -> Path:
-        """The folder of the cell's result rows."""
-        return self.folder / "evaluation"
-
-    def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
-        """What makes the cell: ("train" or "evaluate", arguments after ``python -m``)."""
-        found = []
-        if self.trains:
-            found.append(
-                (
-                    "train",
-                    [
-                        "mitigate.train",
-                        *self.options,
-                        *cfg.train,
-                        f"seed={self.seed}",
-                        f"folder={self.folder / 'run'}",
-                        "evaluation.enabled=false",
-                        "workers=0",  # a cell has one core
-                    ],
-                )
-            )
-        count = "null" if cfg.episodes is None else cfg.episodes
-        found.append(
-            (
-                "evaluate",
-                [
-                    "mitigate.evaluate",
-                    *self.agent,
-                    f"conditions=[{','.join(measured(cfg))}]",
-                    f"name={self.column}",
-                    f"seed={self.seed}",
-                    f"split={cfg.split}",
-                    f"episodes={count}",
-                    f"severity={cfg.severity}",
-                    f"out={self.evaluation}",
-                ],
-            )
-        )
-        return found
-
-    def chain(self, cfg: DictConfig) -> programs.Chain:
-        """The programs that make the cell, on one core."""
-        return programs.Chain(
-            f"{self.column}, seed {self.seed}",
-            tuple((kind, programs.python(*words)) for kind, words in self.commands(cfg)),
-            (self.folder / LOG).resolve(),
-            Path.cwd(),
-            {"OMP_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"},
-        )
 
 
 def run(cfg: DictConfig) -> Path:
@@ -149,53 +76,11 @@ def run(cfg: DictConfig) -> Path:
     if failed and not measured:
         raise ValueError(problem)
     report = write_report(cfg, out, measured)
+    written = [report, *write_further(made, cfg, out)]
     if failed:
         raise ValueError(problem)
-    print("\n".join(f"wrote {path}" for path in (report, *draw_walks(cfg, out))), flush=True)
+    print("\n".join(f"wrote {path}" for path in (*written, *draw_walks(cfg, out))), flush=True)
     return report
-
-
-def cells(cfg: DictConfig) -> list[Cell]:
-    """All cells of the table, seed by seed, so that a partial table holds every column."""
-    if not cfg.seeds or not cfg.columns or cfg.jobs < 1:
-        raise ValueError(
-            f"columns, seeds ({list(cfg.seeds)}) and jobs ({cfg.jobs}) must not be empty or 0."
-        )
-    for column, options in cfg.columns.items():
-        if isinstance(options, str):
-            raise ValueError(
-                f"columns.{column}={options} must be a list of options, in quotes for the shell: "
-                f"'columns.{column}=[\"agent=recurrent\"]'."
-            )
-    out = Path(cfg.out)
-    return [
-        Cell(
-            str(column),
-            tuple(options),
-            seed,
-            out / "cells" / f"{column}-seed{seed}",
-        )
-        for seed in cfg.seeds
-        for column, options in cfg.columns.items()
-    ]
-
-
-def measured(cfg: DictConfig) -> list[str]:
-    """The names of the conditions that every cell is evaluated under."""
-    return list(cfg.suite.conditions if cfg.conditions is None else cfg.conditions)
-
-
-def check(made: Sequence[Cell], cfg: DictConfig) -> None:
-    """Raise ValueError for options of a column, a split and conditions that there are not."""
-    conditions(measured(cfg), cfg.severity, None)
-    for cell in made:
-        if cell.seed == cfg.seeds[0]:
-            try:
-                if cell.trains:
-                    conf.composed("train", [*cell.options, *cfg.train])
-                episodes(conf.composed("evaluate", cell.agent).env, cfg.split, cfg.episodes)
-            except ValueError as error:
-                raise ValueError(f"Column {cell.column}: {error}") from error
 
 
 def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
@@ -253,6 +138,19 @@ def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Pat
     return out / REPORT
 
 
+def write_further(made: Sequence[Cell], cfg: DictConfig, out: Path) -> list[Path]:
+    """Write ``NAME/table.md`` with its pictures for each further evaluation, and return their
+    paths. Each has a table of its own: its episodes need not be those of the others."""
+    from mitigate.evaluation import report, rows
+
+    written = []
+    for name in cfg.evaluations:
+        paths = [cell.further(name) for cell in made if (cell.further(name) / ROWS).is_file()]
+        if paths:
+            written.append(report.write(rows.gather(paths), out / name)[0])
+    return written
+
+
 def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     """Write pictures of episodes that the last of ``cfg.walks`` wins back for the first, by the
     agents of the first seed; nothing if one of them has no cell."""
@@ -278,14 +176,29 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     return write_pictures(agents, world, chosen, found, out / "pictures", seed=cfg.seeds[0])
 
 
-def costs(out: Path) -> dict[str, float]:
-    """Mean CPU minutes of training by column."""
-    spent: dict[str, list[float]] = {}
+def costs(out: Path) -> dict[str, dict[str, float]]:
+    """Mean CPU minutes of a cell by what they were spent on ("train", "evaluate", ...), and by
+    the column that its rows name."""
+    spent: dict[str, dict[str, list[float]]] = {}
     for path in sorted((out / "cells").glob(f"*/{COST}")):
-        seconds = json.loads(path.read_text(encoding="utf-8")).get("train")
-        if seconds is not None:
-            spent.setdefault(path.parent.name.rpartition("-seed")[0], []).append(seconds / 60)
-    return {column: sum(minutes) / len(minutes) for column, minutes in spent.items()}
+        column = _named(path.parent)
+        for kind, seconds in json.loads(path.read_text(encoding="utf-8")).items():
+            spent.setdefault(kind, {}).setdefault(column, []).append(seconds / 60)
+    return {
+        kind: {column: sum(held) / len(held) for column, held in columns.items()}
+        for kind, columns in sorted(spent.items(), key=lambda item: (item[0] != "train", item[0]))
+    }
+
+
+def _named(folder: Path) -> str:
+    """The column of a cell's rows, which names what stands in front of the agent, too; of a cell
+    without rows that of the folder."""
+    rows = folder / "evaluation" / ROWS
+    if rows.is_file():
+        with open(rows, encoding="utf-8") as file:
+            for line in file:
+                return str(json.loads(line)["name"])
+    return folder.name.rpartition("-seed")[0]
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table2")

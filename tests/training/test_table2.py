@@ -11,7 +11,7 @@ from omegaconf import OmegaConf
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import plots, rows
-from mitigate.training import table2
+from mitigate.training import cells, table2
 from tests.evaluation.made_rows import column, row
 
 ALL = dict.fromkeys((*RGB, *DEPTH), 4)
@@ -90,6 +90,10 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
 @pytest.mark.parametrize(
     ("option", "said"),
     [
+        ('+evaluations.mine=["suite=unsen"]', "Evaluation mine: .*unseen"),
+        ('+evaluations.mine=["conditions=[hase]"]', "Evaluation mine: .*Did you mean haze?"),
+        ('+evaluations.mine=["severity=2"]', "Evaluation mine: Severity must be"),
+        ("+evaluations.mine=pairs", "evaluations.mine=pairs must be a list of options"),
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
         ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
@@ -126,7 +130,7 @@ def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick
 )
 def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table, split, suite):
     cfg = conf.load_config("table1", [f"table={table}"])
-    assert (cfg.split, table2.measured(cfg)[0]) == (split, "clean")
+    assert (cfg.split, cells.measured(cfg)[0]) == (split, "clean")
     for cell in table2.cells(cfg):
         node = conf.load_config("train" if cell.trains else "evaluate", cell.options)
         blind = cell.column.partition("_no_")[2]
@@ -144,7 +148,7 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
     assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
     assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
-    assert "Training, CPU minutes" in lines
+    assert lines["CPU minutes, train"].count("0") == 2
     assert lines["Seeds"] == "| Seeds | 0 1 | 0 1 |"
     assert lines["Clean SR"] == "| Clean SR | 70.0 | 70.0 |"  # 80 and 60
     costs = sorted(tmp_path.glob("cells/*/cost.json"))
@@ -160,8 +164,43 @@ def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
     whole = table2.run(cfg).read_text(encoding="utf-8").splitlines()
     again = config(tmp_path / "again", rows=[str(c.folder) for c in table2.cells(cfg)])
     report = table2.run(again).read_text(encoding="utf-8").splitlines()
-    assert report[:-1] == whole[:-1] and report[-1] == "| Training, CPU minutes | – | – |"
+    assert report == [line for line in whole if "CPU minutes" not in line]
     assert not (tmp_path / "again" / "cells").exists()
+
+
+def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
+    """Each takes what the table says and its own options, and none mixes with the table's rows."""
+    measured = table2.Cell.measurement
+    cfg = conf.load_config(
+        "table2", [f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7"]
+    )
+    cfg.columns = {"base": cfg.columns.base, "restored": cfg.columns.restored}
+    plain, restored = table2.cells(cfg)
+    mild = measured(plain, cfg, "severity_02", cfg.evaluations.severity_02)
+    node = conf.load_config("evaluate", mild)
+    assert (node.severity, node.episodes, node.name) == (0.2, 150, "base")
+    assert node.out != str(plain.evaluation) and len(node.suite.conditions) == 13
+    node = conf.load_config("evaluate", measured(restored, cfg, "", ["conditions=[clean]"]))
+    assert (node.name, node.restore, node.episodes) == ("base", "checkpoints/restorer", 7)
+
+    for cell, name in ((plain, "base"), (restored, "base+restorer")):
+        made = column(8, ALL, name=name, agent=cell.column)
+        rows.write(cell.evaluation / "rows.jsonl", made)
+        rows.write(cell.further("severity_02") / "rows.jsonl", made[: len(made) // 2])
+    report = table2.run(cfg).read_text(encoding="utf-8")
+    apart = (tmp_path / "severity_02" / "table.md").read_text(encoding="utf-8")
+    assert "| base | base+restorer |" in report and "| base | base+restorer |" in apart
+    assert "Missing cells" in apart and "Missing cells" not in (tmp_path / "table.md").read_text()
+    (cost,) = (line for line in report.splitlines() if line.startswith("| CPU minutes, train"))
+    assert "–" not in cost, "a column's cost stands under its rows' name"
+    assert not (tmp_path / "pairs").exists(), "without rows there is no report"
+
+
+def test_a_cell_is_trained_once_and_measured_by_each_evaluation(tmp_path):
+    cfg = config(tmp_path)
+    cfg.evaluations = {"pairs": ["suite=pairs"]}
+    kinds = [[kind for kind, _ in cell.commands(cfg)] for cell in table2.cells(cfg)[:2]]
+    assert kinds == [["evaluate", "evaluate pairs"], ["train", "evaluate", "evaluate pairs"]]
 
 
 def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):

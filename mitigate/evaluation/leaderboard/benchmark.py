@@ -91,7 +91,7 @@ def benchmark(
         rows,
         name,
         severity=severity,
-        sensors=sensors_of(made().sensors),
+        sensors=sensors_of(made().sensors, getattr(agent, "sensors", None)),
         training_data=training_data,
         link=link,
         file="" if file.is_absolute() else file.as_posix(),

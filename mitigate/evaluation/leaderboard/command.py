@@ -156,8 +156,8 @@ def add(
 ) -> Path:
     """Write the entry of the column ``name`` of the rows in ``paths``; return its file.
 
-    The sensors are those of the world of ``options`` (of ``mitigate evaluate``). Raises ValueError
-    if the file is there already, and as ``entry_of``.
+    The sensors are those of the world of ``options`` (of ``mitigate evaluate``) that the kind of
+    agent among them reads. Raises ValueError if the file is there already, and as ``entry_of``.
     """
     place = Path(folder) / f"{_OTHERS.sub('-', name).strip('.-') or 'entry'}.json"
     if place.exists() and not overwrite:
@@ -171,7 +171,7 @@ def add(
         name,
         severity=severity,
         split=split,
-        sensors=sensors_of(maker(cfg.env.world)().sensors),
+        sensors=sensors_of(maker(cfg.env.world)().sensors, cfg.agent.get("sensors")),
         training_data=training_data,
         link=link,
         file=_named(paths),

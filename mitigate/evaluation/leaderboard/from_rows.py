@@ -11,12 +11,13 @@ from mitigate.core.names import counted, unknown
 from mitigate.core.observation import Sensor
 from mitigate.corruptions.registry import UNSEEN
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.blocks import SUITE
+from mitigate.evaluation.blocks import FRAMES, SUITE
+from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import METRICS
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page.model import CLEAN, Numbers, numbers
 from mitigate.evaluation.rows import Row, identity
-from mitigate.evaluation.sections import Section, sections
+from mitigate.evaluation.sections import Section, mean_sr, sections
 
 
 def entry_of(
@@ -102,10 +103,13 @@ def listed_sha(episodes: Iterable[str]) -> str:
     return hashlib.sha256("\n".join(sorted(episodes)).encode()).hexdigest()[:12]
 
 
-def sensors_of(sensors: Mapping[str, Sensor]) -> tuple[str, ...]:
-    """Return a line for each sensor of a world."""
+def sensors_of(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, ...]:
+    """Return a line for each sensor of a world that an agent reads. ``read``: what the agent has as
+    ``sensors``; unless these are names of the world's, all count."""
+    own = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
     lines = []
-    for name, sensor in sensors.items():
+    for name in [name for name in sensors if name in own]:
+        sensor = sensors[name]
         several = len(sensor.yaws) > 1
         views = f"{len(sensor.yaws)} views of " if several else ""
         seen = f", {sensor.hfov:g} degrees wide" if sensor.hfov else ""
@@ -124,7 +128,7 @@ def _figures(found: Sequence[Section]) -> tuple[dict[str, Numbers], dict[str, di
         for metric in METRICS:
             scores.setdefault(f"Clean {metric}", numbers(part.clean.get((column, metric))))
         if part.kind == SUITE and column in part.corrupted:
-            scores["Mean SR"] = numbers(part.corrupted[column].estimate)
+            scores["Mean SR"] = numbers(_mean_sr(part, column))
         for (_, block, metric), held in part.retained.items():
             title = f"PRS-{metric} ({_heading(block, held.corruptions)})"
             scores[title] = numbers(held.estimate)
@@ -134,6 +138,17 @@ def _figures(found: Sequence[Section]) -> tuple[dict[str, Numbers], dict[str, di
             for name, estimate in zip(names, bootstrap.means(table, shares=True), strict=True):
                 rates[metric].setdefault(name, numbers(estimate))
     return scores, rates
+
+
+def _mean_sr(part: Section, column: str) -> Estimate:
+    """Return the mean SR over the suite's corruptions of frames, so that entries with corrupted
+    instructions compare with those without; where not all were measured, over what was."""
+    met = {name for names in part.blocks.values() for name in names}
+    if met > FRAMES:
+        held = part.grid.retention([column], sorted(FRAMES), part.severity, METRICS["SR"])
+        if held:
+            return mean_sr(held).estimate
+    return part.corrupted[column].estimate
 
 
 def _heading(block: str, names: Iterable[str]) -> str:

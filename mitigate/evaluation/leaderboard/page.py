@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from mitigate.corruptions.registry import AND, UNSEEN
-from mitigate.evaluation.blocks import BLOCKS, PROMPT_ONLY, SUITE, kind
+from mitigate.evaluation.blocks import BLOCKS, FRAMES, PROMPT_ONLY, SUITE, kind
 from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
@@ -101,12 +101,12 @@ def _over(entry: LeaderboardEntry, title: str) -> str:
     met = set(entry.SR) - {CLEAN}
     if title == "Mean SR":
         own = {name for name in met if kind(name) == SUITE}
-        wanted = {*BLOCKS["RGB"], *BLOCKS["Depth"]}
+        wanted = FRAMES
     else:
         block, _, half = title.partition("(")[2].rstrip(")").partition(", ")
         wanted = {n for n in BLOCKS.get(block, ()) if not half or UNSEEN[n].half == half}
         own, wanted = met & wanted, wanted - {PROMPT_ONLY}
-    if not wanted or own >= wanted and (title != "Mean SR" or own == wanted):
+    if not wanted or own >= wanted:
         return ""
     return f" † {len(own)}/{len(wanted)}"
 

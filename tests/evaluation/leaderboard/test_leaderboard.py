@@ -76,6 +76,17 @@ def test_what_makes_no_entry_is_refused(rows):
         entry_of(rows + elsewhere, "base", severity=0.6)
 
 
+def test_corrupted_words_do_not_change_the_mean_over_corrupted_frames():
+    frames = dict.fromkeys([*BLOCKS["RGB"], *BLOCKS["Depth"]], 4)
+    plain = entry_of(column(8, frames), "base", severity=0.6)
+    more = entry_of(column(8, frames | {"mask": 0, "black_box": 0}), "base", severity=0.6)
+    assert more.scores["Mean SR"] == plain.scores["Mean SR"]
+    assert "PRS-SR (Instruction)" in more.scores
+    (section,) = held(render([plain, replace(more, name="more")]))[0]["sections"]
+    place = [column["title"] for column in section["measures"]].index("Mean SR")
+    assert "†" not in json.dumps([line[place] for line in section["values"]])
+
+
 def test_a_score_over_other_corruptions_is_marked_and_ranks_last(rows):
     suite = [*BLOCKS["RGB"], *BLOCKS["Depth"]]
     whole = entry_of(column(5, dict.fromkeys(suite, 4), name="whole"), "whole", severity=0.6)
@@ -274,6 +285,9 @@ def test_words_that_say_what_an_agent_sees_may_stand_behind_options(
     assert command.main(add) == 0
     assert load("entries/base.json").sensors[0] == "rgb: 64 x 64 x 3 uint8, 90 degrees wide"
     assert command.main(["check", "entries/base.json", "entries/base.json"]) == 0
+    assert command.main([*add[:-1], "--overwrite", "agent=recurrent_rgb"]) == 0
+    (only,) = load("entries/base.json").sensors
+    assert only.startswith("rgb: "), "it has no depth camera and reads no pose"
     for wrong, words in (
         (["add", "--name", "base", "env.views=1"], "name a row file"),
         ([*add, "--no-such", "x"], "unrecognized arguments: --no-such"),
