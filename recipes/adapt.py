@@ -78,7 +78,7 @@ class Adapt(Distil):
 class AdaptViews(DistilViews):
     """Args: as ``DistilViews``; its teacher is the agent itself without its adapters. w_gate: of
     the cross-entropy that teaches the encoders' gates, if they have any, which views are corrupted.
-    ``evaluate`` sets their thresholds, so that they open for a share ``touched`` of the views of
+    ``finish`` sets their thresholds, so that they open for a share ``touched`` of the views of
     ``held`` clean panoramas that no step draws.
 
     Raises ValueError for an agent that has no adapters in the encoders of ``modality``.
@@ -142,12 +142,16 @@ class AdaptViews(DistilViews):
             }
         return values
 
-    def evaluate(self, step: int) -> dict[str, float]:
-        """1 if the backbone is what it was when the adapters came in; of a gate, whose threshold is
-        set here, the shares of other views that it opens for."""
-        values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
+    def finish(self) -> None:
+        """Set the gates' thresholds."""
         for gate in self.gates:
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """1 if the backbone is what it was when the adapters came in; of a gate, whose threshold is
+        set at the end, the shares of other views that it opens for."""
+        values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
+        for gate in self.gates:
             few = -(-self.held // 3)
             logits, _ = self._judged(gate, FRESH, few, clean=True)
             values["clean_opened"] = float((logits > 0).float().mean())

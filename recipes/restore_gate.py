@@ -161,12 +161,16 @@ class RestoreGate(Recipe):
         return stats, textures, *(part.mean(1) for part in others)
 
     @torch.no_grad()
-    def evaluate(self, step: int) -> dict[str, float]:
-        """Set the threshold; return it, with the shares above it of other clean instants, and of
-        corrupted ones that restoring makes clearly better."""
-        ring = self.pairs.ring
-        logits = self._logits(self._judged(self.clean, self.held, "held", ring))
+    def finish(self) -> None:
+        """Set the threshold by the clean instants that were held back."""
+        logits = self._logits(self._judged(self.clean, self.held, "held", self.pairs.ring))
         self.net.threshold.fill_(float(logits.quantile(1 - self.touched)))
+
+    @torch.no_grad()
+    def evaluate(self, step: int) -> dict[str, float]:
+        """Return the threshold, which is set at the end, with the shares above it of other clean
+        instants, and of corrupted ones that restoring makes clearly better."""
+        ring = self.pairs.ring
         fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)
         met = self._judged(self.pairs, -(-self.held // 3), "corrupted", ring)
         return {

@@ -67,17 +67,18 @@ def insert_adapters(
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
             ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
-            views), with ``ring_reduction`` as reduction; of 1 view, a plain one. A module found
-            by both gets this one. gates: targets that get a :class:`FrameGate`, which looks at
-            what goes into them, in place of an adapter, such as the first module of an encoder; it
-            counts for all adapters of the nearest module around its target that holds some.
+            views), with ``ring_reduction`` as reduction (it has no ``gate`` and no ``middle``); of
+            1 view, a plain one. A module found by both gets this one. gates: targets that get a
+            :class:`FrameGate`, which looks at what goes into them, in place of an adapter, such as
+            the first module of an encoder; it counts for all adapters of maps in the nearest module
+            around its target that holds some.
     Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
     trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.
     Raises TypeError for targets that are one string; ValueError for none at all, for one that
     matches nothing (with the names there are) or is no regular expression, a module whose channels
-    cannot be told or that has a child called "adapter", or a model that has adapters already; the
-    model is then as it was.
+    cannot be told or that has a child called "adapter", a gate that nothing follows, or a model
+    that has adapters already; the model is then as it was.
     """
     _refuse_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
@@ -91,11 +92,13 @@ def insert_adapters(
         if name in gated:
             made[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
         elif name in ringed and views == 1:  # no neighbours
-            made[name] = ConvAdapter(channels_of(name, module), ring_reduction, kernel)
+            channels = channels_of(name, module)
+            made[name] = ConvAdapter(channels, ring_reduction, kernel, gate, middle)
         elif name in ringed:
             made[name] = RingAdapter(channels_of(name, module), ring_reduction, kernel, views, hfov)
         elif name in plain:
             made[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
+    _check_gates(made)
     _attach_all(model, made)
     return list(made)
 
@@ -279,10 +282,27 @@ def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
     setattr(model, _STATISTICS, _statistics(model))
 
 
+def _check_gates(made: dict[str, nn.Module]) -> None:
+    """Raise ValueError for a gate that would open and close for nothing."""
+    idle = [n for n, m in made.items() if isinstance(m, FrameGate)]
+    idle = [name for name in idle if name not in _gates_of(made).values()]
+    if idle:
+        raise ValueError(
+            f"The gate at {idle[0]} has no adapter of maps behind it to open for (those of tokens "
+            "take none). Leave it out of gates, or choose other target modules."
+        )
+
+
 def _follow(made: dict[str, nn.Module]) -> None:
-    """Tell each adapter of the gate in front of it: the one in the same encoder."""
-    corrects = {n: m for n, m in made.items() if isinstance(m, (ConvAdapter, RingAdapter))}
-    held: dict[str, tuple[str, FrameGate]] = {}  # by adapter: the module around both, and the gate
+    """Tell each adapter of the gate in front of it."""
+    for name, gate in _gates_of(made).items():
+        made[name].gates = [made[gate]]  # type: ignore[assignment]
+
+
+def _gates_of(made: dict[str, nn.Module]) -> dict[str, str]:
+    """By adapter, the gate in front of it: the one in the same encoder."""
+    corrects = [n for n, m in made.items() if isinstance(m, (ConvAdapter, RingAdapter))]
+    held: dict[str, tuple[str, str]] = {}  # by adapter: the module around both, and the gate
     for name, gate in made.items():
         if not isinstance(gate, FrameGate):
             continue
@@ -292,9 +312,8 @@ def _follow(made: dict[str, nn.Module]) -> None:
             behind = [n for n in corrects if not around or n.startswith(f"{around}.")]
         for n in behind:
             if n not in held or len(around) > len(held[n][0]):
-                held[n] = (around, gate)
-    for name, (_, gate) in held.items():
-        corrects[name].gates = [gate]
+                held[n] = (around, name)
+    return {name: gate for name, (_, gate) in held.items()}
 
 
 def _statistics(model: nn.Module) -> dict[str, Tensor]:

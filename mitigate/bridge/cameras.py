@@ -87,7 +87,9 @@ def read_camera(told: Mapping[str, Any], sensor: DepthSensor) -> Camera:
 
     Raises ValueError for what cannot be corrupted.
     """
-    name, kind = str(told.get("name")), told.get("type")
+    name, kind = told.get("name"), told.get("type")
+    if not isinstance(name, str):
+        raise ValueError(f"A camera is called {name!r}: its name must be text.")
     if kind not in CHANNELS:
         raise ValueError(f"The camera {name!r} is of the kind {kind!r}, not rgb or depth.")
     shape = tuple(told.get("shape") or ())

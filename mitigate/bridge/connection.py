@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.bridge.cameras import CHANNELS, Rig
+from mitigate.bridge.ends import ended
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
 from mitigate.bridge.words import Words
@@ -268,10 +269,7 @@ class Connection:
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """How the episode went."""
-        told = ("metrics", "steps", "calls", "path", "start_distance", "distance", "stopped")
-        said = {name: message[name] for name in told if message.get(name) is not None}
-        if not isinstance(said.get("metrics", {}), dict):
-            raise ValueError("the metrics of an episode are no names and numbers.")
+        said = ended(message)
         failed = self.loop and not said.get("metrics", {}).get("success")  # before its first look
         if self.calls == 0 and not failed:
             raise ValueError(

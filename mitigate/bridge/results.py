@@ -132,7 +132,10 @@ def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[R
     metrics, judged = end.get("metrics", {}), {}
     if rule is None and "success" in metrics:
         won = float(metrics["success"]) > 0
-        judged[OWN] = {"success": float(won), "spl": metrics.get("spl", _spl(end, won))}
+        judged[OWN] = {
+            "success": float(won),
+            "spl": metrics["spl"] if "spl" in metrics else _spl(end, won),
+        }
     for known in ([RULES[rule]] if rule else []) + [common]:
         metres = end.get("distance", metrics.get("distance_to_goal"))
         if metres is not None and not math.isnan(metres):
@@ -159,7 +162,9 @@ def without_path(told: Told) -> int:
 
 
 def _start(end: dict[str, Any]) -> float | None:
-    return end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
+    """Metres of the shortest way; None where it is not known or there is none."""
+    metres = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
+    return metres if metres is not None and math.isfinite(metres) else None
 
 
 def _length(end: dict[str, Any]) -> float | None:

@@ -41,6 +41,12 @@ class Rule:
     inclusive: bool = False
     view_points: bool = False
 
+    @property
+    def stop_within(self) -> float:
+        """Metres from the goal at which an oracle stops: 1 (ours), or the rule's where it counts
+        less from the goal."""
+        return 1.0 if self.view_points else min(1.0, self.metres)
+
     def met(self, distance: float, stopped: bool) -> bool:
         """Whether it is a success to end ``distance`` metres away, with STOP or without. A NaN
         distance raises ValueError."""

@@ -256,12 +256,18 @@ class _Worker:
 
     def _replace(self) -> None:
         self.process.join(timeout=1)
-        what = f"worker {self.number} ended with code {self.process.exitcode}"
+        code = self.process.exitcode
+        what = f"worker {self.number} ended with code {code}"
         if self.deaths >= DEATHS or self.recipe is None:
+            killed = code is not None and code < 0
+            cause = (
+                "it was killed, most likely because the memory ran out"
+                if killed
+                else "what it printed says why"
+            )
             raise WorkersDied(
-                f"The {what}, and not for the first time: it was killed, most likely because the "
-                "memory ran out. Checkpoints are kept. Run the same command again, with fewer "
-                "processes: workers=1, or 0 for none."
+                f"The {what}, and not for the first time: {cause}. Checkpoints are kept. Run the "
+                "same command again, with fewer processes: workers=1, or 0 for none."
             )
         self.deaths += 1
         say(f"{what}; a new one does its work again")
@@ -303,31 +309,45 @@ def _serve(connection: Connection) -> None:
     leave_to_parent()
     told: SimpleQueue[tuple | None] = SimpleQueue()
     Thread(target=_listen, args=(connection, told), daemon=True).start()
+    try:
+        _work(connection, told)
+    except (BrokenPipeError, ConnectionResetError):
+        pass  # the parent is gone
+    except Exception as error:  # of the program: a recipe or a piece that cannot be packed, say
+        with suppress(OSError):
+            connection.send(("error", portable(error)))
+
+
+def _work(connection: Connection, told: SimpleQueue) -> None:
     recipe, kind, weights, done = Recipe(), "fp32", {}, 0
-    with suppress(BrokenPipeError, ConnectionResetError):
-        while (message := told.get()) is not None:
-            name, *given = message
-            if name == "recipe":
-                recipe, kind = pickle.loads(given[0]), given[1]
-                weights = {**dict(recipe.named_parameters()), **dict(recipe.named_buffers())}
-            elif name == "weights":
-                with torch.no_grad():
-                    for entry, value in pickle.loads(given[0]).items():
-                        weights[entry].copy_(value)
-            else:
-                connection.send(_answer(recipe, given[0], kind))
-                done += 1
-                if done % TRIM_EVERY == 0:
-                    give_back()
+    while (message := told.get()) is not None:
+        name, *given = message
+        if name == "error":
+            raise given[0]
+        if name == "recipe":
+            recipe, kind = pickle.loads(given[0]), given[1]
+            weights = {**dict(recipe.named_parameters()), **dict(recipe.named_buffers())}
+        elif name == "weights":
+            with torch.no_grad():
+                for entry, value in pickle.loads(given[0]).items():
+                    weights[entry].copy_(value)
+        else:
+            connection.send(_answer(recipe, given[0], kind))
+            done += 1
+            if done % TRIM_EVERY == 0:
+                give_back()
 
 
 def _listen(connection: Connection, told: SimpleQueue) -> None:
     """Hear the parent while a piece is made or given back: it may have weights to send meanwhile,
     and neither would go on if both waited to be heard. None at the end."""
-    with suppress(EOFError, OSError):
+    try:
         while True:
             told.put(connection.recv())
-    told.put(None)
+    except (EOFError, OSError):
+        told.put(None)
+    except Exception as error:  # a job that cannot be unpacked here
+        told.put(("error", error))
 
 
 def _answer(recipe: Recipe, job: Any, kind: str) -> tuple[str, Any]:

@@ -71,15 +71,19 @@ class Ranks:
         as its ``weight`` (``Recipe.weight``): what one process would have on all their pieces."""
         if self.count == 1:
             return
-        whole = torch.tensor(float(weight), device=next(iter(values.values())).device)
-        dist.all_reduce(whole)
-        share = weight / max(float(whole), 1e-12)
+        held: list[Any] = [None] * self.count
+        dist.all_gather_object(held, dict.fromkeys(values, float(weight)))
+        share = weight / max(sum(max(one.values()) for one in held), 1e-12)
         for parameter in parameters:
             if parameter.grad is None:  # it had no part in this rank's pieces
                 parameter.grad = torch.zeros_like(parameter)
             dist.all_reduce(parameter.grad.mul_(share))
-        for value in values.values():
-            dist.all_reduce(value.mul_(share))
+        some = next(iter(values.values()))
+        for name in sorted({name for one in held for name in one}):  # a rank may lack some
+            own = weight / max(sum(one.get(name, 0.0) for one in held), 1e-12)
+            value = values[name] * own if name in values else torch.zeros_like(some)
+            dist.all_reduce(value)
+            values[name] = value
 
     def wait(self) -> None:
         """Return when all ranks are here."""

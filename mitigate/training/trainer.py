@@ -113,7 +113,7 @@ class Trainer:
                 "grad_clip": grad_clip,
                 "seed": seed,
                 "precision": self.precision,
-                **({"lag": lag} if lag else {}),
+                **({"lag": lag, "save_every": save_every} if lag else {}),
             },
         }
         groups = _trainable(recipe.parameter_groups(), self.name)
@@ -142,7 +142,7 @@ class Trainer:
         return self.recipe
 
     def _train(self, start: int, journal: Journal) -> None:
-        sums: dict[str, float] = defaultdict(float)
+        told: dict[str, list[float]] = defaultdict(list)  # a figure need not be in every batch
         counted, since = 0, time.monotonic()
         with computing(self.precision, self.device):
             self.recipe.start()
@@ -163,15 +163,17 @@ class Trainer:
                 done = step + 1
                 save = done == self.steps or bool(self.save_every and done % self.save_every == 0)
                 for name, value in self._step(step, batches).items():
-                    sums[name] += value
+                    told[name].append(value)
                 counted += 1
                 journal.advance()
                 if self._due(self.log_every, done):
-                    means = {name: total / counted for name, total in sums.items()}
+                    means = {name: sum(values) / len(values) for name, values in told.items()}
                     pace = counted / max(1e-9, time.monotonic() - since)
                     journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
-                    sums.clear()
+                    told.clear()
                     counted, since = 0, time.monotonic()
+                if done == self.steps:
+                    self._finish()
                 if ending.number is None and self._due(self.eval_every, done):
                     self._evaluate(done, journal)
                 if ending.number is None and self._due(self.figure_every, done):
@@ -220,6 +222,12 @@ class Trainer:
             f"{episodes}. {last}; the step was not applied. Lower trainer.lr, use "
             "trainer.precision=fp32, or look at those episodes."
         )
+
+    def _finish(self) -> None:
+        self.recipe.eval()
+        with torch.no_grad():
+            self.recipe.finish()
+        self.recipe.train()
 
     def _evaluate(self, done: int, journal: Journal) -> None:
         self.recipe.eval()

@@ -99,7 +99,7 @@ def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
 
 def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:
     """The view number in ``mitigate.core.observation``' sense of each camera of a modality."""
-    views = {}
+    views: dict[str, int] = {}
     for entry in obs:
         camera = _CAMERA.fullmatch(entry)
         if camera is None or camera[1] != modality:
@@ -111,7 +111,14 @@ def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:
                 "below 360, but the suite's panoramas have 12 views 30 degrees apart. Corrupt this "
                 "camera by itself with mitigate.corruptions.corrupt."
             )
-        views[entry] = int(steps) if turn == "right" else -int(steps) % VIEWS
+        view = int(steps) if turn == "right" else -int(steps) % VIEWS
+        if view in views.values():
+            twin = next(name for name, taken in views.items() if taken == view)
+            raise ValueError(
+                f"The cameras {twin!r} and {entry!r} look the same way. Corrupt one of them by "
+                "itself with mitigate.corruptions.corrupt."
+            )
+        views[entry] = view
     return views
 
 

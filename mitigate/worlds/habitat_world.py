@@ -40,7 +40,6 @@ from mitigate.worlds.episodes import Episode, from_vlnce
 
 EYE = 1.25  # metres, the height of VLN-CE's cameras
 RADIUS, HEIGHT = 0.18, 1.5  # metres, of the agent
-STOP_WITHIN = 1.0  # metres from the goal at which the oracle stops
 MOVES = {FORWARD: "move_forward", LEFT: "turn_left", RIGHT: "turn_right"}
 SNAP = 0.5  # metres that a start or goal may lie beside the navmesh (ours)
 NAVMESH = {"agent_radius": RADIUS, "agent_height": HEIGHT}
@@ -193,13 +192,13 @@ class HabitatWorld:
                 f"There is no scene {file}. Name the folder that holds the episodes' scenes: "
                 "env.scenes=FOLDER (mitigate export-scene writes the apartments')."
             )
-        settings = self._settings(file)
+        settings, self._scene = self._settings(file), ""  # no scene, should it not load
         if self._sim is None:
             self._sim = _habitat_sim().Simulator(settings)
         else:
             self._sim.reconfigure(settings)
         if not file.with_suffix(".navmesh").is_file():
-            self._make_navmesh()
+            self._make_navmesh(scene)
         self._scene = scene
 
     def _settings(self, file: Path) -> Any:
@@ -234,7 +233,7 @@ class HabitatWorld:
         spec.orientation = [0.0, -math.radians(VIEW_STEP_DEGREES * view), 0.0]
         return spec
 
-    def _make_navmesh(self) -> None:
+    def _make_navmesh(self, scene: str) -> None:
         habitat_sim = _habitat_sim()
         settings = habitat_sim.NavMeshSettings()
         settings.set_defaults()
@@ -243,7 +242,7 @@ class HabitatWorld:
                 raise ValueError(f"habitat-sim's NavMeshSettings have no {name}.")
             setattr(settings, name, value)
         if not self._sim.recompute_navmesh(self._sim.pathfinder, settings):
-            raise ValueError(f"habitat-sim found nothing to walk on in {self._scene}.")
+            raise ValueError(f"habitat-sim found nothing to walk on in {scene}.")
 
     def _on_navmesh(self, position: Any, what: str) -> np.ndarray:
         """The point [3] of the navmesh nearest to a position."""
@@ -288,7 +287,7 @@ class NavmeshExpert:
     def action(self) -> int:
         """The low-level action that comes nearest to the goal."""
         world = self.world
-        if world.distance_to_goal() < STOP_WITHIN:
+        if world.distance_to_goal() < world._rule.stop_within:
             return STOP
         here, finder = world._position(), world._sim.pathfinder
         rotation = world._sim.get_agent(0).get_state().rotation

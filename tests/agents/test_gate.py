@@ -10,6 +10,7 @@ from torch import nn
 
 from mitigate.agents import adapters
 from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
+from mitigate.agents.conv import ConvAdapter
 from mitigate.agents.encoders import RGBEncoder
 from mitigate.agents.gate import FrameGate, textures
 
@@ -66,6 +67,27 @@ def test_it_comes_in_without_changing_anything_and_goes_without_a_trace(encoder,
     trained(encoder)
     remove_adapters(encoder)
     assert torch.equal(encoder(frames)[0], plain)
+
+
+class Patches(nn.Module):
+    def __init__(self) -> None:
+        super().__init__()
+        self.stem, self.block = nn.Conv2d(3, 8, 4, 4), nn.Linear(8, 8)
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        return self.block(self.stem(x).flatten(2).mT)
+
+
+def test_a_gate_that_nothing_follows_is_refused():
+    model, frames = Patches(), torch.randn(3, 3, 8, 8)
+    with pytest.raises(ValueError, match="gate at stem has no adapter of maps behind it"):
+        insert_adapters(model, ["block"], gates=["stem"], run=lambda n: model(frames[:n]))
+    assert not adapters.adapted(model)
+
+
+def test_one_camera_takes_the_options_of_plain_adapters(encoder):
+    insert_adapters(encoder, [], ring=["stages.[12]"], views=1, gate=True, middle=2)
+    assert all(m.gate is not None for m in encoder.modules() if isinstance(m, ConvAdapter))
 
 
 def test_it_learns_with_the_adapters(encoder, frames):

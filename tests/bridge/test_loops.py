@@ -241,6 +241,24 @@ def test_depth_that_is_not_metres_is_refused_in_the_clean_run(tmp_path, frame, w
     assert words in "".join(told.refused)
 
 
+@pytest.mark.parametrize("name", [0, ("left", 1)])
+def test_a_camera_whose_name_is_no_text_stops_the_agent(tmp_path, name):
+    """Its frame would pass clean: on the wire its name is another one."""
+    frame = f"{{{name!r}: rgb}}, cameras={{{name!r}: {{'type': 'rgb'}}}}"
+    ended, told = ran(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})")
+    assert ended.returncode == 97 and "its name must be text" in "".join(told.refused)
+
+
+def test_what_is_told_of_a_camera_may_be_of_numpy(tmp_path):
+    of = "{'depth': {'max_depth': numpy.float32(5), 'orientation': numpy.zeros(3)}}"
+    code = "met = mitigate_hook.connect('a')\n"
+    ended, _ = ran(tmp_path, f"{code}met.corrupt({{'depth': depth}}, cameras={of})", condition())
+    assert ended.returncode == 0, ended.stdout
+    of = "{'depth': {'max_depth': object()}}"
+    ended, _ = ran(tmp_path, f"{code}met.corrupt({{'depth': depth}}, cameras={of})", condition())
+    assert ended.returncode == 97 and "give numbers, words and lists" in ended.stdout
+
+
 def test_an_encoder_class_that_is_not_there_is_named(tmp_path, monkeypatch):
     (tmp_path / "their_encoder.py").write_text("class Encoder:\n    def forward(self): pass\n")
     monkeypatch.setenv(

@@ -26,8 +26,9 @@ from mitigate.bridge.hook.mitigate_hook import (
     receive,
     send,
 )
-from mitigate.bridge.results import read
+from mitigate.bridge.results import OWN, read, rows
 from mitigate.bridge.server import Listener
+from mitigate.corruptions import Corruption
 
 from .conftest import condition
 
@@ -115,6 +116,8 @@ MESSAGES = {
     "four channels": camera(shape=[8, 8, 4]),
     "an endless shape": camera(shape=[10**30, 8, 3]),
     "objects": camera(dtype="object"),
+    "a name that is a number": camera(name=0),
+    "a name of a list": camera(name=["rgb", 0]),
     "a type of a list": camera(dtype=["uint8"]),
     "no kind of camera": camera(type="../../etc"),
     "a position of text": camera(position="here"),
@@ -150,6 +153,45 @@ FRAMES = {
     "depth of text": {"kind": "frame", "call": 0, "depth": {"rgb": "far"}},
     "an end before a frame": {"kind": "end", "metrics": {"success": 1}},
 }
+
+
+ENDS = {
+    "success in words": {"metrics": {"success": "yes"}},
+    "success of a list": {"metrics": {"success": [1]}},
+    "an endless metric": {"metrics": {"collisions": 1e999}},
+    "SPL above 1": {"metrics": {"success": 1, "spl": 7}},
+    "steps in words": {"steps": "many"},
+    "a path of text": {"path": "abc"},
+    "a ragged path": {"path": [[0, 0], [0, 0, 1]]},
+    "a path of one number": {"path": [[1]]},
+    "a distance in words": {"distance": "far"},
+    "a start of nothing": {"start_distance": float("nan")},
+}
+
+
+@pytest.mark.parametrize("fields", ENDS.values(), ids=ENDS)
+def test_an_end_that_is_none_is_refused_and_not_kept(peer, fields):
+    for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
+        assert "error" not in peer.ask(good)
+    said = peer.ask({"kind": "end", "metrics": {"success": 1.0}} | fields)["error"]
+    assert "an episode ended with " in said
+    peer.close()
+    assert not read(peer.folder).ends
+
+
+def test_an_end_out_of_reach_of_its_goal_makes_rows(peer):
+    """Infinite metres are known to be so; the agent's own SPL needs no start."""
+    for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
+        assert "error" not in peer.ask(good)
+    far = {"start_distance": float("inf"), "distance": float("inf"), "path": [[0, 0, 0], [1, 0, 0]]}
+    metrics = {"success": 1.0, "spl": 0.5, "distance_to_goal": float("inf")}
+    assert "error" not in peer.ask({"kind": "end", "metrics": metrics} | far)
+    peer.close()
+    label = {"agent": "abc", "name": "nav", "split": "val", "seed": 0}
+    made = {
+        row["rule"]: row for row in rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
+    }
+    assert made[OWN]["spl"] == 0.5 and [row["success"] for row in made.values()] == [1.0, 0.0]
 
 
 @pytest.mark.parametrize("message", FRAMES.values(), ids=FRAMES)

@@ -15,6 +15,7 @@ from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
 from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption, Key, corrupt
+from mitigate.encoders.loading import Wrapped
 from mitigate.evaluation.metrics import RULES
 from tests.encoders.test_token_adapters import shaken
 
@@ -180,3 +181,38 @@ def test_adapters_go_into_an_agents_own_encoder(tmp_path, monkeypatch):
         features("wrong", "their_encoder:Encoder.visual")
     with pytest.raises(ValueError, match="must be FOLDER:package.module:Class.attribute"):
         features("unclear", "Encoder")
+
+
+SCRIPTED = """
+import sys, torch, mitigate_hook
+from torch import nn
+class Encoder(nn.Module):
+    def __init__(self):
+        super().__init__()
+        self.model = torch.jit.load(sys.argv[1])
+    def forward(self, frames):
+        return self.model(frames)
+"""
+
+
+def test_adapters_go_around_torchscript_in_an_agents_own_encoder(tmp_path, monkeypatch):
+    (tmp_path / "their_encoder.py").write_text(SCRIPTED)
+    (tmp_path / "program.py").write_text(
+        PROGRAM.replace("encoder.load_state_dict(torch.load(sys.argv[1], weights_only=True))\n", "")
+    )
+    torch.manual_seed(0)
+    frames = torch.full((1, 3, 9, 9), 90 / 255)
+    script = torch.jit.trace(nn.Conv2d(3, 8, 3).eval(), frames)
+    script.save(str(tmp_path / "w.pt"))
+    wrapped = Wrapped(script).eval()
+    insert_adapters(wrapped, ["behind"], run=lambda n: wrapped(frames.expand(n, -1, -1, -1)))
+    save_adapters(shaken(wrapped), tmp_path / "adapters")
+    monkeypatch.chdir(tmp_path)
+    options = [f"out={tmp_path / 'out'}", "conditions=[clean]"]
+    options += [f"adapters={tmp_path / 'adapters'}:their_encoder:Encoder.model"]
+    run_command(
+        load_config("run", options), [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
+    )
+    found = torch.load(tmp_path / "out/conditions/clean/features.pt", weights_only=True)
+    with torch.no_grad():
+        assert torch.equal(found, wrapped(frames)) and not torch.equal(found, script(frames))

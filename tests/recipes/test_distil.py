@@ -170,6 +170,7 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
     made = AdaptViews(agent, modality="rgb", **VIEWS, own=True, touched=0.25, held=4).eval()
     assert agent.rgb_encoder.stem.adapter.threshold == 0
     with torch.no_grad():
+        made.finish()
         values = made.evaluate(0)
         again = made.evaluate(0)
     assert agent.rgb_encoder.stem.adapter.threshold != 0 and values == again

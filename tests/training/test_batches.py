@@ -167,6 +167,33 @@ def test_an_error_in_a_worker_is_raised_as_it_was(two, tmp_path):
     assert trained(tmp_path / "next", two) == trained(tmp_path / "alone", None)  # nothing is left
 
 
+class Unpackable(Shared):
+    """Its pieces, or its jobs, cannot be sent from one process to the other."""
+
+    def jobs(self, step: int) -> list:
+        return [BadJob()] * 3 if self.fatal == "job" else super().jobs(step)
+
+    def work(self, job):
+        return super().work(job) if self.fatal == "job" else lambda: job
+
+
+class BadJob:
+    def __reduce__(self):
+        return _no_job, ()
+
+
+def _no_job():
+    raise RuntimeError("no job can be made of this")
+
+
+@pytest.mark.parametrize("fatal, said", [("piece", "pickle|local object"), ("job", "no job can")])
+def test_what_cannot_be_sent_is_told_as_what_it_is(fatal, said, tmp_path):
+    """Not as a want of memory, and nobody waits for it."""
+    with Workers(1) as workers, pytest.raises(Exception, match=said) as raised:
+        Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
+    assert not isinstance(raised.value, WorkersDied)
+
+
 def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
     class Local(Shared):
         """Classes inside functions cannot be pickled."""

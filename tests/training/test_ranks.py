@@ -45,7 +45,10 @@ class Regression(Recipe):
         guess = self.line(inputs)
         if len(inputs) in (14, 34):  # the first rank's pieces, or all
             guess = guess + torch.cat([self.first(inputs[:4]), torch.zeros(len(inputs) - 4, 1)])
-        return {"loss": (guess - inputs.sum(1, keepdim=True)).square().mean()}
+        values = {"loss": (guess - inputs.sum(1, keepdim=True)).square().mean()}
+        if len(inputs) in (14, 34):
+            values["seldom"] = torch.ones(())
+        return values
 
 
 def train(folder: Path, ranks: Ranks, steps: int = 6) -> torch.Tensor:
@@ -81,6 +84,7 @@ def test_two_ranks_end_with_the_weights_of_one_and_one_of_them_speaks(tmp_path):
     alone = train(tmp_path / "alone", Ranks())
     assert torch.equal(first, second) and torch.allclose(first, alone, atol=1e-6)
     assert done.stdout.count("step 6/6  loss") == 1
+    assert "seldom 1" in done.stdout, "a mean over those that have it"
     assert len(list((tmp_path / "run").glob("step-*.pt"))) == 2
 
 

@@ -100,6 +100,28 @@ def test_a_signal_while_it_is_evaluated_loses_no_step(tmp_path):
     assert [path.name for path in folder.glob("step-*.pt")] == ["step-00000002.pt"]
 
 
+def test_a_signal_in_the_last_step_does_not_leave_out_what_follows_from_the_weights(tmp_path):
+    class Calibrated(Slow):
+        def __init__(self, *given):
+            super().__init__(*given)
+            self.register_buffer("threshold", torch.zeros(()))
+
+        def batch(self, step):
+            if step == 2:
+                os.kill(os.getpid(), signal.SIGTERM)
+                time.sleep(0.01)
+            return super().batch(step)
+
+        def finish(self):
+            self.threshold.fill_(5.0)
+
+    settings = {"steps": 3, "lr": 0.1, "precision": "fp32", "folder": tmp_path / "run"}
+    with pytest.raises(Ended):
+        Trainer(Calibrated(tmp_path, 0), **settings).fit()
+    resumed = Trainer(Calibrated(tmp_path, 0), **settings).fit()
+    assert resumed.threshold == 5.0
+
+
 def test_a_second_signal_ends_it_at_once(tmp_path):
     with pytest.raises(Ended) as ended, held() as first:
         os.kill(os.getpid(), signal.SIGTERM)

@@ -76,6 +76,7 @@ def test_wrong_observations_are_explained(obs):
     hurt = Corruption("spatter", 0.5)
     small = {**obs, "rgb_60": obs["rgb_60"][:4]}
     for given, part in (
+        ({"rgb": obs["rgb"], "rgb_0": obs["rgb"]}, "'rgb' and 'rgb_0' look the same way"),
         ({"rgb": obs["rgb"], "rgb_45": obs["rgb"]}, "'rgb_45' is not at a multiple of 30"),
         ({"rgb_360": obs["rgb"]}, "'rgb_360' is not at a multiple"),
         (small, "must be alike, but 'rgb' is uint8.*'rgb_60'"),

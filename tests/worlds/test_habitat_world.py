@@ -9,6 +9,8 @@ import pytest
 from mitigate.core.build import maker
 from mitigate.core.conf import load_config
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.evaluation import metrics
+from mitigate.worlds import habitat_world
 from mitigate.worlds.habitat_world import NAVMESH, HabitatWorld
 
 
@@ -46,3 +48,43 @@ def test_a_navmesh_is_the_named_one_or_lies_beside_the_scenes(tmp_path):
 def test_what_it_cannot_do_is_refused_before_the_simulator_starts(given, words):
     with pytest.raises(ValueError, match=words):
         HabitatWorld("scenes", **given)
+
+
+class Simulator:
+    """Of habitat-sim, what loading a scene needs; ``walkable``: whether a navmesh can be made."""
+
+    walkable, loaded = True, ""
+    pathfinder = None
+
+    def __init__(self, settings):
+        self.reconfigure(settings)
+
+    def reconfigure(self, settings):
+        self.loaded = settings
+
+    def recompute_navmesh(self, finder, settings):
+        return self.walkable
+
+
+def test_a_scene_that_does_not_load_is_not_taken_for_the_one_before(tmp_path, monkeypatch):
+    for name in "ab":
+        (tmp_path / f"{name}.glb").touch()
+    made = HabitatWorld(str(tmp_path))
+    settings = type(
+        "S", (), {"set_defaults": lambda self: None, "agent_radius": 0, "agent_height": 0}
+    )
+    library = type("habitat_sim", (), {"Simulator": Simulator, "NavMeshSettings": settings})
+    monkeypatch.setattr(habitat_world, "_habitat_sim", lambda: library)
+    monkeypatch.setattr(made, "_settings", str)
+    made._enter("a.glb")
+    monkeypatch.setattr(Simulator, "walkable", False)
+    with pytest.raises(ValueError, match=r"nothing to walk on in b\.glb"):
+        made._enter("b.glb")
+    monkeypatch.setattr(Simulator, "walkable", True)
+    made._enter("a.glb")
+    assert made._sim.loaded == str(tmp_path / "a.glb")
+
+
+def test_an_oracle_stops_where_the_rule_counts_it():
+    assert metrics.RULES["habitat_vln"].stop_within <= 0.2
+    assert metrics.RULES["vln_ce"].stop_within == metrics.RULES["objectnav"].stop_within == 1.0

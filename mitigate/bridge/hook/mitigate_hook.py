@@ -51,11 +51,18 @@ _given: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary
 
 
 def send(channel, message):
-    """Send a dict of plain data. Raises ValueError if it is too large."""
-    body = json.dumps(message).encode("utf-8")
+    """Send a dict of plain data; numbers and arrays of numpy go as Python's. Raises ValueError if
+    it is too large, TypeError for what is no data."""
+    body = json.dumps(message, default=_as_python).encode("utf-8")
     if len(body) > LARGEST:
         raise ValueError(f"a message of {len(body)} bytes is more than {LARGEST}")
     channel.sendall(HEADER.pack(MAGIC, len(body)) + body)
+
+
+def _as_python(value):
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} is no plain data")
 
 
 def receive(channel):
@@ -151,6 +158,8 @@ class Channel:
             answer = receive(self.socket)
         except socket.timeout:  # no TimeoutError before Python 3.10
             stop(f"the server did not answer within {self.patience:g} s.")
+        except TypeError as error:  # of json, before anything was sent
+            stop(f"what is told of {kind} cannot be sent ({error}): give numbers, words and lists.")
         except BaseException as error:  # whatever it is, the agent might catch it
             stop(f"the connection to the server broke ({_named(error)}).")
         if answer is None:
@@ -687,13 +696,19 @@ def _of_agent(sim, observations):
         )
     walk.simulated = True
     cameras = [c for c in _of_specifications(sim) if c["name"] in observations]
-    return walk.corrupt(observations, cameras, _heading(sim.get_agent(0).get_state()))
+    return walk.corrupt(
+        observations, cameras, _heading(sim.get_agent(_default_agent(sim)).get_state())
+    )
+
+
+def _default_agent(sim):
+    return getattr(sim, "_default_agent_id", 0)
 
 
 def _of_specifications(sim):
-    """Return what the server must know of the cameras of habitat-sim's first agent."""
+    """Return what the server must know of the cameras of habitat-sim's default agent."""
     found = []
-    for spec in sim.config.agents[getattr(sim, "_default_agent_id", 0)].sensor_specifications:
+    for spec in sim.config.agents[_default_agent(sim)].sensor_specifications:
         kind = str(spec.sensor_type).rpartition(".")[2].lower()
         if kind in ("color", "depth"):
             camera = {"name": spec.uuid, "type": COLOR if kind == "color" else DEPTH}
@@ -750,7 +765,7 @@ def _adapted(folder, file, path):
 
 
 def _adapt(encoder, folder, file, path):
-    module = encoder
+    owner, module = None, encoder
     for name in filter(None, path.split(".")):
         if not hasattr(module, name):
             there = ", ".join(n for n, _ in module.named_children()) or "none"
@@ -758,15 +773,23 @@ def _adapt(encoder, folder, file, path):
                 f"adapters= names {path} in {type(encoder).__name__}, but there is no {name}: its "
                 f"modules there are {there}."
             )
-        module = getattr(module, name)
+        owner, module = (module, name), getattr(module, name)
     spec = importlib.util.spec_from_file_location("mitigate_plain_adapters", file)
     plain_adapters = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(plain_adapters)
     half = any(str(p.dtype).endswith("16") for p in module.parameters())
     try:
-        plain_adapters.attach(module, folder, check=not half)
+        made = plain_adapters.attach(module, folder, check=not half)
     except (ValueError, OSError) as error:
         stop(f"the adapters do not fit {type(encoder).__name__}: {error}")
+    if made is not module:  # around TorchScript, which takes no hooks
+        if owner is None:
+            stop(
+                f"{type(encoder).__name__} itself is TorchScript, which takes no adapters in "
+                "place: let adapters= name the attribute that holds it, "
+                "FOLDER:module:Class.attribute."
+            )
+        setattr(*owner, made)
     Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}", checked=not half)
 
 
@@ -874,6 +897,8 @@ def _described_frames(observations, cameras):
         by_name = next((kind for kind in (COLOR, DEPTH) if str(name).startswith(kind)), None)
         told = dict({"type": by_name}, **cameras.get(name, {}))
         if told["type"] in (COLOR, DEPTH):
+            if not isinstance(name, str):
+                stop(f"a camera is called {name!r}: its name must be text, as {str(name)!r} is.")
             listed.append(dict(told, name=name))
         elif name in cameras and told["type"] != "other":
             stop(

@@ -101,7 +101,7 @@ def _over(entry: LeaderboardEntry, title: str) -> str:
     met = set(entry.SR) - {CLEAN}
     if title == "Mean SR":
         own = {name for name in met if kind(name) == SUITE}
-        wanted = FRAMES
+        wanted = set(FRAMES)
     else:
         block, _, half = title.partition("(")[2].rstrip(")").partition(", ")
         wanted = {n for n in BLOCKS.get(block, ()) if not half or UNSEEN[n].half == half}

@@ -44,7 +44,6 @@ from mitigate.worlds.episodes import Episode, from_vlnce
 KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
 LARGEST = 2048  # pixels of a view (ours)
 RULES = {"apartments": metrics.Rule("vln", SUCCESS_METRES), **metrics.RULES}
-STOP_WITHIN = 1.0  # metres from the goal at which the oracle stops
 
 
 class ApartmentsWorld:
@@ -138,7 +137,7 @@ class ApartmentsWorld:
         }
 
     def expert(self) -> GeodesicExpert:
-        return GeodesicExpert(self.simulator)
+        return GeodesicExpert(self.simulator, RULES[self._rule].stop_within)
 
     def truth(self) -> Mapping[str, np.ndarray]:
         """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),
@@ -282,15 +281,15 @@ class GeodesicExpert:
     """Distances and the greedy follower of the geodesic field: it turns to the heading whose step
     lowers the distance most."""
 
-    def __init__(self, simulator: Simulator) -> None:
-        self.simulator = simulator
+    def __init__(self, simulator: Simulator, stop_within: float) -> None:
+        self.simulator, self.stop_within = simulator, stop_within
 
     def distance(self, xy: np.ndarray) -> float:
         return self.simulator.distance_to_goal(xy)
 
     def action(self) -> int:
         simulator = self.simulator
-        if simulator.distance_to_goal() < STOP_WITHIN:
+        if simulator.distance_to_goal() < self.stop_within:
             return STOP
         turns = sorted(range(-12, 13), key=abs)
         headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
