@@ -105,9 +105,9 @@ class Restore(Recipe):
         with torch.autocast(frames.device.type, enabled=False):
             wanted, valid = self.net.scaled(clean)
             seen, _ = self.net.scaled(frames)
-            loss = self._error(made.out, wanted, valid)
-            before, after = (((x - wanted).abs() * valid).mean() for x in (seen, made.out.detach()))
-        self._keep(frames, made.out, clean)
+            loss = self._error(made, wanted, valid)
+            before, after = (((x - wanted).abs() * valid).mean() for x in (seen, made.detach()))
+        self._keep(frames, made, clean)
         return {"loss": loss, "before": before, "after": after}
 
     def _error(self, out: Tensor, wanted: Tensor, valid: Tensor) -> Tensor:

@@ -153,7 +153,7 @@ class RestoreGate(Recipe):
         read = (self.net.judge(*less, views)[0].stats, texture(*less))
         wanted, valid = self.net.scaled(clean)
         seen, _ = self.net.scaled(frames)
-        wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made.out)]
+        wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made)]
         errors = [part.mean((1, 2)) for part in wrong]
         right = [(part < RIGHT).float().mean((1, 2)) for part in wrong]
         parts = (*read, *errors, right[0] - right[1])

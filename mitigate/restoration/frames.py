@@ -12,8 +12,6 @@ enlarged, so detail stays.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
@@ -31,15 +29,6 @@ ALONE = 2.0  # logit that a pixel loses for each further margin, before anything
 LOST = -3.0  # logit of "lost" before anything is learned: 5 % (ours)
 SUREST = 6.0  # the greatest logit, either way: a pixel is never given up for good (ours)
 GAINS = (-2.0, 3.6)  # limits of the logarithm of the gain: 0.14 to 37 (ours; low light leaves 0.03)
-
-
-class Restored(NamedTuple):
-    """out [n, c, H, W]: the restored frames; trust [n, c, H, W]; gate [instants]: logits of
-    "corrupted"."""
-
-    out: Tensor
-    trust: Tensor
-    gate: Tensor
 
 
 class SensorRestorer(nn.Module):
@@ -89,11 +78,12 @@ class SensorRestorer(nn.Module):
         weight = _resized(valid, size)
         return _resized(x * valid, size) / weight.clamp(min=1e-3), (weight > 0.5).float()
 
-    def forward(self, frames: Tensor, views: int) -> Restored:
-        """Frames [n, H, W, c] as they come, every ``views`` of them one instant, all restored."""
+    def forward(self, frames: Tensor, views: int) -> Tensor:
+        """Frames [n, H, W, c] as they come, every ``views`` of them one instant, all restored: as
+        values [n, c, H, W] in [0, 1]."""
         x, valid = self.scaled(frames)
-        maps, outside, gate = self.judge(*self.small(x, valid), views)
-        return self._composed(x, valid, self._corrections(maps, outside), views, gate)
+        maps, outside, _ = self.judge(*self.small(x, valid), views)
+        return self._composed(x, valid, self._corrections(maps, outside), views)
 
     def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor, Tensor]:
         """Of frames at the working size: the U-Net's maps, how far each pixel is contradicted
@@ -119,9 +109,7 @@ class SensorRestorer(nn.Module):
         gain_bias, lost = self.net.decode(maps).tensor_split([2 * CHANNELS[self.sensor]], 1)
         return torch.cat([gain_bias, lost + self.alone * outside], 1)
 
-    def _composed(
-        self, x: Tensor, valid: Tensor, maps: Tensor, views: int, gate: Tensor
-    ) -> Restored:
+    def _composed(self, x: Tensor, valid: Tensor, maps: Tensor, views: int) -> Tensor:
         """Frames [n, c, H, W] with the U-Net's ``maps`` at the working size."""
         channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
         maps = maps if full == small else _resized(maps, full)
@@ -134,7 +122,7 @@ class SensorRestorer(nn.Module):
             values = y + (1 - trust) * sure * (other - y)
             known = trust + (1 - trust) * sure
         around = ring.from_around(values, known)
-        return Restored(values + (1 - known) * (around - values), trust, gate)
+        return values + (1 - known) * (around - values)
 
     # one instant, as an agent sees it ----------------------------------------------------------
 
@@ -149,8 +137,8 @@ class SensorRestorer(nn.Module):
         maps, outside, gate = self.judge(*self.small(x, valid), views)
         if not bool(gate > self.threshold):
             return False, frames
-        made = self._composed(x, valid, self._corrections(maps, outside), views, gate)
-        return True, self.unscaled(made.out)
+        made = self._composed(x, valid, self._corrections(maps, outside), views)
+        return True, self.unscaled(made)
 
     def unscaled(self, out: Tensor) -> Tensor:
         """Values [n, c, H, W] as the sensor gives them: uint8, or metres above 0."""

@@ -95,9 +95,6 @@ class UNet(nn.Module):
         x = F.interpolate(self.up1(self.middle_out(x)), scale_factor=2.0) + maps.fine
         return F.pixel_shuffle(self.head(self.fine_out(x)).float(), 2)
 
-    def forward(self, x: Tensor, views: int) -> Tensor:
-        return self.decode(self.encode(x, views))
-
 
 class Gate(nn.Module):
     """Logit [instants] of "this frame is corrupted", from the maps of all its views and from
