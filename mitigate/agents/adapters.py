@@ -67,18 +67,17 @@ def insert_adapters(
             or its end (``"stages\\.[01]"`` finds ``rgb_encoder.stages.0``). reduction, kernel: of
             each adapter. ring: targets of the same form that get a :class:`RingAdapter` over
             ``views`` views of ``hfov`` degrees, which follow one another in the batch (n = P *
-            views), with ``ring_reduction`` as reduction (it has no ``gate`` and no ``middle``); of
-            1 view, a plain one. A module found by both gets this one. gates: targets that get a
+            views), with ``ring_reduction`` in place of ``reduction``, ``gate`` and ``middle``; of 1
+            view, a plain one. A module found by both gets this one. gates: targets that get a
             :class:`FrameGate`, which looks at what goes into them, in place of an adapter, such as
-            the first module of an encoder; it counts for all adapters of maps in the nearest module
-            around its target that holds some.
+            an encoder's first; it counts for adapters of maps in the nearest module that holds some.
     Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
     trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.
     Raises TypeError for targets that are one string; ValueError for none at all, for one that
     matches nothing (with the names there are) or is no regular expression, a module whose channels
     cannot be told or that has a child called "adapter", a gate that nothing follows, or a model
-    that has adapters already; the model is then as it was.
+    that has adapters; the model is then as it was.
     """
     _refuse_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
@@ -92,8 +91,7 @@ def insert_adapters(
         if name in gated:
             made[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
         elif name in ringed and views == 1:  # no neighbours
-            channels = channels_of(name, module)
-            made[name] = ConvAdapter(channels, ring_reduction, kernel, gate, middle)
+            made[name] = _plain(name, module, None, ring_reduction, kernel, gate, middle)
         elif name in ringed:
             made[name] = RingAdapter(channels_of(name, module), ring_reduction, kernel, views, hfov)
         elif name in plain:
