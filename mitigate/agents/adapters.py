@@ -70,7 +70,7 @@ def insert_adapters(
             views), with ``ring_reduction`` in place of ``reduction``, ``gate`` and ``middle``; of 1
             view, a plain one. A module found by both gets this one. gates: targets that get a
             :class:`FrameGate`, which looks at what goes into them, in place of an adapter, such as
-            an encoder's first; it counts for adapters of maps in the nearest module that holds some.
+            an encoder's first; it counts for adapters of maps in the nearest module that has some.
     Train with the backbone in eval mode: batches move the running statistics of a BatchNorm that
     trains, frozen or not, and the adapters then fit no backbone on file (``save_adapters`` warns).
     Returns the names of the adapted modules, in the model's order.
