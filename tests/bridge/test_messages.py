@@ -158,6 +158,7 @@ FRAMES = {
 ENDS = {
     "success in words": {"metrics": {"success": "yes"}},
     "success of a list": {"metrics": {"success": [1]}},
+    "more digits than a number has": {"metrics": {"success": 10**400}},
     "an endless metric": {"metrics": {"collisions": 1e999}},
     "SPL above 1": {"metrics": {"success": 1, "spl": 7}},
     "steps in words": {"steps": "many"},
