@@ -84,6 +84,8 @@ class AdaptViews(DistilViews):
     Raises ValueError for an agent that has no adapters in the encoders of ``modality``.
     """
 
+    teaches_gates = True
+
     def __init__(
         self,
         agent: Any,

@@ -13,7 +13,7 @@ what the teacher's give for the clean one.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import torch
@@ -23,7 +23,7 @@ from mitigate.core import checkpoint
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import batch_of, imitation, loss_weights, masked
 from mitigate.recipes.pretrain import VIEWS_ALONE, views_to_learn
-from mitigate.training.parts import OWN, SEEING, TRAINABLE, load_teacher, train_only
+from mitigate.training.parts import OWN, SEEING, TRAINABLE, load_teacher, refuse_gates, train_only
 from mitigate.training.poses import Poses
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import Rollouts
@@ -154,12 +154,13 @@ class DistilViews(Recipe):
     adapters and nothing else. own: draw corruptions of this sensor alone, so that three quarters
     of the frames are corrupted, not a half (RGB) or a quarter (depth).
 
-    Raises FileNotFoundError for a missing teacher.
+    Raises FileNotFoundError for a missing teacher, ValueError for adapters with gates.
     """
 
     ahead = True
     needs = SEEING
     otherwise = VIEWS_ALONE
+    teaches_gates: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -178,6 +179,9 @@ class DistilViews(Recipe):
         own: bool = False,
     ) -> None:
         super().__init__()
+        if not self.teaches_gates:
+            for name in agent.encoders.get(modality, ()):
+                refuse_gates(agent.parts()[name])
         self.agent, self.modality = agent, modality
         self.poses = Poses(
             agent,

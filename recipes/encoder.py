@@ -30,11 +30,15 @@ from mitigate.corruptions.registry import modality
 from mitigate.encoders.frames import Frames, collect, corrupted
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
+from mitigate.training import success
 from mitigate.training.parts import without_adapters
 from mitigate.training.recipe import Recipe
 
 SHOWN = 12  # frames in the log's picture
 MOST_KEPT = 1 << 30  # bytes of clean features kept from the start; more are computed at each step
+
+
+LOOKED_AT = 48  # frames that tell how much features differ where not all are kept (ours)
 
 
 class HardenEncoder(Recipe):
@@ -77,6 +81,7 @@ class HardenEncoder(Recipe):
                 f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.batch ({batch}), and "
                 f"recipe.frames ({frames}) at least 1."
             )
+        success.refuse(schedule)
         self.agent, self.batch_size, self.micro = agent, batch, micro_batch
         agent.requires_grad_(False)  # of parameters of TorchScript that train there is no copy
         self.teacher = without_adapters(agent).eval()
@@ -111,7 +116,8 @@ class HardenEncoder(Recipe):
             self.frames = collect(self.source, TRAIN, self.count, self.seed)
         device, self.targets = next(self.teacher.parameters(), torch.zeros(())).device, None
         clean = torch.from_numpy(self.frames.frames).split(self.micro)
-        first = self._clean(clean[0].to(device))
+        some = clean[: -(-LOOKED_AT // self.micro)]
+        first = torch.cat([self._clean(part.to(device)) for part in some])
         self.variance = variance(first, self.per_channel)
         if first[0].numel() * first.element_size() * len(self.frames) > MOST_KEPT:
             return

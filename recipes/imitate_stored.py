@@ -15,6 +15,7 @@ from torch import Tensor
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import batch_of, falling_share, imitation, loss_weights
+from mitigate.training import success
 from mitigate.training.parts import TRAINABLE, train_only
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import PIECES
@@ -52,6 +53,7 @@ class ImitateStored(Recipe):
         super().__init__()
         if episodes < 1:
             raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
+        success.refuse(schedule if variants else None)
         train_only(agent, agent.stored_parts)
         self.agent, self.world, self.source, self.folder = agent, world, training, folder
         self.steps, self.episodes, self.follow_oracle, self.seed = (

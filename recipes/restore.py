@@ -27,6 +27,7 @@ from mitigate.corruptions import Schedule
 from mitigate.restoration.frames import RIGHT, SensorRestorer
 from mitigate.restoration.pairs import pairs_of
 from mitigate.restoration.restorer import Restorer
+from mitigate.training import success
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes
 
@@ -68,6 +69,7 @@ class Restore(Recipe):
                 f"recipe.single ({single}) is a share from 0 to 1, and recipe.panoramas "
                 f"({panoramas}) at least 1."
             )
+        success.refuse(schedule)
         self.agent, self.modality, self.single, self.seed = agent, modality, single, seed
         self.w_grad, self.w_right, self.w_far = w_grad, w_right, w_far
         agent.requires_grad_(False)
@@ -78,6 +80,9 @@ class Restore(Recipe):
             sensor=modality, panoramas=panoramas, seed=seed, frames=frames,
         )  # fmt: skip
         self._shown: np.ndarray | None = None
+
+    def identity(self) -> dict[str, str]:
+        return self.pairs.identity()
 
     def start(self) -> None:
         self.pairs.start()

@@ -27,6 +27,7 @@ from mitigate.restoration.frames import RIGHT, SensorRestorer
 from mitigate.restoration.network import texture
 from mitigate.restoration.pairs import Pairs, pairs_of
 from mitigate.restoration.restorer import Restorer
+from mitigate.training import success
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes
 
@@ -88,6 +89,7 @@ class RestoreGate(Recipe):
                 f"recipe.single ({single}) and recipe.touched ({touched}) are shares from 0 to 1; "
                 f"recipe.instants ({instants}), held ({held}) and batch ({batch}) at least 1."
             )
+        success.refuse(schedule)
         self.modality, self.instants, self.held, self.batch_size = modality, instants, held, batch
         self.single, self.touched, self.seed = single, touched, seed
         self.agent = agent.requires_grad_(False)
@@ -100,6 +102,9 @@ class RestoreGate(Recipe):
             for share in (CLEAN_SHARE, 1.0)
         )
         self.learned: list[Judged] = []  # of panoramas, if there are any, and of single views
+
+    def identity(self) -> dict[str, str]:
+        return self.pairs.identity()
 
     def start(self) -> None:
         self.pairs.start()

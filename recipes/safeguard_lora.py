@@ -11,6 +11,7 @@ from typing import Any
 
 from torch import Tensor
 
+from mitigate.core.files import sha256
 from mitigate.core.precision import to_device
 from mitigate.core.seeding import generator
 from mitigate.safeguard.data import Pair, draw_pair, read_chats, read_texts
@@ -54,8 +55,12 @@ class SafeguardLora(Recipe):
         self.texts = read_texts(files or [])
         self.chats = [pair for path in chats or [] for pair in read_chats(path)]
         self.share, self.seed = share, seed
+        self.read = [*(files or []), *(chats or [])]
         for name, parameter in agent.named_parameters():
             parameter.requires_grad_("lora_" in name)
+
+    def identity(self) -> dict[str, str]:
+        return {path: sha256(path) for path in self.read}
 
     def pair(self, index: int) -> Pair:
         """Return the pair ``index``, a function of the seed."""

@@ -20,13 +20,20 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from safetensors.numpy import load_file
 
 ROOT = Path(__file__).resolve().parent.parent
 KEPT = ROOT / "runs" / "compare"
-AGENTS = ("checkpoints/base", "checkpoints/teacher", "checkpoints/hardened/*")
+AGENTS = {  # folders of weights: what their kind is called
+    "checkpoints/base": "topological",
+    "checkpoints/teacher": "topological",
+    "checkpoints/hardened/*": "topological",
+    **{f"checkpoints/{kind}/*": kind for kind in ("recurrent", "recurrent_rgb", "frontier")},
+    "checkpoints/topological_imagenet/*": "topological_imagenet",
+}
 UNSTABLE = ("agent", "weights", "name", "rule")  # what a row says of itself, not what was measured
 EXTRA = {"safeguard_lora": ("stages.lora.recipe.pairs=2", "stages.lora.recipe.micro_batch=2")}
 
@@ -75,9 +82,11 @@ def parts(folder: Path, episodes: int) -> Iterator[tuple]:
     """What is compared in a checkout: its name, and a function that measures it."""
     for path in sorted(folder.glob("conf/recipe/*.yaml")):
         yield f"recipe/{path.stem}", lambda name=path.stem: trained(folder, name)
-    for path in sorted(p for pattern in AGENTS for p in folder.glob(pattern) if p.is_dir()):
+    found = [(p, kind) for pattern, kind in AGENTS.items() for p in folder.glob(pattern)]
+    for path, kind in sorted(found):
         name = str(path.relative_to(folder))
-        yield f"agent/{path.name}", lambda name=name: walked(folder, name, episodes)
+        measure = partial(walked, folder, name, kind, episodes)
+        yield f"agent/{name.removeprefix('checkpoints/')}", measure
 
 
 def trained(folder: Path, recipe: str) -> str:
@@ -90,10 +99,11 @@ def trained(folder: Path, recipe: str) -> str:
         return tensors_digest(file)
 
 
-def walked(folder: Path, checkpoint: str, episodes: int) -> str:
+def walked(folder: Path, checkpoint: str, kind: str, episodes: int) -> str:
     """Digest of what an agent's rows measured."""
     with tempfile.TemporaryDirectory() as out:
-        python(folder, "evaluate", f"checkpoint={checkpoint}", f"episodes={episodes}", f"out={out}")
+        given = [f"agent={kind}", f"checkpoint={checkpoint}", f"episodes={episodes}"]
+        python(folder, "evaluate", *given, f"out={out}")
         lines = Path(out, "rows.jsonl").read_text(encoding="utf-8").splitlines()
         rows = [{k: v for k, v in json.loads(x).items() if k not in UNSTABLE} for x in lines]
         return digest(json.dumps(rows, sort_keys=True).encode())

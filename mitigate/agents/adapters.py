@@ -126,6 +126,11 @@ def adapted(model: nn.Module) -> list[str]:
     return [n for n, m in model.named_modules() if isinstance(getattr(m, NAME, None), ADAPTERS)]
 
 
+def adapters_of(model: nn.Module) -> list[nn.Module]:
+    """The adapters and gates themselves, in the model's order."""
+    return [getattr(model.get_submodule(name), NAME) for name in adapted(model)]
+
+
 def remove_adapters(model: nn.Module) -> None:
     """Take all adapters out; the backbone computes what it did before they came in. It stays
     frozen: ``model.requires_grad_(True)`` lets it train again."""
@@ -139,7 +144,7 @@ def remove_adapters(model: nn.Module) -> None:
 
 def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
     """The parameters of the adapters alone."""
-    return [p for n in adapted(model) for p in getattr(model.get_submodule(n), NAME).parameters()]
+    return [p for adapter in adapters_of(model) for p in adapter.parameters()]
 
 
 def trainable_share(model: nn.Module) -> float:

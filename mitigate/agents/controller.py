@@ -22,12 +22,12 @@ class Controller:
 
     def follow(self, route: list[np.ndarray]) -> None:
         """Start a route (list of [x, y] in plan metres)."""
-        self.route = [np.asarray(p, np.float64) for p in route]
+        self.route = [np.array(p, np.float64) for p in route]
         self._last, self._blocked, self._budget = None, 0, 40 * max(1, len(route))
 
     def action(self, pose: np.ndarray) -> int | None:
         """The next low-level action from pose [3], or None on arrival."""
-        xy = np.asarray(pose[:2], np.float64)
+        xy = np.array(pose[:2], np.float64)  # a copy: a world may move its pose in place
         if self._last is not None:
             self._blocked = self._blocked + 1 if np.hypot(*(xy - self._last)) < _STUCK else 0
             self._last = None

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mitigate.core import settings
-from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.observation import DEPTH, RGB, VIEWS
 
 SENSES = (RGB, DEPTH, "instruction")
 RGB_ENCODERS = ("own", "efficientnet_lite0")
@@ -102,7 +102,9 @@ ADAPTERS = {
     "reduction": whole(1, 1024),
     "ring_reduction": whole(1, 1024),
     "kernel": whole(1, 15),
-    "views": whole(3, 64),
+    "gate": TRUTH,
+    "middle": whole(1, 1024),
+    "views": Kind(f"{VIEWS}, as the agents' panoramas have", lambda value: value == VIEWS),
     "hfov": number(1, 179),
 }
 POLICY = {

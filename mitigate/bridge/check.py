@@ -72,10 +72,10 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     cell, file = made[0], out / "first.npz"
     cell.folder = out / "check"
     file.unlink(missing_ok=True)
-    cell.condition.observers.append(FirstLook(file))
+    cell.condition.observers[:] = [FirstLook(file)]  # nothing is recorded: it ends in mid-episode
     print(f"check: started, its output is in {cell.log}", flush=True)
-    cell.start()
     try:
+        cell.start()
         _wait(cell, file)
     finally:
         cell.kill()

@@ -61,7 +61,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
                 condition,
                 label_of(cfg, text, name, restorer, adapters),
                 cfg.rule,
-                settings_of(cfg, text, restorer, adapters),
+                settings_of(cfg, text, corruption, restorer, adapters),
                 cfg.patience,
                 environment,
                 clean=made[0].folder if made else None,

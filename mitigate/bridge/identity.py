@@ -13,6 +13,8 @@ from omegaconf import DictConfig
 
 from mitigate.bridge.recording import plain
 from mitigate.core.files import sha256
+from mitigate.corruptions import SUITE_VERSION, Corruption
+from mitigate.corruptions.registry import version
 
 if TYPE_CHECKING:
     from mitigate.restoration.restorer import Restorer
@@ -22,10 +24,15 @@ LARGEST = 1 << 30  # bytes of a file of the command that is hashed; of a larger 
 
 
 def settings_of(
-    cfg: DictConfig, command: str, restorer: Restorer | None, adapters: str | None
+    cfg: DictConfig,
+    command: str,
+    corruption: Corruption,
+    restorer: Restorer | None,
+    adapters: str | None,
 ) -> dict[str, Any]:
     """What a condition's result depends on, by which a finished one is known again."""
     told = {name: cfg[name] for name in SETTINGS}
+    told |= {"suite": SUITE_VERSION, "severity": corruption.severity, **version(corruption.name)}
     told |= {"restore": None if restorer is None else restorer.hash, "adapters": adapters}
     return {"command": command, **told, "safeguard": _guard(cfg)}
 

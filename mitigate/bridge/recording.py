@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import re
 import shutil
 from collections.abc import Iterable, Mapping
@@ -47,25 +48,30 @@ def part(name: str) -> str:
 
 @dataclass
 class Recorder:
-    """Writes what passes into ``folder``; of an episode that comes again the later one stays."""
+    """Writes what passes into ``folder``; of an episode that comes again the one that ended last
+    stays: until its end it lies in a folder beside."""
 
     folder: Path
     here: Path | None = None
+    place: Path | None = None  # where it is put at its end
     cameras: dict[str, Any] = field(default_factory=dict)  # of the episode
     kinds: ClassVar = (RGB, DEPTH)  # of the cameras that it needs to see
 
     def episode(self, told: Mapping[str, Any]) -> None:
         """Begin the folder of an episode."""
-        self.here = self.folder / part(stem_of(str(told["scene"]))) / part(str(told["id"]))
-        self.cameras = {}
-        shutil.rmtree(self.here, ignore_errors=True)  # of an earlier run
+        place = self.folder / part(stem_of(str(told["scene"]))) / part(str(told["id"]))
+        if self.here is not None:  # left in the middle
+            shutil.rmtree(self.here, ignore_errors=True)
+        self.place, self.cameras = place, {}
+        self.here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
+        shutil.rmtree(self.here, ignore_errors=True)
         self.here.mkdir(parents=True)
         note = {"unit": 1 / MILLIMETRES, "depth": "16-bit PNG", "frames": "clean"}
         with atomic_text(self.folder / RECORDING) as file:
             json.dump(note, file)
         said = ("scene", "id", "text", "tokens", "language", "category")
         with atomic_text(self.here / "episode.json") as file:
-            json.dump({name: told.get(name) for name in said}, file, ensure_ascii=False)
+            json.dump({name: told.get(name) for name in said}, file)
         (self.here / "steps.jsonl").write_text("", encoding="utf-8")
 
     def frame(
@@ -89,12 +95,14 @@ class Recorder:
             file.write(json.dumps(line) + "\n")
 
     def end(self, told: Mapping[str, Any]) -> None:
-        """Write how the episode went."""
-        if self.here is not None:
+        """Write how the episode went, and put it in its place."""
+        if self.here is not None and self.place is not None:
             said = {name: value for name, value in told.items() if name != "kind"}
             with atomic_text(self.here / "end.json") as file:
                 json.dump(said, file)
-        self.here = None
+            shutil.rmtree(self.place, ignore_errors=True)  # of an earlier run, or a loop's second
+            os.replace(self.here, self.place)
+        self.here = self.place = None
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:

@@ -7,6 +7,7 @@ output folder; the same command again goes on where it stopped.
 
 from __future__ import annotations
 
+import math
 import shlex
 import signal
 import sys
@@ -115,7 +116,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     problems += _run_all(cfg, command, out, name, fitting)
     _warn_of_changes([clean, *fitting], out, known)
     if not clean.is_done():  # a condition showed that it is not whole
-        raise ValueError("\n".join(problems))
+        raise ValueError("\n".join(problems) or f"{clean.name}: {clean.why_anew()}")
     write_report([clean, *fitting], out)
     if problems:
         raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
@@ -185,6 +186,8 @@ def check_options(cfg: DictConfig, command: Sequence[str]) -> None:
     for option in ("jobs", "repeats"):
         if cfg[option] < 1:
             raise ValueError(f"{option}={cfg[option]} is none: give 1 or more.")
+    if not math.isfinite(cfg.missing):
+        raise ValueError(f"missing={cfg.missing} must be a number of metres, as missing=10.")
     if not 1 <= cfg.patience <= 3600:
         raise ValueError(f"patience={cfg.patience:g} must be 1 to 3600 seconds.")
     if cfg.severity == 0 or cfg.severity_depth == 0:

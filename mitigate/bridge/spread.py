@@ -57,8 +57,8 @@ class ConditionTask:
         for name in jobs:
             cell = self.cells[name]
             cell.tied = True
-            cell.start()
             try:
+                cell.start()
                 while (problem := cell.poll()) is None:
                     time.sleep(PAUSE)
             finally:

@@ -57,6 +57,8 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
         json_file.expect("{", "a JSON object")
         for _ in json_file.until("}"):
             key = json_file.value()
+            if not isinstance(key, str):
+                raise ValueError(f"{path} has a key that is no text: {key!r:.60}.")
             json_file.expect(":", "':' after a key")
             if key == streamed and json_file.accept("["):
                 items = (json_file.value() for _ in json_file.until("]"))

@@ -17,7 +17,9 @@ from mitigate.core.files import make_folder, writing
 
 NAME = ".lock"
 _LEFT = re.compile(r"\..+\.\d+\.tmp")  # as mitigate/core/files.py names what is not yet whole
-_held: set[Path] = set()  # by this process, which a record lock would let in twice
+# by this process, which a record lock would let in twice, and which would lose it with any file of
+# that path that it closes
+_held: dict[Path, IO[str]] = {}
 
 
 class FolderLock:
@@ -38,17 +40,16 @@ class FolderLock:
 
     def __enter__(self) -> FolderLock:
         make_folder(self.folder)
+        if self.path in _held:
+            raise ValueError(self._taken(_held[self.path]))
         while True:
             with writing(self.folder):
                 file = open(self.path, "a+", encoding="utf-8")
             try:
-                if self.path in _held:
-                    raise BlockingIOError
                 fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except (BlockingIOError, PermissionError):
                 problem = self._taken(file)
-                if self.path not in _held:  # closing it would end our own lock
-                    file.close()
+                file.close()
                 raise ValueError(problem) from None
             except OSError:  # a file system without locks
                 file.close()
@@ -57,7 +58,7 @@ class FolderLock:
                 break
             file.close()  # the one before us deleted it in this moment
         self._file = file
-        _held.add(self.path)
+        _held[self.path] = file
         file.truncate(0)
         json.dump({"pid": os.getpid(), "host": socket.gethostname(), "command": _command()}, file)
         file.flush()
@@ -67,7 +68,7 @@ class FolderLock:
     def __exit__(self, *_: object) -> None:
         if self._file is not None:
             self.path.unlink(missing_ok=True)
-            _held.discard(self.path)
+            _held.pop(self.path, None)
             self._file.close()
             self._file = None
 

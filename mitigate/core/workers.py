@@ -142,7 +142,8 @@ class _Crew:
         self.waiting = deque(groups)
         self.total, self.done, self.deaths = sum(map(len, groups)), 0, 0
         self.context = context(task.preload)
-        self.copy = pickle.dumps(task)  # by value: tensors do not become shared memory
+        own = "give workers=1, or define what it holds at the head of a module"
+        self.copy = packed(task, "The agent or its world", own)  # tensors do not become shared
         self.crew: list[_Worker] = []
         self.size = workers
 
@@ -221,6 +222,17 @@ class _Crew:
                     f"worker process {worker.process.pid} has been at "
                     f"{self.task.name(worker.left[0][1])} for {duration(now - worker.heard)}"
                 )
+
+
+def packed(thing: Any, what: str, instead: str) -> bytes:
+    """``thing`` for other processes, by value. Raises ValueError, which names ``what`` it is and
+    what to do ``instead``, where it cannot be pickled."""
+    try:
+        return pickle.dumps(thing)
+    except (pickle.PicklingError, AttributeError, TypeError, RecursionError) as error:
+        raise ValueError(
+            f"{what} cannot be sent to other processes ({error}): {instead}."
+        ) from error
 
 
 def context(preload: str) -> Any:

@@ -228,7 +228,9 @@ def read_state(path: Path) -> dict[str, Tensor]:
     if path.suffix == ".safetensors":
         return checkpoint.load_tensors(path)
     held = _load(path)
-    while isinstance(held, Mapping) and not any(isinstance(v, Tensor) for v in held.values()):
+    for _ in range(len(NESTED)):  # one may hold itself
+        if not isinstance(held, Mapping) or any(isinstance(v, Tensor) for v in held.values()):
+            break
         inner = next((name for name in NESTED if isinstance(held.get(name), Mapping)), None)
         if inner is None:
             break

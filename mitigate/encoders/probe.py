@@ -120,13 +120,13 @@ class LinearProbe:
         held = np.isin(scene, np.unique(scene)[:: round(1 / PROBE_SHARE)])
         kept = shown_enough(y[held])
         scores = []
-        for ridge in RIDGES:
+        for ridge in RIDGES if not held.all() else ():  # of one scene there is nothing to choose by
             weights = _ridge(x[~held], y[~held], ridge)
             guess = x[held] @ weights
             one = np.ones((1, int(held.sum())), np.float32)
             each = [average_precision(guess[:, i], y[held][:, i], one)[0] for i in kept]
             scores.append(np.mean(each) if each else 0.0)
-        self.ridge = RIDGES[int(np.argmax(scores))]
+        self.ridge = RIDGES[int(np.argmax(scores))] if scores else RIDGES[len(RIDGES) // 2]
         self.weights = _ridge(x, y, self.ridge)
 
     def _scaled(self, found: np.ndarray) -> np.ndarray:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:  # nothing slow is imported before run() has checked the optio
 
 ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
-LIST = "episodes.sha256"  # of the file that the episodes came from
+LIST = "episodes-{split}.sha256"  # of the file that the episodes of a split came from
 MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
 
 
@@ -133,7 +133,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     check_sensors(met, sensors, cfg.env.name)
     out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
     with FolderLock(out):
-        _check_list(out / LIST, cfg.env.episodes[cfg.split])
+        _check_list(out, cfg.split, cfg.env.episodes[cfg.split])
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
@@ -190,30 +190,28 @@ def check_walks(agent: Any) -> None:
         )
 
 
-def _check_list(note: Path, source: str) -> None:
-    """Keep the hash of the episode file beside the rows; raise ValueError if it was another.
-
-    A row names its episode by id alone, so another list's rows would count as done. ``note`` has a
-    line for each list, as ``sha256sum`` writes it.
-    """
-    known = note.read_text(encoding="utf-8").splitlines() if note.is_file() else []
-    held = {name: digest for digest, _, name in (line.partition("  ") for line in known)}
-    found = sha256(find(source))
-    if held.get(source, found) != found:
+def _check_list(folder: Path, split: str, source: str) -> None:
+    """Keep the hash of a split's episode file beside the rows, as ``sha256sum`` writes it; raise
+    ValueError if it was another: a row names its episode by id alone, so another list's rows would
+    count as done."""
+    note, found = folder / LIST.format(split=split), sha256(find(source))
+    held = note.read_text(encoding="utf-8").split()[:1] if note.is_file() else []
+    if held not in ([], [found]):
         raise ValueError(
-            f"{note.parent} holds rows of another {source} than there is now. Name another folder "
-            "(out=...), or delete this one."
+            f"{folder} holds rows of another list of {split} than {source} is now. Name another "
+            "folder (out=..., of a training folder=...), or delete this one."
         )
     with atomic_text(note) as file:
-        file.writelines(f"{d}  {name}\n" for name, d in {**held, source: found}.items())
+        file.write(f"{found}  {source}\n")
 
 
-def load(node: DictConfig, weights: str, seed: int = 0) -> nn.Module:
+def load(node: DictConfig, weights: str, seed: int = 0, overrides: Sequence[str] = ()) -> nn.Module:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
-    by ``node``. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
+    by ``node``; what ``overrides`` say of the agent counts more. Raises
+    FileNotFoundError if they are missing, ValueError if they do not fit."""
     from mitigate.core import build
 
-    settings = build.settings_of(node, weights)
+    settings = build.settings_of(node, weights, overrides)
     return build.build_agent(settings, weights=weights, seed=seed).eval()
 
 
@@ -234,6 +232,7 @@ def report_before_after(
     suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
     agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
     agents = {name: agent for name, agent in agents.items() if agent is not None}
+    _check_list(folder, quick.split, cfg.env.episodes[quick.split])
     world, rows = build.maker(cfg.env.world), []
     for name, agent in agents.items():
         rows += evaluate(

@@ -200,8 +200,17 @@ def label_columns(
         if apart:
             columns[name] = (name, tuple(agents))
         else:
-            columns |= {f"{name} ({agent[:6]})": (name, (agent,)) for agent in agents}
+            digits = _telling(agents)
+            columns |= {f"{name} ({agent[:digits]})": (name, (agent,)) for agent in agents}
     return columns
+
+
+def _telling(agents: Iterable[str]) -> int:
+    """How many digits, 6 or more, tell ``agents`` apart."""
+    digits, agents = 6, set(agents)
+    while len({agent[:digits] for agent in agents}) < len(agents):
+        digits += 1
+    return digits
 
 
 def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
@@ -262,7 +271,12 @@ def _whole(
 
 def _pooled(runs: list[_Run], severity: float) -> dict[tuple[str, str], np.ndarray]:
     """Return the mean over seeds of the clean and the corrupted cells of ``severity``."""
-    wanted = {(n, at, metric) for run in runs for n, at, metric in run if at in (0.0, severity)}
+    wanted = {
+        (name, at, metric)
+        for run in runs
+        for name, at, metric in run
+        if at == (0.0 if name == "clean" else severity)
+    }
     empty = np.full_like(next(iter(runs[0].values())), np.nan)
     return {
         (name, metric): np.mean([run.get((name, at, metric), empty) for run in runs], axis=0)

@@ -29,6 +29,8 @@ class Pairs(Protocol):
 
     def start(self) -> None: ...
 
+    def identity(self) -> dict[str, str]: ...
+
     def jobs(self, step: int) -> list[Any]: ...
 
     def work(self, job: Any) -> Any: ...
@@ -69,6 +71,10 @@ class PosePairs(Poses):
             )
         self.ring = len(self.world.sensors[self.sensor].yaws) > 1
 
+    def identity(self) -> dict[str, str]:
+        """Nothing: poses follow from the settings."""
+        return {}
+
     def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
         """As :meth:`Poses.collate`, without targets."""
         made = super().collate(pieces)
@@ -100,8 +106,15 @@ class FramePairs:
         self._last: np.ndarray | None = None
 
     def start(self) -> None:
-        """Read the frames."""
-        self.frames = collect(self.source, TRAIN, self.count, self.seed)
+        """Read the frames, once."""
+        if self.frames is None:
+            self.frames = collect(self.source, TRAIN, self.count, self.seed)
+
+    def identity(self) -> dict[str, str]:
+        """The sum of the frames."""
+        self.start()
+        assert self.frames is not None
+        return {"frames_sha256": self.frames.sha256()}
 
     def jobs(self, step: int) -> list[tuple[int, int]]:
         """(step, group) of each group of frames."""

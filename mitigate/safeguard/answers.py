@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sqlite3
 from pathlib import Path
 
@@ -14,11 +15,19 @@ class AnswerCache:
 
     def __init__(self, path: Path) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
+        self._path = path.resolve()
+        self._opened: dict[int, sqlite3.Connection] = {}  # by process: none survives a fork
         try:
-            self._file = sqlite3.connect(path)
-            self._file.execute("PRAGMA trusted_schema = OFF")
-            self._file.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer)")
-            held = self._file.execute("SELECT type, name FROM sqlite_master").fetchall()
+            file = self._file
+            file.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer)")
+            held = file.execute("SELECT type, name FROM sqlite_master").fetchall()
+        except sqlite3.OperationalError as error:
+            if "locked" not in str(error):
+                what = f"{path} cannot be opened ({error}): name another file."
+                raise ValueError(what) from error
+            raise ValueError(
+                f"{path} is in use by another process: wait for it, or name another file."
+            ) from error
         except sqlite3.Error as error:
             raise ValueError(
                 f"{path} is no cache of endpoint answers ({error}): name another file, or delete "
@@ -30,6 +39,13 @@ class AnswerCache:
                 f"{path} is no cache of endpoint answers (it holds {others[0]!r:.60}): name "
                 "another file, or delete it."
             )
+
+    @property
+    def _file(self) -> sqlite3.Connection:
+        if os.getpid() not in self._opened:
+            self._opened[os.getpid()] = made = sqlite3.connect(self._path)
+            made.execute("PRAGMA trusted_schema = OFF")
+        return self._opened[os.getpid()]
 
     def get(self, name: str) -> str | None:
         """Return the text that is kept under ``name``, None if there is none that can be used."""
@@ -48,7 +64,7 @@ class AnswerCache:
         try:
             with self._file:
                 self._file.execute("INSERT OR REPLACE INTO answers VALUES (?, ?)", (name, answer))
-        except sqlite3.Error:
+        except (sqlite3.Error, UnicodeEncodeError):
             pass
 
 

@@ -23,7 +23,8 @@ from mitigate.safeguard.text import MASK, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
-ENDLESS = 10_000  # words from which a text is left as it is: time grows with their square (ours)
+# words and marks from which a text is left as it is: time grows with their square (ours)
+ENDLESS, MARKED = 10_000, 2_000
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
 
 
@@ -51,7 +52,8 @@ class Draft:
         self.heard = unformatted(original)
         self.tidied = tidy(self.heard)
         length = len(words(self.tidied))
-        self.endless, short = length > ENDLESS, length <= TOO_LONG
+        marks = sum(not sign.isalnum() and not sign.isspace() for sign in self.tidied)
+        self.endless, short = length > ENDLESS or marks > MARKED, length <= TOO_LONG
         self.judge = tagger if short else None  # reads the text as it is heard
         self.reasons: list[str] = []
         self.asked = self.taken = 0
@@ -95,7 +97,7 @@ class Draft:
     def _left(self) -> str:
         """Why the rules do not look at the text, "" if they do."""
         if self.endless:
-            return f"over {ENDLESS:,} words: left as it is"
+            return f"over {ENDLESS:,} words or {MARKED:,} marks: left as it is"
         return "" if _readable(self.tidied) else "nothing readable in English"
 
     def _say_goal(self) -> bool:

@@ -121,4 +121,5 @@ def _content(reply: Any) -> str:
         raise ValueError(f"no choices[0].message.content in {json.dumps(reply)[:120]}") from error
     if not isinstance(content, str):
         raise ValueError(f"the answer is no text: {content!r:.120}")
+    content.encode("utf-8")  # half a character is no text
     return content.strip()

@@ -153,7 +153,7 @@ def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
 
 def _append(path: Path, decisions: list[Decision]) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    lines = "".join(json.dumps(asdict(d), ensure_ascii=False) + "\n" for d in decisions)
+    lines = "".join(json.dumps(asdict(d)) + "\n" for d in decisions)
     with open(path, "a", encoding="utf-8") as file:
         file.write(lines)
         file.flush()

@@ -51,9 +51,13 @@ for _kind in (LauncherConfig, RayConfig, SlurmConfig):
 
 
 def chosen(node: DictConfig) -> LauncherConfig:
-    """The launcher that a config names."""
+    """The launcher that a config names. Raises ValueError for a number that is too small."""
     launcher = OmegaConf.to_object(node)
     assert isinstance(launcher, LauncherConfig)
+    for name in ("cpus", "memory", "attempts", "processes", "minutes"):
+        value = getattr(launcher, name, None)
+        if value is not None and not value > 0:
+            raise ValueError(f"launcher.{name}={value:g} must be above 0.")
     return launcher
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from mitigate.core.progress import Progress
@@ -26,11 +27,12 @@ class Worker:
     """What an actor does: the jobs of a group, one after the other."""
 
     def __init__(self, task: Task) -> None:
-        self.task, self.around = task, task.ready()
-        self.around.__enter__()
+        self.task, self.around = task, ExitStack()
 
     def started(self) -> None:
-        """Answered once the actor runs: one that waits for room in the cluster gets no jobs."""
+        """Answered once the actor runs and is ready: one that waits for room in the cluster gets no
+        jobs, and what the task raises is told as its own error."""
+        self.around.enter_context(self.task.ready())
 
     def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
         """The result of each job, in order."""

@@ -40,6 +40,7 @@ class _Share:
     ``lines`` that were read."""
 
     job: Any
+    groups: Sequence[Sequence[tuple[int, Any]]]
     lines: Path
     left: dict[int, Any]
     attempt: int
@@ -60,22 +61,25 @@ def results(
     given = numbered(groups)
     total, done = sum(map(len, given)), 0
     shares = [given[at::workers] for at in range(min(workers, len(given)))]
-    running = [_submit(executor, folder, launcher, share, 1, n) for n, share in enumerate(shares)]
-    progress.say(f"{len(running)} jobs submitted; their logs are in {folder}")
-    submitted = len(running)
+    running: list[_Share] = []
     try:
+        for number, share in enumerate(shares):
+            running.append(_submit(executor, folder, launcher, share, 1, number))
+        progress.say(f"{len(running)} jobs submitted; their logs are in {folder}")
+        submitted = len(running)
         while done < total:
-            for share in list(running):
-                over = share.job.done()  # before its lines are read: nothing comes after
-                for number, result in _fresh(share):
+            for held in list(running):
+                over = held.job.done()  # before its lines are read: nothing comes after
+                for number, result in _fresh(held):
                     done += 1
                     yield number, result
                 if not over:
                     continue
-                running.remove(share)
-                if share.left:
-                    again = _again(share, task, launcher, progress, done, total)
-                    groups_left = [list(share.left.items())]
+                running.remove(held)
+                if held.left:
+                    again = _again(held, task, launcher, progress, done, total)
+                    groups_left = [[j for j in group if j[0] in held.left] for group in held.groups]
+                    groups_left = [group for group in groups_left if group]
                     running.append(
                         _submit(executor, folder, launcher, groups_left, again, submitted)
                     )
@@ -84,8 +88,8 @@ def results(
             time.sleep(SECOND / 4)
         _end(running, folder)
     finally:
-        for share in running:
-            share.job.cancel()
+        for held in running:
+            held.job.cancel()
 
 
 def _end(running: list[_Share], folder: Path) -> None:
@@ -133,27 +137,33 @@ def _submit(
     """Submit a job for ``groups``."""
     lines = folder / f"results-{number}.jsonl"
     job = executor.submit(serve, folder / TASK, list(groups), launcher.processes, lines)
-    return _Share(job, lines, {n: j for group in groups for n, j in group}, attempt)
+    return _Share(job, groups, lines, {n: j for group in groups for n, j in group}, attempt)
 
 
 def serve(
     task: Path, groups: Sequence[Sequence[tuple[int, Any]]], processes: int, lines: Path
 ) -> None:
-    """A job's life: run ``groups``, a line for each result, ``{"job": number, "result": ...}``."""
+    """A job's life: run ``groups``, a line for each result, ``{"job": number, "result": ...}``, or
+    ``{"error": text}`` at a ValueError, which would come again on any node."""
     with open(task, "rb") as file:
         held: Task = pickle.load(file)
     numbers = [number for group in groups for number, _ in group]
     jobs = [[job for _, job in group] for group in groups]
     with open(lines, "a", encoding="utf-8") as out, Progress("jobs", len(numbers)) as progress:
-        for found in run_here(held, jobs, processes, progress):
-            if found is not None:
-                out.write(json.dumps({"job": numbers[found[0]], "result": found[1]}) + "\n")
-                out.flush()
-                progress.advance()
+        try:
+            for found in run_here(held, jobs, processes, progress):
+                if found is not None:
+                    out.write(json.dumps({"job": numbers[found[0]], "result": found[1]}) + "\n")
+                    out.flush()
+                    progress.advance()
+        except ValueError as error:
+            out.write(json.dumps({"error": str(error)}) + "\n")
+            raise
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Results of a share that were not read before, each once; a line without end comes later."""
+    """Results of a share that were not read before, each once; a line without end comes later.
+    Raises the ValueError that its job tells of."""
     if not share.lines.is_file():
         return
     with open(share.lines, "rb") as file:
@@ -163,6 +173,8 @@ def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
                 break
             share.read += len(line)
             told = json.loads(line)
+            if "error" in told:
+                raise ValueError(told["error"])
             if share.left.pop(told["job"], None) is not None:
                 yield told["job"], told["result"]
 
@@ -170,8 +182,7 @@ def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
 def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
-    """Which attempt the rest of a share is. Raises what its job raised if that was a ValueError,
-    else WorkersDied after too many."""
+    """Which attempt the rest of a share is. Raises WorkersDied after too many."""
     try:
         problem: Any = share.job.exception()
     except Exception as error:  # submitit's own, of a job that left no result

@@ -71,6 +71,8 @@ def export(
         raise ValueError(
             f"{target} exists already: choose another name, or replace it with --overwrite."
         )
+    if onnx and walks is not None:
+        raise ValueError("--onnx is for the topological agent: folders of others hold no programs.")
     cfg, agent = _finished(run, walks)
     make_folder(out)
     with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:

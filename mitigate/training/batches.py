@@ -21,7 +21,7 @@ import torch
 from mitigate.core import precision
 from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
-from mitigate.core.workers import WorkersDied, context, leave_to_parent, portable
+from mitigate.core.workers import WorkersDied, context, leave_to_parent, packed, portable
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe, do
 
@@ -73,9 +73,9 @@ class Workers:
             name: p.detach().cpu() for name, p in recipe.named_parameters() if p.requires_grad
         }
         buffers = {name: buffer.detach().cpu() for name, buffer in recipe.named_buffers()}
-        packed = pickle.dumps({**trained, **buffers})
+        weights = pickle.dumps({**trained, **buffers})
         for worker in self._all:
-            worker.renew(packed)
+            worker.renew(weights)
 
     def order(self, jobs: list[Any], turn: int = 0) -> None:
         """Have ``jobs`` done; :meth:`receive` returns what they give. What is ordered at once goes
@@ -289,19 +289,14 @@ class _Worker:
 
 
 def _packed(recipe: Recipe) -> bytes:
+    own = "keep what cannot be pickled out of its attributes, or train with workers=0"
+    device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
+    if device.type == "cpu":
+        return packed(recipe, type(recipe).__name__, own)
     try:
-        device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
-        if device.type == "cpu":
-            return pickle.dumps(recipe)
-        try:
-            return pickle.dumps(recipe.cpu())
-        finally:
-            recipe.to(device)
-    except (pickle.PicklingError, TypeError, AttributeError) as error:
-        raise ValueError(
-            f"{type(recipe).__name__} cannot be sent to worker processes ({error}): keep what "
-            "cannot be pickled out of its attributes, or train with workers=0."
-        ) from error
+        return packed(recipe.cpu(), type(recipe).__name__, own)
+    finally:
+        recipe.to(device)
 
 
 def _serve(connection: Connection) -> None:

@@ -25,6 +25,7 @@ class Cell:
     options: tuple[str, ...]
     seed: int
     folder: Path
+    train: tuple[str, ...] = ()  # further options of its training
 
     @property
     def trains(self) -> bool:
@@ -33,9 +34,10 @@ class Cell:
 
     @property
     def agent(self) -> tuple[str, ...]:
-        """What an evaluation must know of the agent: its kind and its weights."""
+        """What an evaluation must know of the agent: its kind, its world and its weights."""
         if self.trains:
-            kind = tuple(option for option in self.options if option.startswith("agent="))
+            given = (*self.options, *self.train)
+            kind = tuple(o for o in given if o.startswith(("agent=", "env=", "env.", "+env.")))
             return (*kind, f"checkpoint={self.folder / 'run' / 'agent'}")
         return self.options
 
@@ -59,7 +61,7 @@ class Cell:
                     [
                         "mitigate.train",
                         *self.options,
-                        *cfg.train,
+                        *self.train,
                         f"seed={self.seed}",
                         f"folder={self.folder / 'run'}",
                         "evaluation.enabled=false",
@@ -118,6 +120,7 @@ def cells(cfg: DictConfig) -> list[Cell]:
             tuple(options),
             seed,
             out / "cells" / f"{column}-seed{seed}",
+            tuple(cfg.train),
         )
         for seed in cfg.seeds
         for column, options in cfg.columns.items()
@@ -137,7 +140,7 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
         if cell.seed == cfg.seeds[0]:
             try:
                 if cell.trains:
-                    conf.composed("train", [*cell.options, *cfg.train])
+                    conf.composed("train", [*cell.options, *cell.train])
                 episodes(conf.composed("evaluate", cell.agent).env, cfg.split, cfg.episodes)
             except ValueError as error:
                 raise ValueError(f"Column {cell.column}: {error}") from error

@@ -9,8 +9,9 @@ from typing import Any
 from torch import nn
 
 from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
-from mitigate.agents.adapters import adapter_parameters, remove_adapters
+from mitigate.agents.adapters import adapter_parameters, adapters_of, remove_adapters
 from mitigate.agents.agent import Trainable
+from mitigate.agents.gate import FrameGate
 from mitigate.core import checkpoint
 from mitigate.core.files import find
 from mitigate.core.names import unknown
@@ -34,7 +35,8 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     encoders; None: all train.
 
     Adapters train only if "adapters" is named, wherever they are. Raises ValueError for an unknown
-    part, for parameters that are in no part, and for an agent that is not trainable.
+    part, for parameters that are in no part, for adapters with gates, which no episode teaches, and
+    for an agent that is not trainable.
     """
     if not isinstance(agent, Trainable):
         lacking = [name for name in TRAINABLE if not hasattr(agent, name)]
@@ -54,11 +56,23 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
             f"parts() of {type(agent).__name__} leaves out {', '.join(stray[:4])}: every parameter "
             "belongs to a part, or nobody could say whether it trains."
         )
+    if ADAPTERS in parts:
+        refuse_gates(agent)
     for name, module in own.items():
         module.requires_grad_(name in parts)
     freeze(agent)
     for parameter in adapter_parameters(agent):
         parameter.requires_grad_(ADAPTERS in parts)
+
+
+def refuse_gates(module: nn.Module) -> None:
+    """Raise ValueError if adapters of ``module`` have a gate: only random views with their clean
+    ones beside them (``recipes/adapt.py``) teach it when to open."""
+    if any(isinstance(adapter, FrameGate) for adapter in adapters_of(module)):
+        raise ValueError(
+            "Nothing in this recipe teaches the gates of agent.adapters.gates when to open: leave "
+            "them out, or choose recipe=harden or conv_adapter."
+        )
 
 
 def freeze(agent: nn.Module) -> None:

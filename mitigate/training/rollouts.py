@@ -71,7 +71,9 @@ class Rollouts:
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
         """(step, piece, of how many, episodes, the schedule's state) of each piece; ``workers``:
         processes that measure success rates where they are due."""
-        if self.refresh_every and step % self.refresh_every == 0 and not (step == 0 and self.prior):
+        due = bool(self.refresh_every) and step % self.refresh_every == 0
+        wanted = self.schedule.mode == "success_distributed" and not (step == 0 and self.prior)
+        if due and wanted:
             self.refresh(step, workers)
         parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
         state = self.schedule.state_dict()

@@ -55,7 +55,7 @@ def load(path: Path) -> dict[str, Any]:
     """Return the state in ``path`` (tensors on the CPU).
 
     Raises FileNotFoundError if it is missing, Damaged if it is cut short or not what was written,
-    ValueError if it is not a checkpoint of this trainer.
+    ValueError if it is not a checkpoint of this trainer, or whole and still cannot be read.
     """
     path = Path(path)
     if not path.is_file():
@@ -67,6 +67,10 @@ def load(path: Path) -> dict[str, Any]:
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
     except Exception as error:  # of any kind, where the file was not written by torch
+        if noted:  # it is, to the byte: memory ran out, or it holds what is not plain data
+            cause = " ".join(str(error).split())[:300]
+            what = f"The checkpoint {path} is whole, but cannot be read: {cause}"
+            raise ValueError(what) from error
         raise Damaged(_broken(path, "is cut short, damaged or not a torch file")) from error
     missing = [k for k in REQUIRED if k not in state] if isinstance(state, dict) else REQUIRED
     if missing:

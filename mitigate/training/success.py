@@ -54,6 +54,15 @@ def measure(
     return success_rates(found)
 
 
+def refuse(schedule: Schedule | None) -> None:
+    """Raise ValueError for a schedule by success, in a recipe that measures none."""
+    if schedule is not None and schedule.mode == "success_distributed":
+        raise ValueError(
+            "Nothing in this recipe measures success, by which schedule=success_distributed draws: "
+            "choose schedule=per_episode or per_frame."
+        )
+
+
 def prior_rates(path: Path | str) -> dict[str, float]:
     """Success by corruption in a file of result rows.
 
@@ -62,7 +71,7 @@ def prior_rates(path: Path | str) -> dict[str, float]:
     """
     found = read(path)
     kinds = {
-        "agents": {row["name"] for row in found},
+        "agents": {f"{row['name']} {row['agent']}" for row in found},
         "splits": {row["split"] for row in found},
         "severities": {f"{row['severity']:g}" for row in found} - {"0"},
     }

@@ -25,6 +25,7 @@ from mitigate.core.files import atomic_text
 from mitigate.core.progress import Progress
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import ROWS, load
+from mitigate.evaluation.rows import Row, read
 from mitigate.scale import launcher, programs
 from mitigate.training.cells import Cell, cells, check
 
@@ -72,7 +73,7 @@ def run(cfg: DictConfig) -> Path:
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
     problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
-    measured = [c.evaluation for c in made if (c.evaluation / ROWS).is_file()]
+    measured = [cell.evaluation for cell in made if _rows(cell.evaluation)]
     if failed and not measured:
         raise ValueError(problem)
     report = write_report(cfg, out, measured)
@@ -145,7 +146,7 @@ def write_further(made: Sequence[Cell], cfg: DictConfig, out: Path) -> list[Path
 
     written = []
     for name in cfg.evaluations:
-        paths = [cell.further(name) for cell in made if (cell.further(name) / ROWS).is_file()]
+        paths = [cell.further(name) for cell in made if _rows(cell.further(name))]
         if paths:
             written.append(report.write(rows.gather(paths), out / name)[0])
     return written
@@ -161,7 +162,9 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     if len(made) < len(cfg.walks) or not made:
         return []
     nodes = {name: conf.load_config("evaluate", made[name].agent) for name in cfg.walks}
-    agents: dict[str, Any] = {n: load(c.agent, c.checkpoint) for n, c in nodes.items()}
+    agents: dict[str, Any] = {
+        n: load(c.agent, c.checkpoint, overrides=made[n].agent) for n, c in nodes.items()
+    }
     node = nodes[cfg.walks[0]]
     chosen = episodes(node.env, cfg.split, cfg.episodes)
     drawn = {episode.episode_id for episode in chosen}
@@ -193,12 +196,13 @@ def costs(out: Path) -> dict[str, dict[str, float]]:
 def _named(folder: Path) -> str:
     """The column of a cell's rows, which names what stands in front of the agent, too; of a cell
     without rows that of the folder."""
-    rows = folder / "evaluation" / ROWS
-    if rows.is_file():
-        with open(rows, encoding="utf-8") as file:
-            for line in file:
-                return str(json.loads(line)["name"])
-    return folder.name.rpartition("-seed")[0]
+    found = _rows(folder / "evaluation")
+    return str(found[0]["name"]) if found else folder.name.rpartition("-seed")[0]
+
+
+def _rows(folder: Path) -> list[Row]:
+    """The rows that an evaluation has left in ``folder`` so far."""
+    return read(folder / ROWS) if (folder / ROWS).is_file() else []
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table2")

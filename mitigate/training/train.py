@@ -176,6 +176,12 @@ def check(cfg: DictConfig) -> None:
             f"workers={cfg.workers}: give a number of processes that make batches, 0 for none "
             f"beside this one and {MOST_WORKERS} at most, or null for one a core ({MOST} at most)."
         )
+    measuring = cfg.evaluation.workers
+    if measuring is not None and not 1 <= measuring <= MOST_WORKERS:
+        raise ValueError(
+            f"evaluation.workers={measuring}: give a number of processes that walk, from 1 to "
+            f"{MOST_WORKERS}, or null for one a core."
+        )
     for stage in cfg.stages.values():
         if stage is not None:
             settings = trainer_settings(cfg, stage)

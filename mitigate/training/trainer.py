@@ -7,6 +7,7 @@ step, so neither logging, nor evaluation, nor a kill and a resume changes the we
 
 from __future__ import annotations
 
+import json
 import math
 import time
 from collections import defaultdict
@@ -102,8 +103,7 @@ class Trainer:
         self.workers, self.ranks, self.lag = workers, ranks or Ranks(), lag
         self.recipe = recipe.to(self.device)
         self.name = name or type(recipe).__name__
-        self.config = {
-            **(config or {}),
+        self.config = _plain(config or {}) | {
             "trainer": {
                 "steps": steps,
                 "lr": lr,
@@ -162,7 +162,13 @@ class Trainer:
             for step in range(start, self.steps):
                 done = step + 1
                 save = done == self.steps or bool(self.save_every and done % self.save_every == 0)
-                for name, value in self._step(step, batches).items():
+                try:
+                    found = self._step(step, batches)
+                except Ended:
+                    if ending.number is None and self.ranks.first and step > start:
+                        self._save(step)  # what made its batch was ended, before any weight moved
+                    raise
+                for name, value in found.items():
                     told[name].append(value)
                 counted += 1
                 journal.advance()
@@ -284,7 +290,7 @@ class Trainer:
             return 0
         path, state = found
         self._keep_precision(state["config"])
-        different = differences(state["config"], self.config)
+        different = differences(_plain(state["config"]), self.config)
         if different:
             raise ValueError(
                 f"{self.folder} holds a run with other settings ({'; '.join(different[:6])}). "
@@ -313,6 +319,13 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
             for line in differences(old.get(name), new.get(name), f"{path}.{name}".lstrip("."))
         ]
     return [] if old == new else [f"{path}: {old} -> {new}"]
+
+
+def _plain(config: dict[str, Any]) -> dict[str, Any]:
+    """``config`` as JSON gives it back: a checkpoint is read without running code, and so holds
+    plain data alone."""
+    held: dict[str, Any] = json.loads(json.dumps(config))
+    return held
 
 
 def _check(name: str, value: str, allowed: tuple[str, ...]) -> None:

@@ -116,6 +116,8 @@ class ListedEpisodes:
 
     def __init__(self, path: Path | str) -> None:
         self.path, self._listed = str(path), list(read_episodes(path))
+        if not self._listed:
+            raise ValueError(f"{path} lists no episode to train on.")
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
         """A function of the generator's state and of ``share``: (piece, of how many)."""
@@ -257,7 +259,9 @@ def _identifier(episode: Episode, key: str) -> int | str:
 
 def _json(value: Any, path: Path, name: str) -> str:
     try:
-        return json.dumps(value, ensure_ascii=False, allow_nan=False)
+        text = json.dumps(value, ensure_ascii=False, allow_nan=False)
+        text.encode("utf-8")  # which half a character is not
+        return text
     except (ValueError, TypeError) as error:
         raise ValueError(
             f"{path}: {name} holds what JSON cannot ({error}): replace NaN, infinity, arrays and "

@@ -39,7 +39,8 @@ class GymWorld(SeededWorld):
         space = env.observation_space
         boxes = dict(space.spaces) if hasattr(space, "spaces") else {WHOLE: space}
         known = {RGB: WHOLE} if WHOLE in boxes else {n: n for n in (RGB, DEPTH, POSE) if n in boxes}
-        found = {n: (b.shape, str(b.dtype), float(np.max(b.high))) for n, b in boxes.items()}
+        most = {n: np.max(getattr(b, "high", np.inf)) for n, b in boxes.items()}  # of a Box alone
+        found = {n: (b.shape, str(b.dtype), float(most[n])) for n, b in boxes.items()}
         super().__init__(found, entries or known, success, unit, limit, rule)
         self.env = env
 

@@ -281,7 +281,7 @@ def test_the_schema_has_the_arguments_of_what_it_describes():
         assert kind.usual == tuple(usual)
     assert schema.POLICY.keys() == names(Policy, "rgb", "depth", "vocabulary")
     assert schema.PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
-    assert schema.ADAPTERS.keys() == names(insert_adapters, "model", "run", "gate", "middle")
+    assert schema.ADAPTERS.keys() == names(insert_adapters, "model", "run")
     assert schema.FUSION.keys() == names(weigher, "width")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import time
@@ -11,10 +12,12 @@ from pathlib import Path
 from typing import ClassVar
 
 import pytest
+from omegaconf import OmegaConf
 
 from mitigate.core.progress import Progress
 from mitigate.core.workers import WorkersDied
-from mitigate.scale.launcher import LauncherConfig, SlurmConfig, count, results
+from mitigate.scale import slurm_jobs
+from mitigate.scale.launcher import LauncherConfig, SlurmConfig, chosen, count, results
 
 GROUPS = [[(g, i) for i in range(3)] for g in range(6)]
 
@@ -117,10 +120,63 @@ def test_the_rest_of_a_killed_slurm_job_is_submitted_again(slurm_launcher, tmp_p
     assert values == EXPECTED
 
 
-def test_a_slurm_job_that_always_fails_is_a_named_error(slurm_launcher, tmp_path):
-    launcher = slurm_launcher(attempts=2)
-    with pytest.raises(WorkersDied, match="makes no sense"):
-        run(launcher, Squares(tmp_path, wrong=[(0, 1)]), workers=1)
+def test_a_wrong_job_is_told_at_once_and_not_tried_on_other_nodes(slurm_launcher, tmp_path):
+    with pytest.raises(ValueError, match="makes no sense"):
+        run(slurm_launcher(attempts=2), Squares(tmp_path, wrong=[(0, 1)]), workers=1)
+
+
+def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_job(
+    tmp_path, monkeypatch
+):
+    """A group is what a process takes: as one group the rest would be one process's."""
+    given, cancelled = [], []
+
+    class Job:
+        job_id = 1
+
+        def __init__(self, groups, lines):
+            self.lines, self.groups = lines, groups
+
+        def done(self):
+            if len(given) == 1:  # the first ends early, with one result
+                self.lines.write_text('{"job": 0, "result": [0, 0]}\n')
+            else:
+                found = [n for group in self.groups for n, _ in group]
+                made = [json.dumps({"job": n, "result": [n, 0]}) for n in found]
+                self.lines.write_text("\n".join(made) + "\n")
+            return True
+
+        def exception(self):
+            return RuntimeError("Error: time ran out")
+
+        def cancel(self):
+            cancelled.append(self)
+
+    class Executor:
+        most = 9
+
+        def submit(self, serve, task, groups, processes, lines):
+            if len(given) == self.most:
+                raise OSError("submit limit")
+            given.append([[number for number, _ in group] for group in groups])
+            return Job(groups, lines)
+
+    monkeypatch.setattr(slurm_jobs, "_executor", lambda launcher, folder: Executor())
+    launcher = SlurmConfig(folder=str(tmp_path / "slurm"))
+    run(launcher, Squares(tmp_path), workers=1)
+    assert given[0][0] == [0, *given[1][0]] and given[1][1:] == given[0][1:] != []
+    given.clear()
+    monkeypatch.setattr(Executor, "most", 1)
+    with pytest.raises(OSError, match="submit limit"):
+        run(launcher, Squares(tmp_path), workers=2)
+    assert len(cancelled) == 1
+
+
+@pytest.mark.parametrize("number", [{"processes": 0}, {"attempts": 0}, {"memory": -1.0}], ids=str)
+def test_a_launcher_of_nothing_is_refused(number):
+    node = OmegaConf.structured(SlurmConfig(**number))
+    with pytest.raises(ValueError, match=f"launcher.{next(iter(number))}=.* must be above 0"):
+        chosen(node)
 
 
 def test_without_slurm_it_says_what_to_do(tmp_path, monkeypatch):

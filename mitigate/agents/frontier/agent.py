@@ -92,7 +92,7 @@ class FrontierAgent(nn.Module):
         self.blind, self.eye = tuple(blind), eye
         self.rgb_encoder = CameraRGB(width=width, size=size)
         if adapters:
-            insert_adapters(self, **adapters, views=1)
+            insert_adapters(self, **{**adapters, "views": 1})
 
     def settings(self) -> dict[str, Any]:
         """All that makes it besides weights: what its config must say."""

@@ -99,7 +99,7 @@ class RecurrentAgent(nn.Module):
         widths = (rgb_width if RGB in sensors else 0, depth_width if DEPTH in sensors else 0)
         self.policy = Policy(*widths, vocabulary=self.vocabulary, **(policy or {}))
         if adapters:
-            insert_adapters(self, **adapters, views=1)
+            insert_adapters(self, **{**adapters, "views": 1})
 
     def settings(self) -> dict[str, Any]:
         """All that makes it besides weights: what its config must say."""

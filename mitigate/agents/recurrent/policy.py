@@ -51,8 +51,8 @@ class State:
 
     @classmethod
     def start(cls, text: Text) -> State:
-        empty = torch.zeros_like(text.mask, dtype=text.values.dtype)
-        return cls(text.values.new_zeros(len(text.values), text.values.shape[-1]), empty, empty)
+        last, added = (torch.zeros_like(text.mask, dtype=text.values.dtype) for _ in range(2))
+        return cls(text.values.new_zeros(len(text.values), text.values.shape[-1]), last, added)
 
     @classmethod
     def join(cls, states: Sequence[State]) -> State:

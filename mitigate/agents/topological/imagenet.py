@@ -12,6 +12,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mitigate.agents.adapters import adapters_of
 from mitigate.agents.concepts import CONCEPTS
 from mitigate.core.files import sha256
 from mitigate.core.public_weights import borrow
@@ -50,10 +51,12 @@ class ImageNetEncoder(nn.Module):
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
     def train(self, mode: bool = True) -> ImageNetEncoder:
-        """As ever, but the borrowed normalisations keep their statistics."""
+        """As ever, but the borrowed normalisations keep their statistics; adapters train."""
         super().train(mode)
         for part in (self.stem, *self.stages):
             part.eval()
+            for adapter in adapters_of(part):
+                adapter.train(mode)
         return self
 
     def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:

@@ -15,7 +15,7 @@ import torch
 from torch import Tensor
 
 from mitigate.agents.topological.waypoints import COUNT, select
-from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.precision import computing
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.worlds.world import depth_sensor
@@ -90,7 +90,8 @@ class ScenesTask:
         made = []
         for number, (rgb, depth, seen) in enumerate(frames):
             drawn = schedule.draw(self.seed, name, number)
-            found = corrupt_observation({RGB: rgb, DEPTH: depth}, *drawn, sensor)
+            shot = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}  # a flare has a yaw
+            found = corrupt_observation(shot, *drawn, sensor)
             made.append((found[RGB], found[DEPTH], seen))
         return made
 

@@ -28,12 +28,15 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.core.observation import RGB
 from mitigate.core.progress import Progress
 from mitigate.core.signals import unbroken
-from mitigate.corruptions import Schedule
+from mitigate.corruptions import SUITE_VERSION, Schedule
+from mitigate.corruptions.registry import BROAD, version
 from mitigate.worlds.episodes import Episode
 
 if TYPE_CHECKING:
     from mitigate.agents.topological.agent import TopologicalAgent
 
+# of a schedule, what says who meets a variant and not what it is of
+UNUSED: dict[str, Any] = {"success": None, "clean_share": 0.0, "alpha": 1.0, "floor": 1.0}
 WORTH = 4  # scenes that make a process worth its start (ours): some 5 s each
 ON_GPU = 8  # processes at most that encode on one GPU, each of which takes 0.5 GB of it for itself
 
@@ -71,7 +74,7 @@ class Store:
         kind = precision.current(agent.device)
         self.folder = Path(root) / f"{weights_sha(encoders)}-{self.size}{resized}-{kind}"
         if schedule is not None and variants:
-            settings = repr((replace(schedule, success=None), seed)).encode()
+            settings = repr((*_drawn(schedule), seed)).encode()
             self.corrupted = (
                 self.folder / f"corrupted-{blake2b(settings, digest_size=6).hexdigest()}"
             )
@@ -167,3 +170,10 @@ def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
         except OSError:
             if not path.is_dir():  # else another process was quicker
                 raise
+
+
+def _drawn(schedule: Schedule) -> tuple[Any, ...]:
+    """What the pixels of a variant depend on beside the seed: settings, and versions of what is
+    drawn."""
+    names = (*schedule.names, *(BROAD if schedule.broad_share else ()))
+    return replace(schedule, **UNUSED), SUITE_VERSION, [version(name) for name in names]

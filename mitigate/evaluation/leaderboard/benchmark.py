@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import pickle
+import hashlib
+import json
 import re
 import sys
 import time
@@ -16,9 +17,12 @@ from torch import nn
 
 from mitigate.core import conf, seeding
 from mitigate.core.build import maker
+from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.progress import duration
+from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation.episode import run_episode
@@ -33,6 +37,7 @@ from mitigate.worlds.world import World
 
 EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
 OUT = Path("runs/benchmark")
+WALKED = "walked.json"  # in which world the rows beside it were walked, and by which episodes
 TIMED = 2  # clean walks, by the last of which the time is told (ours)
 
 
@@ -86,6 +91,7 @@ def benchmark(
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     _tell_reused(agent, file)
     with FolderLock(file.parent):
+        _check_walked(file.parent / WALKED, made(), split, chosen)
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
         rows,
@@ -152,19 +158,35 @@ def _check_world(make_world: Any, met: Sequence[Corruption]) -> None:
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
 
 
+def _check_walked(note: Path, world: World, split: str, episodes: Sequence[Episode]) -> None:
+    """Keep beside the rows in which world they were walked, and a sum of each episode; raise
+    ValueError if either is another now: a row names its episode by id alone."""
+    kind = f"{type(world).__module__}.{type(world).__qualname__}"
+    sums = {e.episode_id: hashlib.sha256(repr(e).encode()).hexdigest()[:12] for e in episodes}
+    known = read_json(note, "Delete its folder.") if note.is_file() else {}
+    before = known.get(split, {"world": kind, "episodes": {}})
+    other = [n for n, s in before["episodes"].items() if sums.get(n, s) != s]
+    if before["world"] != kind or other:
+        what = f"episode {other[0]} of another list" if other else f"the world {before['world']}"
+        raise ValueError(
+            f"{note.parent} holds rows of {what}: name another folder (out=...), or delete it."
+        )
+    known[split] = {"world": kind, "episodes": before["episodes"] | sums}
+    with atomic_text(note) as file:
+        json.dump(known, file)
+
+
 def _check_copies(*things: Any) -> None:
     """Raise ValueError for what other processes cannot be given."""
     main = Path(getattr(sys.modules["__main__"], "__file__", None) or "")
     typed = [thing for thing in things if type(thing).__module__ == "__main__"]
-    try:
-        if typed and not main.is_file():
-            raise TypeError(f"a {type(typed[0]).__name__} was typed in, and is in no file")
-        pickle.dumps(things)
-    except (pickle.PicklingError, AttributeError, TypeError, RecursionError) as error:
+    own = "give workers=1, or define them at the head of a module"
+    if typed and not main.is_file():
         raise ValueError(
-            f"Other processes cannot be given a copy of the agent or its world ({error}): give "
-            "workers=1, or define them at the head of a module."
-        ) from None
+            f"A {type(typed[0]).__name__} was typed in, and is in no file that other processes "
+            f"could read: {own}."
+        )
+    packed(things, "The agent or its world", own)
 
 
 def _tell(

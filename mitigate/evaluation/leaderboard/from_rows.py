@@ -36,7 +36,7 @@ def entry_of(
     ``split`` may be left out where the rows are of one. ``file``: where they are, as the entry
     says. Raises ValueError if there are none, if they are of several
     splits, lists, suites or rules, or of agents that are no training seeds of one another, and if a
-    condition lacks episodes that others have.
+    condition lacks episodes, or a seed rows, that others have.
     """
     own = chosen(rows, name, severity, split)
     found = [part for part in sections(own) if part.blocks] or sections(own)
@@ -53,6 +53,13 @@ def entry_of(
             f"The rows of {name} hold {held} under {gap.corruption}: an "
             "entry needs all of them under each. The evaluation's own command goes on from there."
         )
+    for part in found:
+        for column in part.columns:
+            for seed, (have, want) in part.grid.unfinished[column, part.severity].items():
+                raise ValueError(
+                    f"Seed {seed} of {name} is not finished ({have:,} of {want:,} rows): its "
+                    "figures would be left out. The evaluation's own command goes on from there."
+                )
     scores, rates = _figures(found)
     grid = found[0].grid
     return LeaderboardEntry(
@@ -82,7 +89,7 @@ def chosen(rows: Iterable[Row], name: str, severity: float, split: str | None = 
     if name not in names:
         raise ValueError(unknown("agent in these rows", name, names))
     own = [row for row in held if row["name"] == name and split in (None, row["split"])]
-    own = [row for row in own if row["severity"] in (0, severity)]
+    own = [r for r in own if r["severity"] == (0 if r["corruption"] == CLEAN else severity)]
     if not any(row["severity"] == severity for row in own):
         raise ValueError(f"The rows of {name} hold no corruption at severity {severity:g}.")
     return own

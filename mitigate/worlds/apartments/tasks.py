@@ -167,10 +167,17 @@ def share_of(apartments: int, piece: int, pieces: int) -> range:
 
 
 def landmarks(episode: Episode) -> list[int]:
-    """Furniture that marks the goal: the one an instruction ends at, or all of an OGN category."""
-    if episode.info["task"] == "vln":
-        return [int(episode.info["landmark"])]
+    """Furniture that marks the goal: the one an instruction ends at, or all of an OGN category.
+    Raises ValueError for an episode that does not say it."""
     furniture = apartment_of(episode.scene_id).furniture
+    info, here = episode.info, range(len(furniture))
+    if info.get("task") == "vln" and info.get("landmark") in here:
+        return [int(info["landmark"])]
+    if info.get("task") != "ogn" or "category" not in info:
+        raise ValueError(
+            f"The episode {episode.episode_id} does not say what marks its goal: its info needs "
+            'task "vln" and a landmark (the number of a thing), or task "ogn" and a category.'
+        )
     return [i for i, piece in enumerate(furniture) if piece.category == episode.info["category"]]
 
 

@@ -63,11 +63,12 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
         chosen = step.choose(source.times, source.poses)
     looks = _looks(source, views)
     count = {RGB: 3, DEPTH: 4}
-    needed = len(chosen) * views * size * size * sum(count[kind] for kind, _ in looks)
+    needed = len(chosen) * size * size * sum(count[kind] for kind, _ in looks)
     if needed > LARGEST:
+        longer = "" if source.stepped else " or set longer steps (step.metres=0.5),"
         raise ValueError(
             f"{source.name} has {len(chosen)} steps, whose frames take {needed / 2**30:.1f} GiB, "
-            f"more than {LARGEST >> 30}: cut the recording, or set longer steps (step.metres=0.5)."
+            f"more than {LARGEST >> 30}: cut the recording,{longer} or take smaller frames (size=)."
         )
     shape = (len(chosen), *([views] if views > 1 else []), size, size)
     frames = {
