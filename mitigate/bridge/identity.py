@@ -32,9 +32,15 @@ def settings_of(
 ) -> dict[str, Any]:
     """What a condition's result depends on, by which a finished one is known again."""
     told = {name: cfg[name] for name in SETTINGS}
-    told |= {"suite": SUITE_VERSION, "severity": corruption.severity, **version(corruption.name)}
+    told |= met(corruption)
     told |= {"restore": None if restorer is None else restorer.hash, "adapters": adapters}
     return {"command": command, **told, "safeguard": _guard(cfg)}
+
+
+def met(corruption: Corruption) -> dict[str, Any]:
+    """What of a condition's result is by its corruption."""
+    own = version(corruption.name)
+    return {"suite": SUITE_VERSION, "severity": corruption.severity, **own}
 
 
 def label_of(

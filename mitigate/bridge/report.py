@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from mitigate.bridge.cell import DONE, Cell
+from mitigate.bridge.identity import met
 from mitigate.bridge.randomness import randomness
 from mitigate.bridge.results import OWN
 from mitigate.corruptions import CLEAN, Corruption
@@ -68,7 +69,13 @@ def _cell(clean: Cell, file: Path) -> Cell | None:
         repeat = int(held["repeat"])
     except (ValueError, KeyError, TypeError):  # of an older version, or of a corruption now gone
         return None
-    folder, own = file.parent, clean.folder
+    folder = file.parent
     return replace(
-        clean, name=folder.name, corruption=corruption, repeat=repeat, folder=folder, clean=own
+        clean,
+        name=folder.name,
+        corruption=corruption,
+        repeat=repeat,
+        folder=folder,
+        settings=clean.settings | met(corruption),
+        clean=clean.folder,
     )

@@ -24,7 +24,7 @@ from mitigate.safeguard.text import MASK, sentences, tidy, words
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
 # words and marks from which a text is left as it is: time grows with their square (ours)
-ENDLESS, MARKED = 10_000, 2_000
+ENDLESS, MARKED = 10_000, 4_000
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
 
 

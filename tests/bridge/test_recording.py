@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from mitigate.bridge.cameras import Rig, read_camera
-from mitigate.bridge.recording import Recorder, part, plain, png
+from mitigate.bridge.recording import Recorder, is_whole, part, plain, png
 from mitigate.corruptions import DepthSensor
 from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
 
@@ -61,6 +61,7 @@ def test_cameras_of_all_calls_are_told(tmp_path):
     ):
         rig = Rig([told])
         recorder.frame({"call": call}, rig, memory, rig.lay_out(["rgb", "depth"])[0])
+    recorder.end({"kind": "end"})
     (file,) = tmp_path.glob("k/left-door-*/cameras.json")
     assert {*json.loads(file.read_text())} == {"rgb", "depth"}
 
@@ -72,3 +73,15 @@ def test_depth_is_written_in_millimetres_and_holes_stay_holes():
     frame = np.array([[0.0, 1.0], [0.5, np.nan]], np.float32)[:, :, None]
     counts = cv2.imdecode(np.frombuffer(png(camera, frame), np.uint8), cv2.IMREAD_UNCHANGED)
     assert counts.tolist() == [[0, 5000], [2750, 0]]
+
+
+def test_an_episode_that_begins_again_and_does_not_end_leaves_its_recording(tmp_path):
+    """Loops of Habitat reset once more after their last episode, to the first."""
+    recorder, told = Recorder(tmp_path), {"scene": "k.glb", "id": "1"}
+    recorder.episode(told)
+    recorder.end({"kind": "end", "steps": 3})
+    recorder.episode(told)
+    assert is_whole(tmp_path, [{"scene": "k.glb", "episode": "1"}])
+    recorder.end({"kind": "end", "steps": 4})
+    assert json.loads((tmp_path / "k" / "1" / "end.json").read_text())["steps"] == 4
+    assert [path.name for path in (tmp_path / "k").iterdir()] == ["1"]

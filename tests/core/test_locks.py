@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import subprocess
@@ -102,3 +103,21 @@ def test_a_folder_that_cannot_be_made_is_named_with_what_to_do(tmp_path):
     for place in (tmp_path / "file/under", Path("/proc/under")):
         with pytest.raises(OSError, match=f"Cannot write {place}: .* or name another folder"):
             FolderLock(place).__enter__()
+
+
+def test_a_refused_second_lock_does_not_end_the_first(tmp_path):
+    code = "import sys; from mitigate.core.locks import FolderLock\n"
+    code += "FolderLock(sys.argv[1]).__enter__()"
+    with FolderLock(tmp_path):
+        for _ in range(2):
+            with pytest.raises(ValueError, match="is in use"):
+                FolderLock(tmp_path).__enter__()
+        gc.collect()
+        environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+        other = subprocess.run(
+            [sys.executable, "-c", code, str(tmp_path)],
+            env=environment,
+            capture_output=True,
+            text=True,
+        )
+    assert "is in use: process" in other.stderr

@@ -212,3 +212,11 @@ def test_alone_a_job_that_was_begun_is_finished_before_a_signal_ends_it(tmp_path
         for item in results(Ending(tmp_path), [["one", "two"]], 1, Lines()):
             found.append(item)
     assert found == [(0, "one")] and ended.value.status == 143
+
+
+def test_what_cannot_be_sent_to_workers_is_told_with_a_way_out(tmp_path):
+    class Local(Squares):
+        """Of a function, which another process cannot find."""
+
+    with pytest.raises(ValueError, match=r"cannot be sent to other processes.*workers=1"):
+        list(results(Local(tmp_path), groups(1, 2), 2, Lines()))

@@ -21,6 +21,7 @@ from mitigate.corruptions import (
 from mitigate.evaluation import controls, evaluator, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
 from mitigate.evaluation.episode import instruction, run_episode
+from mitigate.evaluation.evaluate import _check_list
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
@@ -141,6 +142,16 @@ def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(
     assert run(tmp_path) == rows
     assert ran == [(row["episode_id"], row["corruption"]) for row in rows[20:]]
     assert run(tmp_path) == rows and len(ran) == len(rows) - 20
+
+
+def test_another_list_of_a_split_is_refused_and_another_split_is_not(tmp_path):
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.json").write_text(name)
+    _check_list(tmp_path, "mine", str(tmp_path / "a.json"))
+    _check_list(tmp_path, "mine", str(tmp_path / "a.json"))
+    _check_list(tmp_path, "theirs", str(tmp_path / "b.json"))
+    with pytest.raises(ValueError, match="rows of another list of mine"):
+        _check_list(tmp_path, "mine", str(tmp_path / "b.json"))
 
 
 def test_a_result_does_not_depend_on_what_ran_before(finished, tmp_path):

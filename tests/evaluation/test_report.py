@@ -370,3 +370,18 @@ def test_agents_that_meet_by_way_of_a_third_share_a_table():
     every = column(6, ALL, name="oracle", agent="aaaa00000000")
     assert len(sections(few + rest)) == 2
     assert len(sections(few + rest + every)) == 1
+
+
+def test_rows_at_severity_0_do_not_stand_for_those_at_another():
+    """A corruption may be run at 0; which of the two was shown hung on the order of a set."""
+    rows = column(8, {"flare": 0}) + [
+        made | {"corruption": "flare", "severity": 0.0} for made in cell(8)
+    ]
+    (part,) = [section for section in sections(rows) if section.severity == 0.6]
+    assert part.value("base", "flare") == 0.0 and part.value("base", "clean") == 0.8
+
+
+def test_agents_that_begin_alike_are_told_apart_in_the_columns():
+    rows = [*cell(8, agent="myagent-v1"), *cell(2, agent="myagent-v2")]
+    (part,) = sections(rows)
+    assert set(part.columns) == {"base (myagent-v1)", "base (myagent-v2)"}

@@ -248,3 +248,12 @@ def test_an_unknown_feature_is_refused(teacher):
 def test_adapters_are_asked_for_where_there_are_none():
     with pytest.raises(ValueError, match="no adapters there"):
         AdaptViews(small(), modality="rgb", **VIEWS)
+
+
+def test_gates_that_nothing_teaches_are_refused():
+    gated = {**ADAPTERS, "gates": ["rgb_encoder.stem"]}
+    with pytest.raises(ValueError, match=r"teaches the gates.*recipe=harden"):
+        DistilViews(small(adapters=gated), modality="rgb", teacher="start", **VIEWS)
+    with pytest.raises(ValueError, match="teaches the gates"):
+        Imitate(small(adapters=gated), **SOURCES, schedule=missing_data(), train_parts=["adapters"])
+    DistilViews(small(adapters=gated), modality="depth", teacher="start", **VIEWS)  # has none

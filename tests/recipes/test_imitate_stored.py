@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.topological import TopologicalAgent, scene_poses
+from mitigate.agents.topological import TopologicalAgent, scene_poses, stored
 from mitigate.core import seeding
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate_stored import ImitateStored
@@ -97,3 +97,36 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
     assert set(drawn) == {0, 1, 2} and abs(drawn.count(0) / 400 - 0.5) < 0.1
     with pytest.raises(ValueError, match="need a schedule that corrupts"):
         agent.store(partial(ApartmentsWorld, 64, 1), str(tmp_path), variants=2)
+
+
+def test_variants_are_known_by_what_makes_their_pixels(tmp_path, monkeypatch):
+    agent, world = TopologicalAgent(16, SMALL), partial(ApartmentsWorld, 64, 1)
+
+    def folder(**given):
+        schedule = Schedule("per_episode", 0.9, **{"names": ("haze", "flare"), **given})
+        return agent.store(world, str(tmp_path), schedule=schedule, variants=1).corrupted
+
+    known = folder()
+    assert folder(clean_share=0.6) == known != folder(names=("flare",))
+    monkeypatch.setattr(stored, "version", lambda name: {"version": "another"})
+    assert folder() != known
+    monkeypatch.undo()
+    monkeypatch.setattr(stored, "SUITE_VERSION", "another")
+    assert folder() != known
+
+
+def test_a_flare_in_a_stored_panorama_stands_at_any_yaw(tmp_path):
+    task = scene_poses.ScenesTask(
+        TopologicalAgent(16, SMALL),
+        partial(ApartmentsWorld, 64, 1),
+        Schedule.always("flare", 0.9),
+        0,
+        "fp32",
+    )
+    clean = [(np.full((12, 64, 64, 3), 90, np.uint8), np.ones((12, 64, 64, 1), np.float32), None)]
+    hit = np.zeros(12, int)
+    with task.ready():
+        for number in range(40):
+            (made,) = task._corrupted(clean, f"scene-{number}")
+            hit += (made[0] != clean[0][0]).any((1, 2, 3))
+    assert np.all(hit > 0)

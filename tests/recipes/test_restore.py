@@ -131,3 +131,22 @@ def _of_folder(path) -> Restore:
 def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
     with pytest.raises(ValueError, match="draws no depth corruption"):
         recipe_of(DEPTH, names=("flare",))
+
+
+def test_a_folder_with_other_frames_is_another_run(tmp_path):
+    for scene in range(4):
+        (tmp_path / f"s{scene}").mkdir()
+        Image.new("RGB", (24, 24), "navy").save(tmp_path / f"s{scene}/0.png")
+    before = _of_folder(tmp_path).identity()
+    for file in tmp_path.glob("*/0.png"):
+        Image.new("RGB", (24, 24), "white").save(file)
+    assert before.keys() == {"frames_sha256"} and _of_folder(tmp_path).identity() != before
+    assert recipe_of().identity() == {}
+
+
+def test_a_schedule_by_success_is_refused_where_nothing_measures_it(tmp_path):
+    world = partial(FolderFrames, str(tmp_path))
+    schedule = Schedule("success_distributed", 0.6)
+    for kind in (Restore, RestoreGate):
+        with pytest.raises(ValueError, match="Nothing in this recipe measures success"):
+            kind(Restorer([RGB], width=4), world, None, RGB, schedule)

@@ -72,7 +72,7 @@ def test_a_programmes_markup_is_still_judged():
 def test_a_text_without_end_is_left_as_it_is_at_once():
     heard = "Go left. " * 20_000
     decision = Safeguard().canonicalise(heard)
-    said = "over 10,000 words or 2,000 marks: left as it is"
+    said = "over 10,000 words or 4,000 marks: left as it is"
     assert decision.text == heard and decision.reasons == (said,)
     heard = "Go left. " + '"' * 100_000  # which took an hour
     assert Safeguard().canonicalise(heard).reasons == (said,)

@@ -131,3 +131,21 @@ def test_a_second_signal_ends_it_at_once(tmp_path):
         time.sleep(1)
     assert ended.value.status == 143
     assert Ranks().first
+
+
+def test_a_signal_while_a_batch_is_measured_for_keeps_the_steps_before(tmp_path):
+    """Success rates are measured by workers that end at once, in the middle of a step."""
+
+    class Measured(Slow):
+        def batch(self, step):
+            if step == 3:
+                raise Ended(signal.SIGTERM)
+            return super().batch(step)
+
+    settings = {"steps": 6, "lr": 0.1, "precision": "fp32", "folder": tmp_path / "run"}
+    torch.manual_seed(0)
+    with pytest.raises(Ended):
+        Trainer(Measured(tmp_path, 0), **settings).fit()
+    assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000003.pt"]
+    done = Trainer(Slow(tmp_path, 0), **settings).fit()
+    assert torch.equal(done.line.weight, train(tmp_path / "unbroken", 0))

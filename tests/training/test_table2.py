@@ -148,7 +148,7 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
     assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
     assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
-    assert lines["CPU minutes, train"].count("0") == 2
+    assert lines["CPU minutes, train"] == "| CPU minutes, train | 0.0 | 0.0 |"
     assert lines["Seeds"] == "| Seeds | 0 1 | 0 1 |"
     assert lines["Clean SR"] == "| Clean SR | 70.0 | 70.0 |"  # 80 and 60
     costs = sorted(tmp_path.glob("cells/*/cost.json"))
@@ -274,3 +274,28 @@ def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick
 
 def test_no_walks_without_the_agents_cells(tmp_path):
     assert table2.draw_walks(config(tmp_path), tmp_path) == []
+
+
+def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
+    cfg = conf.load_config("table2", [f"out={tmp_path}", 'train=["env.size=32"]'])
+    cfg.columns = {"mine": ["recipe=da_per_episode", "env.rule=etpnav", "severity=0.9"]}
+    (_, train), (_, evaluate) = table2.cells(cfg)[0].commands(cfg)
+    assert {"env.size=32", "env.rule=etpnav"} <= {*train} & {*evaluate}
+    assert "severity=0.9" in train and "severity=0.6" in evaluate
+
+
+def test_a_cell_that_left_no_whole_row_does_not_hide_why(tmp_path, quick, monkeypatch):
+    cfg = config(tmp_path, seeds=[0])
+    finished(cfg)
+    broken = table2.cells(cfg)[-1]
+    monkeypatch.setattr(
+        table2.Cell,
+        "commands",
+        lambda self, cfg: [
+            ("train", ["no_such_module"] if self == broken else ["timeit", "-n", "1", "pass"])
+        ],
+    )
+    for left in ("", '{"agent": "abc'):
+        (broken.evaluation / "rows.jsonl").write_text(left)
+        with pytest.raises(ValueError, match=f"{broken.column}, seed 0: train ended with"):
+            table2.run(cfg)

