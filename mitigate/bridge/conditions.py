@@ -75,9 +75,9 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
 def _restorer(cfg: DictConfig) -> Restorer | None:
     if cfg.restore is None:
         return None  # without a wait for torch
-    from mitigate.restoration.restorer import load_restorer
+    from mitigate.restoration.restorer import restorer_of
 
-    return load_restorer(cfg.restore)
+    return restorer_of(cfg.restore)
 
 
 def _words(cfg: DictConfig, out: Path) -> Words:

@@ -110,14 +110,14 @@ def _named(command: Sequence[str]) -> Iterator[Path]:
 
 def _column(cfg: DictConfig, name: str) -> str:
     """The column of the table: the command's name, and what stands in front of the agent."""
-    from mitigate.evaluation.columns import name_of
+    from mitigate.restoration.choices import label as restoring
 
     parts = [name]
     if cfg.safeguard != "none":
         from mitigate.safeguard.choices import label
 
         parts.append(label(cfg.safeguard))
-    parts += [name_of(cfg.restore)] if cfg.restore is not None else []
+    parts += [restoring(cfg.restore)] if cfg.restore is not None else []
     parts += ["adapters"] if cfg.adapters is not None else []
     return "+".join(parts)
 

@@ -117,6 +117,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     met = conditions(names, cfg.severity, cfg.severity_depth)
     from mitigate.core import build
     from mitigate.evaluation.evaluator import evaluate
+    from mitigate.restoration.choices import label as restoring
     from mitigate.restoration.restorer import restorer_of
     from mitigate.safeguard.choices import label
     from mitigate.safeguard.guard import open_safeguard
@@ -127,7 +128,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     front, world = label(cfg.safeguard), build.maker(cfg.env.world)
     sensors = world().sensors
     restorer = restorer_of(cfg.restore, sensors)
-    before = [part for part in (front, cfg.restore and name_of(cfg.restore)) if part]
+    before = [part for part in (front, cfg.restore and restoring(cfg.restore)) if part]
     before = [part for part in before if part != "none"]
     name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
     check_sensors(met, sensors, cfg.env.name)

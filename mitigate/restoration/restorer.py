@@ -20,9 +20,8 @@ from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.suite import MOST_VIEWS
 from mitigate.restoration import folder as folders
+from mitigate.restoration.choices import SENSORS, parted
 from mitigate.restoration.frames import CHANNELS, SensorRestorer
-
-SENSORS = (RGB, DEPTH)
 
 
 class Restorer(nn.Module):
@@ -72,6 +71,17 @@ class Restorer(nn.Module):
     def settings(self) -> dict[str, Any]:
         """All that makes it besides weights."""
         return dict(self._settings)
+
+    def only(self, sensor: str) -> Restorer:
+        """Itself, for one of its sensors alone. ValueError for another sensor."""
+        if sensor not in self.nets:
+            raise ValueError(
+                f"This restorer is for {', '.join(self.nets)}, not for {sensor}: leave the "
+                f":{sensor} of restore= out."
+            )
+        self.nets = nn.ModuleDict({sensor: self.nets[sensor]})
+        self._settings["sensors"] = [sensor]
+        return self
 
     @property
     def hash(self) -> str:
@@ -155,12 +165,17 @@ class Restorer(nn.Module):
         folders.fill(self, folder)
 
 
-def restorer_of(folder: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
-    """The restorer of an option ``restore=``: none for None; else as :func:`load_restorer`.
-    ValueError if it restores none of ``sensors``, which are what a world shows."""
-    made = None if folder is None else load_restorer(folder)
-    if made is not None:
-        made.check_shown(sensors, "the world")
+def restorer_of(choice: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
+    """The restorer of an option ``restore=`` (``choices.py``): none for None; else as
+    :func:`load_restorer`. ValueError if it restores none of ``sensors``, which are what a world
+    shows, and for a sensor that it is not for."""
+    if choice is None:
+        return None
+    folder, only = parted(choice)
+    made = load_restorer(folder)
+    if only is not None:
+        made = made.only(only)
+    made.check_shown(sensors, "the world")
     return made
 
 

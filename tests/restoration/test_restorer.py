@@ -12,7 +12,7 @@ import torch
 
 from mitigate.core.observation import DEPTH, RGB, Observation
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
-from mitigate.restoration import report, ring
+from mitigate.restoration import choices, report, ring
 from mitigate.restoration.restorer import Restorer, load_restorer, restorer_of
 from mitigate.restoration.world import Restored
 from mitigate.worlds.world import Corrupted
@@ -255,6 +255,24 @@ def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
         restorer_of(str(tmp_path / "mine"), (RGB, "pose"))
     assert restorer_of(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
     assert restorer_of(None, (RGB,)) is None
+
+
+def test_one_sensor_alone_is_restored_and_is_another_restorer(tmp_path):
+    made = Restorer(width=4, depth_width=4)
+    made.save(tmp_path / "mine")
+    whole = restorer_of(str(tmp_path / "mine"))
+    alone = restorer_of(f"{tmp_path / 'mine'}:rgb")
+    assert list(alone.nets) == ["rgb"] and alone.hash not in (whole.hash, made.hash)
+    depth = np.zeros((8, 8, 1), np.float32)
+    rgb = np.zeros((8, 8, 3), np.uint8)
+    assert alone({"rgb": rgb, "depth": depth})["depth"] is depth
+    assert choices.label(f"{tmp_path / 'mine'}:rgb") == "mine-rgb"
+    assert choices.label("runs/a/agent") == "a"
+    with pytest.raises(ValueError, match="restores none|is for rgb"):
+        restorer_of(f"{tmp_path / 'mine'}:rgb", ["depth"])
+    Restorer(["depth"], depth_width=4).save(tmp_path / "depth")
+    with pytest.raises(ValueError, match="for depth, not for rgb"):
+        restorer_of(f"{tmp_path / 'depth'}:rgb")
 
 
 @pytest.mark.parametrize(
