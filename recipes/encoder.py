@@ -36,8 +36,6 @@ from mitigate.training.recipe import Recipe
 
 SHOWN = 12  # frames in the log's picture
 MOST_KEPT = 1 << 30  # bytes of clean features kept from the start; more are computed at each step
-
-
 LOOKED_AT = 48  # frames that tell how much features differ where not all are kept (ours)
 
 

@@ -287,8 +287,8 @@ def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
 
 def _check_gates(made: dict[str, nn.Module]) -> None:
     """Raise ValueError for a gate that would open and close for nothing."""
-    idle = [n for n, m in made.items() if isinstance(m, FrameGate)]
-    idle = [name for name in idle if name not in _gates_of(made).values()]
+    used = set(_gates_of(made).values())
+    idle = [name for name, m in made.items() if isinstance(m, FrameGate) and name not in used]
     if idle:
         raise ValueError(
             f"The gate at {idle[0]} has no adapter of maps behind it to open for (those of tokens "

@@ -254,7 +254,11 @@ def _whole(
     """
 
     def rows(run: _Run, at: float) -> int:
-        found = (v for (_, s, metric), v in run.items() if s == at and metric == METRICS["SR"])
+        found = (
+            values
+            for (name, s, metric), values in run.items()
+            if s == at and (name == "clean") == (at == 0.0) and metric == METRICS["SR"]
+        )
         return sum(int((~np.isnan(values)).sum()) for values in found)
 
     have = {s: np.array([rows(run, 0.0), rows(run, severity)]) for s, run in sorted(runs.items())}
