@@ -13,7 +13,7 @@ from mitigate.corruptions.registry import UNSEEN
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.blocks import FRAMES, SUITE
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import METRICS
+from mitigate.evaluation.grid import METRICS, label_columns
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page.model import CLEAN, Numbers, numbers
 from mitigate.evaluation.rows import Row, identity
@@ -40,26 +40,14 @@ def entry_of(
     """
     own = chosen(rows, name, severity, split)
     found = [part for part in sections(own) if part.blocks] or sections(own)
-    grids = {(part.grid.heading, part.grid.suite, part.grid.rule) for part in found}
-    if len(grids) > 1 or any(len(part.columns) > 1 for part in found):
-        raise ValueError(
-            f"The rows of {name} are of several splits, lists, suites, rules or agents: "
-            f"{'; '.join(', '.join(grid) for grid in sorted(grids))}. Name a split, or a file of "
-            "one."
-        )
+    _check_one(name, own, found)
+    _check_seeds(name, own, found)
     for gap in [gap for part in found for gap in part.gaps][:1]:
         held = f"{gap.have} of {counted(gap.want, 'episode')}"
         raise ValueError(
             f"The rows of {name} hold {held} under {gap.corruption}: an "
             "entry needs all of them under each. The evaluation's own command goes on from there."
         )
-    for part in found:
-        for column in part.columns:
-            for seed, (have, want) in part.grid.unfinished[column, part.severity].items():
-                raise ValueError(
-                    f"Seed {seed} of {name} is not finished ({have:,} of {want:,} rows): its "
-                    "figures would be left out. The evaluation's own command goes on from there."
-                )
     scores, rates = _figures(found)
     grid = found[0].grid
     return LeaderboardEntry(
@@ -93,6 +81,36 @@ def chosen(rows: Iterable[Row], name: str, severity: float, split: str | None = 
     if not any(row["severity"] == severity for row in own):
         raise ValueError(f"The rows of {name} hold no corruption at severity {severity:g}.")
     return own
+
+
+def _check_one(name: str, own: Sequence[Row], found: Sequence[Section]) -> None:
+    """Raise ValueError for rows of several tables, or of agents that are no seeds of one another in
+    all of them."""
+    grids = {(part.grid.heading, part.grid.suite, part.grid.rule) for part in found}
+    if len(grids) > 1 or len(label_columns((r["name"], r["agent"], r["seed"]) for r in own)) > 1:
+        raise ValueError(
+            f"The rows of {name} are of several splits, lists, suites, rules or agents: "
+            f"{'; '.join(', '.join(grid) for grid in sorted(grids))}. Name a split, or a file of "
+            "one."
+        )
+
+
+def _check_seeds(name: str, own: Sequence[Row], found: Sequence[Section]) -> None:
+    """Raise ValueError for a seed that lacks rows of a table that another seed has."""
+    for part in found:
+        shown = {CLEAN}.union(*part.blocks.values())
+        met = [row for row in own if row["corruption"] in shown]
+        every = {(row["corruption"], row["episode_id"]) for row in met}
+        for seed in sorted({row["seed"] for row in own}):
+            have = {(r["corruption"], r["episode_id"]) for r in met if r["seed"] == seed}
+            lacking = sorted({corruption for corruption, _ in every - have})
+            if lacking:
+                more = f" and {len(lacking) - 3} more" * (len(lacking) > 3)
+                raise ValueError(
+                    f"Seed {seed} of {name} is not finished ({len(have):,} of {len(every):,} rows): "
+                    f"it lacks some under {', '.join(lacking[:3])}{more}, which other seeds have. "
+                    "The evaluation's own command goes on from there."
+                )
 
 
 def rows_sha(rows: Iterable[Row]) -> str:

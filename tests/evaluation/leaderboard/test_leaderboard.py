@@ -403,6 +403,21 @@ def test_a_seed_that_is_not_finished_makes_no_entry(rows):
         entry_of(rows + half, "base", severity=0.6)
 
 
+def test_every_seed_of_an_entry_has_the_rows_of_each_table(rows):
+    """Else its figures are of other seeds than it says."""
+    second = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
+    assert len(entry_of(rows + second, "base", severity=0.6).agents) == 2
+    clean = [r for r in second if r["corruption"] == "clean"]
+    with pytest.raises(ValueError, match=r"Seed 1 of base .*10 of 30.* missing_data, spatter, "):
+        entry_of(rows + clean, "base", severity=0.6)
+    unseen = [r | {"corruption": unseen_names("rgb")[0]} for r in rows[10:20]]
+    with pytest.raises(ValueError, match=rf"Seed 1 of base .*under {unseen[0]['corruption']}, "):
+        entry_of(rows + second + unseen, "base", severity=0.6)
+    other = [r | {"agent": "dddddd"} for r in unseen]
+    with pytest.raises(ValueError, match="several .* agents"):
+        entry_of(rows + other, "base", severity=0.6)
+
+
 def test_benchmark_reuses_rows_of_the_same_world_and_episodes_alone(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
