@@ -107,9 +107,9 @@ def _check_seeds(name: str, own: Sequence[Row], found: Sequence[Section]) -> Non
             if lacking:
                 more = f" and {len(lacking) - 3} more" * (len(lacking) > 3)
                 raise ValueError(
-                    f"Seed {seed} of {name} is not finished ({len(have):,} of {len(every):,} rows): "
-                    f"it lacks some under {', '.join(lacking[:3])}{more}, which other seeds have. "
-                    "The evaluation's own command goes on from there."
+                    f"Seed {seed} of {name} is not finished ({len(have):,} of {len(every):,} "
+                    f"rows): it lacks some under {', '.join(lacking[:3])}{more}, which other seeds "
+                    "have. The evaluation's own command goes on from there."
                 )
 
 
@@ -166,11 +166,11 @@ def _figures(found: Sequence[Section]) -> tuple[dict[str, Numbers], dict[str, di
 
 
 def _mean_sr(part: Section, column: str) -> Estimate:
-    """Return the mean SR over the suite's corruptions of frames, so that entries with corrupted
-    instructions compare with those without; where not all were measured, over what was."""
+    """Return the mean SR over the suite's corruptions of frames that were measured, so that entries
+    with corrupted instructions compare with those without; of none, over what was measured."""
     met = {name for names in part.blocks.values() for name in names}
-    if met > FRAMES:
-        held = part.grid.retention([column], sorted(FRAMES), part.severity, METRICS["SR"])
+    if met & FRAMES and met - FRAMES:
+        held = part.grid.retention([column], sorted(met & FRAMES), part.severity, METRICS["SR"])
         if held:
             return mean_sr(held).estimate
     return part.corrupted[column].estimate

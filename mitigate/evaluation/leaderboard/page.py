@@ -100,8 +100,8 @@ def _over(entry: LeaderboardEntry, title: str) -> str:
     """Return the mark of a score that is over other corruptions than it stands for, else ""."""
     met = set(entry.SR) - {CLEAN}
     if title == "Mean SR":
-        own = {name for name in met if kind(name) == SUITE}
         wanted = set(FRAMES)
+        own = met & FRAMES or {name for name in met if kind(name) == SUITE}
     else:
         block, _, half = title.partition("(")[2].rstrip(")").partition(", ")
         wanted = {n for n in BLOCKS.get(block, ()) if not half or UNSEEN[n].half == half}

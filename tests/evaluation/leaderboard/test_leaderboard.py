@@ -88,6 +88,18 @@ def test_corrupted_words_do_not_change_the_mean_over_corrupted_frames():
     assert "†" not in json.dumps([line[place] for line in section["values"]])
 
 
+def test_corrupted_words_do_not_change_the_mean_over_a_part_of_the_frames():
+    rgb, words = dict.fromkeys(BLOCKS["RGB"], 4), {"mask": 0, "black_box": 0}
+    plain, more, alone = (
+        entry_of(column(8, met), "base", severity=0.6) for met in (rgb, rgb | words, words)
+    )
+    assert more.scores["Mean SR"] == plain.scores["Mean SR"] != alone.scores["Mean SR"]
+    for entry, mark in ((plain, " † 8/12"), (more, " † 8/12"), (alone, " † 2/12")):
+        (section,) = held(render([entry]))[0]["sections"]
+        place = [column["title"] for column in section["measures"]].index("Mean SR")
+        assert section["values"][0][place][3] == mark
+
+
 def test_a_score_over_other_corruptions_is_marked_and_ranks_last(rows):
     suite = [*BLOCKS["RGB"], *BLOCKS["Depth"]]
     whole = entry_of(column(5, dict.fromkeys(suite, 4), name="whole"), "whole", severity=0.6)
