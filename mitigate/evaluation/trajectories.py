@@ -20,15 +20,29 @@ from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import draw_path, strip
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
 from mitigate.corruptions.gallery import depth_picture
-from mitigate.evaluation.episode import run_episode
+from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
+from mitigate.restoration.restorer import Restorer
+from mitigate.safeguard.guard import Safeguard
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World, depth_sensor
 
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
 CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
 INCHES, DPI = (9.0, 10.5), 80
+
+
+@dataclass(frozen=True)
+class Front:
+    """What stands in front of an agent: it repairs what that hears, and restores what it sees."""
+
+    safeguard: Safeguard | None = None
+    restorer: Restorer | None = None
+
+    def repaired(self, text: str) -> dict[str, str]:
+        """What the agent hears in place of ``text``."""
+        return {text: self.safeguard.canonicalise(text).text} if self.safeguard else {}
 
 
 @dataclass(frozen=True)
@@ -59,6 +73,7 @@ def draw_trajectories(
     corruption: Corruption,
     out: Path | str,
     seed: int = 0,
+    fronts: Mapping[str, Front] | None = None,
 ) -> Path:
     """Walk an episode and write one PNG: start panorama, plan, reference path, every walk.
 
@@ -69,9 +84,9 @@ def draw_trajectories(
         agents: name -> agent; the names are the legend's.
         corruption: what the corrupted walks meet.
         out: the PNG to write; parent folders are made.
-        seed: of the corruption's keys.
+        seed: of the corruption's keys. fronts: what stands in front of agents, by their names.
     """
-    walks = list(walked(agents, world, episode, corruption, seed))
+    walks = list(walked(agents, world, episode, corruption, seed, fronts))
     start = dict(world.reset(episode))
     key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
     met = corrupt_observation(start, corruption, key, sensor)
@@ -114,12 +129,13 @@ def write_pictures(
     *,
     seed: int = 0,
     count: int = 4,
+    fronts: Mapping[str, Front] | None = None,
 ) -> list[Path]:
     """Draw the first ``count`` episodes won back by training, and ``sheet.png`` with all of them.
 
     ``agents`` are before and after, by the names in ``rows`` (``won_back`` is the rule). Where
     nothing was won back, or there is one agent alone, the first corrupted row is drawn instead. Of
-    a world without poses there are none.
+    a world without poses there are none. ``fronts``: what stands in front of agents, by name.
     """
     if POSE not in world.sensors:
         return []
@@ -132,7 +148,8 @@ def write_pictures(
     for episode_id, corruption in chosen:
         safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]  # an id may hold what no file name should
         out = Path(folder) / f"{safe}-{corruption.name}.png"
-        written.append(draw_trajectories(agents, world, known[episode_id], corruption, out, seed))
+        episode = known[episode_id]
+        written.append(draw_trajectories(agents, world, episode, corruption, out, seed, fronts))
     return [*written, contact_sheet(written, Path(folder) / "sheet.png")] if written else []
 
 
@@ -163,10 +180,11 @@ def walked(
     episode: Episode,
     corruption: Corruption,
     seed: int,
+    fronts: Mapping[str, Front] | None = None,
 ) -> Iterator[Walk]:
     """Walk ``episode`` and yield the walks: the first agent's clean one, then each one's corrupted.
 
-    Keys and measures are those of an evaluation with ``seed``.
+    Keys and measures are those of an evaluation with ``seed``, and with ``fronts`` by name.
     """
     plans: list[tuple[str, str, Corruption, str]] = []
     for index, name in enumerate(agents):
@@ -175,8 +193,11 @@ def walked(
         colour = CORRUPTED_WALKS[index % len(CORRUPTED_WALKS)]
         plans.append((f"{name}, {label(corruption.name)}", name, corruption, colour))
     for title, name, met, colour in plans:
-        traced = Traced(world)
-        measures: dict[str, Any] = run_episode(agents[name], traced, episode, met, seed)
+        traced, front = Traced(world), (fronts or {}).get(name, Front())
+        repaired = front.repaired(instruction(episode, met, seed))
+        measures: dict[str, Any] = run_episode(
+            agents[name], traced, episode, met, seed, repaired, front.restorer
+        )
         left = measures.get("distance_to_goal", np.nan)
         path, won = np.array(traced.path), bool(measures["success"])
         yield Walk(title, path, won, left, colour, name, met, measures)

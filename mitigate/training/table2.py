@@ -154,19 +154,27 @@ def write_further(made: Sequence[Cell], cfg: DictConfig, out: Path) -> list[Path
 
 def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     """Write pictures of episodes that the last of ``cfg.walks`` wins back for the first, by the
-    agents of the first seed; nothing if one of them has no cell."""
+    agents of the first seed, behind what their cells put in front of them; nothing if one of them
+    has no cell."""
     from mitigate.evaluation import rows
-    from mitigate.evaluation.trajectories import write_pictures
+    from mitigate.evaluation.trajectories import Front, write_pictures
+    from mitigate.restoration.restorer import restorer_of
+    from mitigate.safeguard.guard import open_safeguard
 
-    made = {c.column: c for c in cells(cfg) if c.seed == cfg.seeds[0] and c.column in cfg.walks}
-    if len(made) < len(cfg.walks) or not made:
+    held = {cell.column: cell for cell in cells(cfg) if cell.seed == cfg.seeds[0]}
+    if not cfg.walks or not held.keys() >= {*cfg.walks}:
         return []
-    nodes = {name: conf.load_config("evaluate", made[name].agent) for name in cfg.walks}
+    made = {_named(held[column].folder): held[column] for column in cfg.walks}
+    nodes = {name: conf.load_config("evaluate", cell.agent) for name, cell in made.items()}
     agents: dict[str, Any] = {
         n: load(c.agent, c.checkpoint, overrides=made[n].agent) for n, c in nodes.items()
     }
-    node = nodes[cfg.walks[0]]
-    chosen = episodes(node.env, cfg.split, cfg.episodes)
+    env = next(iter(nodes.values())).env
+    world, chosen = build.maker(env.world)(), episodes(env, cfg.split, cfg.episodes)
+    fronts = {
+        name: Front(open_safeguard(node.safeguard), restorer_of(node.restore, world.sensors))
+        for name, node in nodes.items()
+    }
     drawn = {episode.episode_id for episode in chosen}
     found = [
         row
@@ -175,8 +183,8 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
         and row["severity"] in (0.0, cfg.severity)
         and row["episode_id"] in drawn
     ]
-    world = build.maker(node.env.world)()
-    return write_pictures(agents, world, chosen, found, out / "pictures", seed=cfg.seeds[0])
+    folder, seed = out / "pictures", cfg.seeds[0]
+    return write_pictures(agents, world, chosen, found, folder, seed=seed, fronts=fronts)
 
 
 def costs(out: Path) -> dict[str, dict[str, float]]:

@@ -10,7 +10,7 @@ from omegaconf import OmegaConf
 
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
-from mitigate.evaluation import plots, rows
+from mitigate.evaluation import plots, rows, trajectories
 from mitigate.training import cells, table2
 from tests.evaluation.made_rows import column, row
 
@@ -270,6 +270,32 @@ def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick
         f"{ids[1]}-flare.png",
         "sheet.png",
     }
+
+
+def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monkeypatch):
+    """And known by the name that their rows have."""
+    cfg = config(tmp_path, seeds=[0], episodes=1, walks=["base", "restored"])
+    restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
+    cfg.columns = {"base": [], "restored": restored}
+    (episode,) = table2.episodes(conf.load_config("evaluate").env, cfg.split, 1)
+    names = "base", "base+rules+restorer-rgb"
+    for cell, name in zip(table2.cells(cfg), names, strict=True):
+        for corruption in ("clean", "flare", "black_box"):
+            at = {"corruption": corruption, "severity": 0.6 * (corruption != "clean")}
+            made = row(episode.episode_id, name != "base" or corruption == "flare", name=name, **at)
+            rows.append(cell.evaluation / "rows.jsonl", [made])
+    walked = []
+
+    def run_episode(agent, world, episode, met, seed, repaired, restorer):
+        world.reset(episode)
+        walked.append((met.name, list(repaired.values()), restorer and list(restorer.nets)))
+        return {"success": 1}
+
+    monkeypatch.setattr(trajectories, "run_episode", run_episode)
+    table2.draw_walks(cfg, tmp_path)
+    plain, attacked, repaired = walked
+    assert plain == ("clean", [], None) and attacked == ("black_box", [], None)
+    assert repaired == ("black_box", [episode.instruction.text], ["rgb"])
 
 
 def test_no_walks_without_the_agents_cells(tmp_path):
