@@ -10,6 +10,7 @@ from pathlib import Path
 from mitigate.core.files import find, sha256
 from mitigate.core.names import unknown
 from mitigate.safeguard import weights
+from mitigate.safeguard.addresses import check_choice
 
 CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
     "http://host/v1@model")  # fmt: skip
@@ -25,14 +26,19 @@ ANSWERS = "2"  # of what is taken of a language model's answers
 
 
 def check(choice: object) -> None:
-    """Raise ValueError for a choice that is no text or empty, FileNotFoundError for a folder that
-    holds no safeguard; names, addresses and what is not there pass."""
+    """Raise ValueError for a choice that names no safeguard, FileNotFoundError for a folder that
+    holds none. No weights are read, and no address is asked."""
     text = choice if isinstance(choice, str) else ""
+    check_choice(text)  # before anything repeats it
     first, plus, second = text.partition("+")
-    named = second if plus and first in TAGGERS else text
-    if not named:
+    behind = bool(plus and first in TAGGERS)
+    named = second if behind else text
+    if named.lower().startswith(("http://", "https://")):
+        return
+    alone = behind and named in ("none", "rules", *TAGGERS)
+    if alone or (named not in CHOICES and not (named and Path(named).is_dir())):
         raise ValueError(f"{unknown('safeguard', choice, CHOICES)} Or name a folder. {FOLDER}")
-    if named not in CHOICES and Path(named).is_dir() and not _holds_one(named):
+    if named not in CHOICES and not _holds_one(named):
         raise FileNotFoundError(not_in(named))
 
 

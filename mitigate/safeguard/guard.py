@@ -146,8 +146,6 @@ def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
 
     if choice == "prompted":
         return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
-    if choice != "lora" and not Path(choice).is_dir():
-        raise ValueError(unknown("safeguard", choice, CHOICES) + " Or name an adapter's folder.")
     return Safeguard(open_adapter(find(ADAPTER) if choice == "lora" else choice), log=log)
 
 

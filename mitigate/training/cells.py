@@ -6,15 +6,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from omegaconf import DictConfig
+from omegaconf import DictConfig, ListConfig
 
-from mitigate.core import conf
+from mitigate.core import build, conf
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.safeguard.addresses import check_choice
+from mitigate.safeguard import choices
 from mitigate.scale import programs
 
 LOG = "log.txt"
+EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
+CELLS = ("agent", "checkpoint", "name", "seed", "out")  # a further evaluation does not say these
 
 
 @dataclass(frozen=True)
@@ -70,14 +72,14 @@ class Cell:
                 )
             )
         main = [f"conditions=[{','.join(measured(cfg))}]"]
-        for name, options in {"": main, **cfg.evaluations}.items():
+        for name, options in {"": main, **listed(cfg, "evaluations")}.items():
             kind = f"evaluate {name}" if name else "evaluate"
             found.append((kind, ["mitigate.evaluate", *self.measurement(cfg, name, options)]))
         return found
 
     def measurement(self, cfg: DictConfig, name: str, options: Sequence[str]) -> list[str]:
         """The options of one of the cell's evaluations; ``options`` are those that it has beside,
-        or in place of, the table's."""
+        or in place of, the table's; of episodes at most as many as that has."""
         return [
             f"name={self.column}",
             *self.agent,  # which may have a name of its own
@@ -85,7 +87,7 @@ class Cell:
             f"split={cfg.split}",
             f"episodes={'null' if cfg.episodes is None else cfg.episodes}",
             f"severity={cfg.severity}",
-            *options,
+            *(_at_most(cfg.episodes, option) for option in options),
             f"out={self.further(name)}",
         ]
 
@@ -100,31 +102,40 @@ class Cell:
         )
 
 
+def _at_most(most: int | None, option: str) -> str:
+    """An option of an evaluation: one that asks for more than ``most`` episodes asks for these."""
+    name, _, value = option.partition("=")
+    if name != "episodes" or most is None or not (value == "null" or value.isdecimal()):
+        return option
+    return f"episodes={most if value == 'null' else min(most, int(value))}"
+
+
 def cells(cfg: DictConfig) -> list[Cell]:
     """All cells of the table, seed by seed, so that a partial table holds every column."""
-    if not cfg.seeds or not cfg.columns or cfg.jobs < 1:
+    columns = listed(cfg, "columns")
+    if not cfg.seeds or not columns or cfg.jobs < 1:
         raise ValueError(
             f"columns, seeds ({list(cfg.seeds)}) and jobs ({cfg.jobs}) must not be empty or 0."
         )
-    for place, example in (("columns", "agent=recurrent"), ("evaluations", "suite=pairs")):
-        for name, options in cfg[place].items():
-            if isinstance(options, str):
-                raise ValueError(
-                    f"{place}.{name}={options} must be a list of options, in quotes for the shell: "
-                    f"'{place}.{name}=[\"{example}\"]'."
-                )
     out = Path(cfg.out)
     return [
-        Cell(
-            str(column),
-            tuple(options),
-            seed,
-            out / "cells" / f"{column}-seed{seed}",
-            tuple(cfg.train),
-        )
+        Cell(column, options, seed, out / "cells" / f"{column}-seed{seed}", tuple(cfg.train))
         for seed in cfg.seeds
-        for column, options in cfg.columns.items()
+        for column, options in columns.items()
     ]
+
+
+def listed(cfg: DictConfig, place: str) -> dict[str, tuple[str, ...]]:
+    """The options of each of the ``columns`` or ``evaluations``; one that is null is left out.
+    Raises ValueError for what is no list of options."""
+    found = {str(name): options for name, options in cfg[place].items() if options is not None}
+    for name, options in found.items():
+        if not isinstance(options, ListConfig) or not all(isinstance(o, str) for o in options):
+            raise ValueError(
+                f"{place}.{name}={options} must be a list of options, in quotes for the shell: "
+                f"'{place}.{name}=[\"{EXAMPLES[place]}\"]'."
+            )
+    return {name: tuple(options) for name, options in found.items()}
 
 
 def measured(cfg: DictConfig) -> list[str]:
@@ -141,15 +152,39 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
             try:
                 if cell.trains:
                     conf.composed("train", [*cell.options, *cell.train])
-                episodes(conf.composed("evaluate", cell.agent).env, cfg.split, cfg.episodes)
-            except ValueError as error:
+                node = conf.composed("evaluate", cell.agent)
+                episodes(node.env, cfg.split, cfg.episodes)
+                _check_fronts(node)
+            except (ValueError, FileNotFoundError) as error:
                 raise ValueError(f"Column {cell.column}: {error}") from error
-    for name, options in cfg.evaluations.items():
+    for name, options in listed(cfg, "evaluations").items():
         try:
+            _check_own(options)
             node = conf.composed("evaluate", made[0].measurement(cfg, name, options))
             chosen = node.suite.conditions if node.conditions is None else node.conditions
             conditions(list(chosen), node.severity, node.severity_depth)
-            check_choice(node.safeguard)
             episodes(node.env, node.split, node.episodes)
-        except ValueError as error:
+            _check_fronts(node)
+        except (ValueError, FileNotFoundError) as error:
             raise ValueError(f"Evaluation {name}: {error}") from error
+
+
+def _check_own(options: Sequence[str]) -> None:
+    """Raise ValueError for options of a further evaluation that make its rows another agent's, or
+    put them where the table does not look."""
+    for option in options:
+        if option.lstrip("+~").partition("=")[0] in CELLS:
+            raise ValueError(
+                f"{option} is for the table to say, which has {', '.join(CELLS)} from its columns "
+                "and seeds. A further evaluation may have suite, conditions, severity, "
+                "severity_depth, split, episodes, safeguard, restore and entries of env and agent."
+            )
+
+
+def _check_fronts(node: DictConfig) -> None:
+    """Raise ValueError or FileNotFoundError for a safeguard or a restorer that there is not."""
+    choices.check(node.safeguard)
+    if node.restore is not None:
+        from mitigate.restoration.restorer import restorer_of
+
+        restorer_of(node.restore, build.maker(node.env.world)().sensors)

@@ -27,7 +27,7 @@ from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import ROWS, load
 from mitigate.evaluation.rows import Row, read
 from mitigate.scale import launcher, programs
-from mitigate.training.cells import Cell, cells, check
+from mitigate.training.cells import Cell, cells, check, listed
 
 COST, REPORT = "cost.json", "overview.md"
 
@@ -145,7 +145,7 @@ def write_further(made: Sequence[Cell], cfg: DictConfig, out: Path) -> list[Path
     from mitigate.evaluation import report, rows
 
     written = []
-    for name in cfg.evaluations:
+    for name in listed(cfg, "evaluations"):
         paths = [cell.further(name) for cell in made if _rows(cell.further(name))]
         if paths:
             written.append(report.write(rows.gather(paths), out / name)[0])

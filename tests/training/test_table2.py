@@ -94,6 +94,21 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ('+evaluations.mine=["conditions=[hase]"]', "Evaluation mine: .*Did you mean haze?"),
         ('+evaluations.mine=["severity=2"]', "Evaluation mine: Severity must be"),
         ("+evaluations.mine=pairs", "evaluations.mine=pairs must be a list of options"),
+        ('+evaluations.mine=["restore=nope"]', "Evaluation mine: There is no restorer at nope"),
+        ('+evaluations.mine=["safeguard=nope"]', "Evaluation mine: There is no safeguard 'nope'"),
+        ('+evaluations.mine=["safeguard=tagger+rules"]', "mine: There is no safeguard"),
+        ('+evaluations.mine=["out=x"]', "Evaluation mine: out=x is for the table.* may have suite"),
+        ('+evaluations.mine=["name=x"]', "Evaluation mine: name=x is for the table"),
+        ('+evaluations.mine=["seed=5"]', "Evaluation mine: seed=5 is for the table"),
+        ('+evaluations.mine=["checkpoint=x"]', "Evaluation mine: checkpoint=x is for the table"),
+        ('+evaluations.mine=["agent=recurrent"]', "Evaluation mine: agent=recurrent is for the"),
+        ("+evaluations.mine=[1]", "evaluations.mine=.1. must be a list of options"),
+        ('+columns.mine=["restore=nope"]', "Column mine: There is no restorer at nope"),
+        (
+            '+columns.mine=["restore=checkpoints/restorer:pose"]',
+            "Column mine: There is no restorer",
+        ),
+        ('+columns.mine=["safeguard=ruls"]', "Column mine: .*Did you mean rules?"),
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
         ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
@@ -101,7 +116,8 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ("conditions=[clen]", "no condition 'clen'. Did you mean clean?"),
     ],
 )
-def test_a_mistake_is_told_once_and_before_any_cell_is_run(tmp_path, option, said):
+def test_a_mistake_is_told_once_and_before_any_cell_is_run(tmp_path, monkeypatch, option, said):
+    monkeypatch.setattr(table2, "make", lambda made, cfg: pytest.fail("cells are run"))
     cfg = conf.load_config("table1", [f"out={tmp_path / 'out'}", option])
     with pytest.raises(ValueError, match=said):
         table2.run(cfg)
@@ -178,7 +194,7 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
     plain, restored = table2.cells(cfg)
     mild = measured(plain, cfg, "severity_02", cfg.evaluations.severity_02)
     node = conf.load_config("evaluate", mild)
-    assert (node.severity, node.episodes, node.name) == (0.2, 150, "base")
+    assert (node.severity, node.episodes, node.name) == (0.2, 7, "base")
     assert node.out != str(plain.evaluation) and len(node.suite.conditions) == 13
     node = conf.load_config("evaluate", measured(restored, cfg, "", ["conditions=[clean]"]))
     assert (node.name, node.restore, node.episodes) == ("base", "checkpoints/restorer", 7)
@@ -194,6 +210,30 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
     (cost,) = (line for line in report.splitlines() if line.startswith("| CPU minutes, train"))
     assert "–" not in cost, "a column's cost stands under its rows' name"
     assert not (tmp_path / "pairs").exists(), "without rows there is no report"
+
+
+@pytest.mark.parametrize(
+    ("table", "asked", "walked"),
+    [(3, "150", 3), (200, "150", 150), (3, "null", 3), (None, "150", 150), (None, "null", None)],
+)
+def test_a_further_evaluation_walks_no_more_episodes_than_the_table(tmp_path, table, asked, walked):
+    cfg = config(tmp_path, episodes=table)
+    measured = table2.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={asked}"])
+    assert conf.load_config("evaluate", measured).episodes == walked
+
+
+def test_a_column_or_an_evaluation_that_is_null_is_left_out(tmp_path):
+    null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
+    cfg = conf.load_config("table2", [f"out={tmp_path}", "evaluations=beyond", *null])
+    made = table2.cells(cfg)
+    cells.check(made, cfg)
+    assert "base" not in {cell.column for cell in made}
+    kinds = [kind for kind, _ in made[0].commands(cfg)]
+    assert "evaluate unseen" in kinds and not {"evaluate pairs", "evaluate mine"} & {*kinds}
+    rows.write(made[0].further("pairs") / "rows.jsonl", column(8, ALL))
+    assert table2.write_further(made, cfg, tmp_path) == []
+    with pytest.raises(ValueError, match="columns.* must not be empty"):
+        table2.cells(OmegaConf.merge(cfg, {"columns": dict.fromkeys(cfg.columns)}))
 
 
 def test_a_cell_is_trained_once_and_measured_by_each_evaluation(tmp_path):
