@@ -43,9 +43,9 @@ class Rule:
 
     @property
     def stop_within(self) -> float:
-        """Metres from the goal at which an oracle stops: 1 (ours), or the rule's where it counts
-        less from the goal."""
-        return 1.0 if self.view_points else min(1.0, self.metres)
+        """Metres at which an oracle stops, from the goal or a view point as the rule counts them: 1
+        (ours), or the rule's where it counts less."""
+        return min(1.0, self.metres)
 
     def met(self, distance: float, stopped: bool) -> bool:
         """Whether it is a success to end ``distance`` metres away, with STOP or without. A NaN

@@ -284,6 +284,10 @@ class NavmeshExpert:
         height = float(self.world._position()[1])
         return self.world.distance_to_goal(np.array([xy[0], height, -xy[1]], np.float32))
 
+    def counts(self, metres: float) -> bool:
+        """Whether STOP so far from the goal is a success."""
+        return self.world._rule.met(metres, True)
+
     def action(self) -> int:
         """The low-level action that comes nearest to the goal."""
         world = self.world

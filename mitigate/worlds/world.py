@@ -20,7 +20,11 @@ from mitigate.worlds.episodes import Episode
 
 
 class Expert(Protocol):
-    """What a shortest-path oracle knows of the episode that is on."""
+    """What a shortest-path oracle knows of the episode that is on.
+
+    ``counts(metres)`` (optional): whether STOP at that distance is a success. Without it, what an
+    agent's teacher takes for near enough is.
+    """
 
     def distance(self, xy: np.ndarray) -> float:
         """Metres along the shortest way from the point ``xy`` [2] to the nearest goal."""
@@ -195,6 +199,11 @@ def expert_of(world: World) -> Expert:
             "expert() with the actions to take or distances to the goal (docs/bring-your-own.md)."
         )
     return expert
+
+
+def counts(expert: Any, metres: float) -> bool:
+    """Whether STOP so far from the goal is a success, as far as the expert says."""
+    return bool(expert.counts(metres)) if hasattr(expert, "counts") else True
 
 
 def remembering(thing: Any) -> AbstractContextManager:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 
 import pytest
 
+from mitigate.agents.topological.rollout import STOP_BEST, STOP_WITHIN
 from mitigate.core.observation import FORWARD, STOP
 from mitigate.evaluation.metrics import RULES
 from mitigate.worlds.apartments.tasks import load_episodes, view_field
@@ -56,3 +58,29 @@ def test_where_no_stop_is_asked_for_standing_there_is_enough():
         )
         world.step(FORWARD)
         assert world.measures()["success"] == won
+
+
+@pytest.mark.parametrize("task", ["vln", "ogn"])
+@pytest.mark.parametrize("rule", ["apartments", "habitat_vln", "objectnav", "wmnav"])
+def test_the_expert_ends_where_the_rule_counts_it(rule, task):
+    world = ApartmentsWorld(rule=rule)
+    for episode in load_episodes("val_unseen", task)[::60]:
+        world.reset(episode)
+        expert = world.expert()
+        while not world.done:
+            world.step(expert.action())
+        assert world.measures()["success"] == 1
+
+
+def test_the_expert_of_the_usual_rule_walks_as_it_did():
+    """Shipped rows and weights are of these walks."""
+    world, said = ApartmentsWorld(), []
+    for episode in load_episodes("val_seen")[::60]:
+        world.reset(episode)
+        expert, actions = world.expert(), []
+        while not world.done:
+            actions.append(expert.action())
+            world.step(actions[-1])
+        said.append("".join(map(str, actions)))
+    assert hashlib.sha256(" ".join(said).encode()).hexdigest()[:12] == "c20e5590c0de"
+    assert all(expert.counts(metres) for metres in (STOP_WITHIN, STOP_BEST))

@@ -19,9 +19,9 @@ from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.world import World, expert_of
+from mitigate.worlds.world import World, counts, expert_of
 
-STOP_WITHIN = 1.0  # metres: the oracle stops here ...
+STOP_WITHIN = 1.0  # metres: the oracle stops here, where the world's rule counts it ...
 STOP_BEST = 1.75  # ... or here, if no ghost is nearer to the goal
 _TEMPERATURE = 0.3  # metres; ghosts about as good as the best share the target
 _TRAVEL = 0.4  # weight of the metres to a ghost against the metres from it to the goal
@@ -35,6 +35,7 @@ class Walk(Protocol):
     def pose(self) -> np.ndarray: ...
     def go(self, route: list[np.ndarray]) -> None: ...
     def distance(self, xy: np.ndarray) -> float: ...
+    def counts(self, metres: float) -> bool: ...
 
 
 # looks around in some walks at once: views float32 [12, F] and waypoints [n, 2] of each
@@ -76,7 +77,8 @@ def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
     here = nodes[graph.current]
     target = np.zeros(1 + len(ghosts), np.float32)
     nearer = len(ghosts) > 0 and ghosts.min() < here - 0.25
-    if here <= STOP_WITHIN or (here <= STOP_BEST and not nearer) or not len(ghosts):
+    near = here <= STOP_WITHIN or (here <= STOP_BEST and not nearer)
+    if (near and walk.counts(here)) or not len(ghosts):
         target[0] = 1.0
     else:
         cost = ghosts + _TRAVEL * decision.travel
@@ -124,6 +126,9 @@ class LiveWalk:
 
     def distance(self, xy: np.ndarray) -> float:
         return self.expert.distance(xy)
+
+    def counts(self, metres: float) -> bool:
+        return counts(self.expert, metres)
 
 
 @torch.no_grad()

@@ -14,6 +14,7 @@ from torch import Tensor
 from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
+from mitigate.worlds.world import counts
 
 if TYPE_CHECKING:
     from mitigate.agents.topological.agent import TopologicalAgent
@@ -93,6 +94,9 @@ class StoredWalk:
 
     def distance(self, xy: np.ndarray) -> float:
         return self.expert.distance(xy)
+
+    def counts(self, metres: float) -> bool:
+        return counts(self.expert, metres)
 
 
 def look(walks: Sequence[StoredWalk]) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -120,11 +120,8 @@ class ApartmentsWorld:
         length, left = metrics.path_length(walked), simulator.distance_to_goal()
         reference = np.stack([from_vlnce(p) for p in episode.reference_path])
         geodesic = float(episode.geodesic_distance or simulator.distance_to_goal(reference[0]))
-        rule = RULES[self._rule]
-        away = left
-        if rule.view_points:
-            away = float(view_field(episode)[simulator.space.cell_of(simulator.xy)])
-        won = rule.met(away, simulator.stopped)
+        away = float(self._field()[simulator.space.cell_of(simulator.xy)])
+        won = RULES[self._rule].met(away, simulator.stopped)
         return {
             "success": int(won),
             "spl": round(metrics.spl(won, geodesic, length), 6),
@@ -137,7 +134,12 @@ class ApartmentsWorld:
         }
 
     def expert(self) -> GeodesicExpert:
-        return GeodesicExpert(self.simulator, RULES[self._rule].stop_within)
+        return GeodesicExpert(self.simulator, RULES[self._rule], self._field())
+
+    def _field(self) -> np.ndarray:
+        """Metres from every free cell to what the rule counts from: the goal, or a view point."""
+        points = RULES[self._rule].view_points
+        return view_field(self.simulator.episode) if points else self.simulator.field
 
     def truth(self) -> Mapping[str, np.ndarray]:
         """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),
@@ -278,23 +280,26 @@ class CameraLabels(Labels):
 
 
 class GeodesicExpert:
-    """Distances and the greedy follower of the geodesic field: it turns to the heading whose step
-    lowers the distance most."""
+    """Distances and the greedy follower of a geodesic ``field``: it turns to the heading whose step
+    lowers the distance most, and stops within what ``rule`` counts."""
 
-    def __init__(self, simulator: Simulator, stop_within: float) -> None:
-        self.simulator, self.stop_within = simulator, stop_within
+    def __init__(self, simulator: Simulator, rule: metrics.Rule, field: np.ndarray) -> None:
+        self.simulator, self.rule, self.field = simulator, rule, field
 
     def distance(self, xy: np.ndarray) -> float:
-        return self.simulator.distance_to_goal(xy)
+        return float(self.field[self.simulator.space.cell_of(xy)])
+
+    def counts(self, metres: float) -> bool:
+        return self.rule.met(metres, True)
 
     def action(self) -> int:
         simulator = self.simulator
-        if simulator.distance_to_goal() < self.stop_within:
+        if self.distance(simulator.xy) < self.rule.stop_within:
             return STOP
         turns = sorted(range(-12, 13), key=abs)
         headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
         ends = [
             simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings
         ]
-        best = turns[int(np.argmin([simulator.distance_to_goal(end) for end in ends]))]
+        best = turns[int(np.argmin([self.distance(end) for end in ends]))]
         return FORWARD if best == 0 else LEFT if best > 0 else RIGHT

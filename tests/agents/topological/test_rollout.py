@@ -29,6 +29,8 @@ SIZE, SCENE = 16, "apartments/train/000000"
 class RoomWorld:
     """An empty room whose views are noise; routes are walked at once."""
 
+    rule_metres = 2.0
+
     def __init__(self, number: int, width: int) -> None:
         rng = np.random.default_rng(number)
         self.episode, self.space = load_episodes("val_seen")[number], room(7, 7)
@@ -45,6 +47,9 @@ class RoomWorld:
 
     def distance(self, xy: np.ndarray) -> float:
         return float(np.hypot(*(xy - self.goal)))
+
+    def counts(self, metres: float) -> bool:
+        return metres < self.rule_metres
 
 
 def look(worlds: list[RoomWorld]) -> list[tuple[torch.Tensor, np.ndarray]]:
@@ -81,6 +86,21 @@ def test_the_oracle_walks_to_the_goal_and_stops_there():
         assert trace.steps[-1].target[0] == 1.0
         assert world.distance(world.xy) <= STOP_BEST
         assert all(step.target[0] == 0.0 for step in trace.steps[:-1])
+
+
+@pytest.mark.parametrize("metres", [0.2, 0.5, 1.5])
+def test_the_oracle_stops_only_where_the_rule_counts_it(monkeypatch, metres):
+    """Nearer than it stops by itself; else nothing is as without the rule."""
+    free, _ = traces_of(1.0)
+    monkeypatch.setattr(RoomWorld, "rule_metres", metres)
+    bound, _ = traces_of(1.0)
+    for before, after in zip(free, bound, strict=True):
+        own = [step for step in after.steps if step.target[0] == 1.0]
+        assert all(step.metres[0] < metres for step in own)
+        if before.steps[-1].metres[0] < metres:
+            assert len(before.steps) == len(after.steps)
+        else:
+            assert len(after.steps) > len(before.steps)
 
 
 def test_the_limit_bounds_the_decisions():

@@ -12,7 +12,6 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Key, Schedule, corrupt_observation
 from mitigate.worlds.apartments.env import ApartmentsEnv
 from mitigate.worlds.apartments.tasks import episode_file, load_episodes
-from mitigate.worlds.apartments.world import GeodesicExpert
 from mitigate.worlds.transforms import CorruptObservation
 
 SIZE = 16
@@ -75,7 +74,7 @@ def test_a_file_of_episodes_is_run_in_order_and_over_again():
 def test_the_oracle_is_rewarded_once_at_stop_and_ends_the_episode(episodes):
     env = ApartmentsEnv(episodes[:1], size=SIZE)
     data, rewards = env.reset(), []
-    expert = GeodesicExpert(env.simulator, stop_within=1.0)
+    expert = env.world.expert()
     while not data["done"]:
         data["action"] = torch.tensor(expert.action())
         data = env.step(data)["next"]
