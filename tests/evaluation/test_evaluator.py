@@ -28,7 +28,7 @@ from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
-from tests.evaluation.made_rows import row
+from tests.evaluation.made_rows import cell
 from tests.evaluation.straight import Straight
 
 CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]
@@ -160,7 +160,7 @@ def test_the_note_of_an_older_version_counts_where_there_is_no_newer_one(tmp_pat
     a, b = tmp_path / "a.json", tmp_path / "b.json"
     for listed in (a, b):
         listed.write_text(listed.name)
-    rows.write(tmp_path / "rows.jsonl", [row(0, True, split="mine")])
+    rows.write(tmp_path / "rows.jsonl", cell(1, 1, split="mine"))
     old = tmp_path / "episodes.sha256"
     for known, source in (
         (f"{sha256(a)}  of/mine.json\n", b),  # another path

@@ -159,20 +159,46 @@ def _check_world(make_world: Any, met: Sequence[Corruption]) -> None:
 
 def _check_walked(note: Path, world: World, split: str, episodes: Sequence[Episode]) -> None:
     """Keep beside the rows in which world they were walked, and a sum of each episode; raise
-    ValueError if either is another now: a row names its episode by id alone."""
+    ValueError if either is another now: a row names its episode by id alone. What a note of an
+    older version does not say may be anything."""
     kind = f"{type(world).__module__}.{type(world).__qualname__}"
-    sums = {e.episode_id: hashlib.sha256(repr(e).encode()).hexdigest()[:12] for e in episodes}
+    told = {"world": kind, "env": _env(world)}
+    sums = {e.episode_id: _sum(e) for e in episodes}
     known = read_json(note, "Delete its folder.") if note.is_file() else {}
-    before = known.get(split, {"world": kind, "episodes": {}})
-    other = [n for n, s in before["episodes"].items() if sums.get(n, s) != s]
-    if before["world"] != kind or other:
-        what = f"episode {other[0]} of another list" if other else f"the world {before['world']}"
+    before = {**told, "sums": {}, **known.get(split, {})}
+    other = [n for n, s in before["sums"].items() if sums.get(n, s) != s]
+    world_before = f"{before['world']} {before['env']}".strip()
+    if any(before[key] != told[key] for key in told) or other:
+        what = f"episode {other[0]} of another list" if other else f"the world {world_before}"
         raise ValueError(
             f"{note.parent} holds rows of {what}: name another folder (out=...), or delete it."
         )
-    known[split] = {"world": kind, "episodes": before["episodes"] | sums}
+    known[split] = {**told, "sums": before["sums"] | sums}
     with atomic_text(note) as file:
         json.dump(known, file)
+
+
+def _sum(episode: Episode) -> str:
+    """Return 12 hex digits of what an agent and a world are told of an episode; whatever else it
+    carries may look otherwise in another process."""
+    held = {
+        "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],
+        "start": [*map(float, (*episode.start_position, *episode.start_rotation))],
+        "goals": [[[*map(float, goal.position)], goal.radius] for goal in episode.goals],
+        "instruction": episode.instruction.text,
+        "seed": str(episode.info.get("seed")),
+    }
+    return hashlib.sha256(json.dumps(held, default=float).encode()).hexdigest()[:12]
+
+
+def _env(world: World) -> str:
+    """Return what the environment inside a world, if there is one, says it was made of: worlds of
+    one class differ in it alone."""
+    spec = getattr(getattr(world, "env", None), "spec", None)
+    if not hasattr(spec, "id"):
+        return ""
+    made = json.dumps(getattr(spec, "kwargs", {}), sort_keys=True, default=lambda x: str(type(x)))
+    return f"{spec.id} {made}"
 
 
 def _check_copies(*things: Any) -> None:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import torch
@@ -21,6 +22,7 @@ from mitigate.corruptions.registry import HALVES, unseen_names
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.blocks import BLOCKS
 from mitigate.evaluation.leaderboard import command
+from mitigate.evaluation.leaderboard.benchmark import _check_walked
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import load
 from mitigate.evaluation.leaderboard.from_rows import entry_of, rows_sha
@@ -439,3 +441,37 @@ def test_benchmark_reuses_rows_of_the_same_world_and_episodes_alone(tmp_path, mo
     other = [replace(episode, trajectory_id="another") for episode in some]
     with pytest.raises(ValueError, match="rows of episode .* of another list"):
         mitigate.benchmark(Straight(), listed=other, split="val_unseen", **options)
+
+
+def test_benchmark_goes_on_whatever_else_episodes_carry(tmp_path, monkeypatch):
+    """What looks otherwise in another process, as sets and objects do, is no other episode."""
+    monkeypatch.chdir(tmp_path)
+    options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
+    (episode,) = load_episodes("val_unseen")[:1]
+    for carried in (object(), object()):
+        info = episode.info | {"mine": carried}
+        mitigate.benchmark(Straight(), listed=[replace(episode, info=info)], **options)
+    note = Path("rows/walked.json")
+    (known,) = json.loads(note.read_text()).values()
+    older = {"world": known["world"], "episodes": {episode.episode_id: "a" * 12}}
+    note.write_text(json.dumps({"val_unseen": older}))
+    mitigate.benchmark(Straight(), listed=[episode], **options)
+    for other in (
+        replace(episode, instruction=replace(episode.instruction, text="Wait here.")),
+        replace(episode, info=episode.info | {"seed": 5}),
+        replace(episode, goals=()),
+    ):
+        with pytest.raises(ValueError, match="rows of episode .* of another list"):
+            mitigate.benchmark(Straight(), listed=[other], **options)
+
+
+def test_worlds_of_one_class_are_told_apart_by_the_environments_in_them(tmp_path):
+    def around(name: str, **kwargs) -> SimpleNamespace:
+        return SimpleNamespace(env=SimpleNamespace(spec=SimpleNamespace(id=name, kwargs=kwargs)))
+
+    note = tmp_path / "walked.json"
+    for _ in range(2):
+        _check_walked(note, around("Maze-v0", size=5, made_by=object()), "mine", [])
+    for other in (around("Maze-v1", size=5), around("Maze-v0", size=6), SimpleNamespace()):
+        with pytest.raises(ValueError, match="rows of the world .*Maze-v0"):
+            _check_walked(note, other, "mine", [])
