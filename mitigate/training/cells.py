@@ -11,6 +11,7 @@ from omegaconf import DictConfig, ListConfig
 from mitigate.core import build, conf
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.evaluate import ROWS
 from mitigate.safeguard import choices
 from mitigate.scale import programs
 
@@ -51,6 +52,13 @@ class Cell:
     def further(self, name: str) -> Path:
         """The folder of the rows of a further evaluation."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
+
+    def left(self, kind: str) -> list[tuple[str, int]]:
+        """The files that a program of ``commands`` adds to, with their times: one that had nothing
+        to do leaves them as they were."""
+        rows = self.further(kind.removeprefix("evaluate").strip()) / ROWS
+        files = [*(self.folder / "run").glob("*/step-*.pt")] if kind == "train" else [rows]
+        return sorted((str(file), file.stat().st_mtime_ns) for file in files if file.is_file())
 
     def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
         """What makes the cell: ("train", "evaluate" or "evaluate NAME", arguments after

@@ -87,11 +87,18 @@ def run(cfg: DictConfig) -> Path:
 def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
     """Train and evaluate all cells, ``cfg.jobs`` at a time; return what went wrong with which."""
     chains, problems = [cell.chain(cfg) for cell in made], []
+    before = [
+        {kind: cell.left(kind) for kind, _ in chain.programs}
+        for cell, chain in zip(made, chains, strict=True)
+    ]
     with Progress("cells", len(made), unit="cell") as progress:
 
         def told(number: int, outcome: programs.Outcome) -> None:
             cell = made[number]
-            _add_cost(cell.folder / COST, outcome.seconds)
+            idle = {kind for kind, left in before[number].items() if left == cell.left(kind) != []}
+            failed = bool(outcome.problem)
+            spent = {k: s for k, s in outcome.seconds.items() if failed or k not in idle}
+            _add_cost(cell.folder / COST, spent)
             if outcome.problem:
                 problems.append(f"{cell.column}, seed {cell.seed}: {outcome.problem}")
             progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
@@ -102,7 +109,7 @@ def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
 
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
-    """Add CPU seconds to a cell's account, which counts all its runs."""
+    """Add CPU seconds to a cell's account, which counts all its runs that had something to do."""
     cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     for kind, seconds in spent.items():
         cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)

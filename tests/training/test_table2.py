@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from omegaconf import OmegaConf
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import plots, rows, trajectories
+from mitigate.scale import programs
 from mitigate.training import cells, table2
 from tests.evaluation.made_rows import column, row
 
@@ -172,6 +174,38 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     first = json.loads(costs[0].read_text())["train"]
     table2.run(cfg)
     assert json.loads(costs[0].read_text())["train"] >= first > 0
+
+
+def test_a_program_that_had_nothing_to_do_costs_nothing(tmp_path, monkeypatch):
+    cell = table2.cells(config(tmp_path, seeds=[0]))[-1]
+    left = {
+        "train": cell.folder / "run" / "imitation" / "step-00000001.pt",
+        "evaluate": cell.evaluation / "rows.jsonl",
+    }
+    todo = {*left, "evaluate more"}  # of which the last fails to leave rows
+    add = "import sys; open(sys.argv[1], 'a').write('x')"
+
+    def chain(self, cfg):
+        words = {kind: (add, str(left.get(kind, tmp_path / "other"))) for kind in todo}
+        kinds = ("train", "evaluate", "evaluate more")
+        made = ((kind, (sys.executable, "-c", *words.get(kind, ("pass",)))) for kind in kinds)
+        return programs.Chain("mine", tuple(made), self.folder / "log.txt", Path.cwd())
+
+    def cost() -> dict[str, float]:
+        assert table2.make([cell], config(tmp_path)) == []
+        return json.loads((cell.folder / "cost.json").read_text(encoding="utf-8"))
+
+    for path in left.values():
+        path.parent.mkdir(parents=True)
+    monkeypatch.setattr(table2.Cell, "chain", chain)
+    first = cost()
+    assert first.keys() == {"train", "evaluate", "evaluate more"}
+    todo = {"evaluate"}
+    second = cost()
+    assert second["train"] == first["train"] and second["evaluate"] > first["evaluate"]
+    todo = set()
+    third = cost()
+    assert (third["train"], third["evaluate"]) == (second["train"], second["evaluate"])
 
 
 def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
