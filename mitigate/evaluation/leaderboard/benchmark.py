@@ -195,10 +195,11 @@ def _env(world: World) -> str:
     """Return what the environment inside a world, if there is one, says it was made of: worlds of
     one class differ in it alone."""
     spec = getattr(getattr(world, "env", None), "spec", None)
-    if not hasattr(spec, "id"):
+    name = getattr(spec, "id", None)
+    if name is None:
         return ""
     made = json.dumps(getattr(spec, "kwargs", {}), sort_keys=True, default=lambda x: str(type(x)))
-    return f"{spec.id} {made}"
+    return f"{name} {made}"
 
 
 def _check_copies(*things: Any) -> None:
