@@ -35,7 +35,7 @@ from mitigate.safeguard.judgement import (
     strangeness,
     wrapped,
 )
-from mitigate.safeguard.lexicon import known_words
+from mitigate.safeguard.lexicon import GROUPS, known_words
 from mitigate.safeguard.pieces import Piece, parts, without
 from mitigate.safeguard.plainly_said import Tagged, Tags, judging
 from mitigate.safeguard.text import words
@@ -54,6 +54,15 @@ ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 # known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
 SHOUTS, SHOUTED = 2, 0.15
+# with these a part begins on which the rest of its sentence depends
+CONDITIONS = bag("if unless when whenever once should whoever whichever wherever instead rather as")
+_OF_THE_TEXT = re.compile(  # what holds for whoever reads it, and what stands for the route
+    r"(?:if|when|whenever|once) (?:you|anyone|anybody|someone|whoever) (?:can |are |is )?"
+    r"(?:read|reading|pars|process)\w* (?:this|these)\b"
+    r"|(?:instead of|rather than) (?:\w+ing )?(?:the|this|that|these|those|any|all|your|my)\b"
+    r"[\w ]*\b(?:route|instructions?|directions|text|orders?|plan)\b",
+    re.IGNORECASE,
+)
 _SEMICOLON = re.compile(r";\s+")
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
@@ -226,14 +235,19 @@ def _chosen(
     ends = {found[0].piece, found[-1].piece} if len(found) > 1 else set()
     for one in found:
         block = one.piece.block
-        if one.piece.tag or (block and block not in wraps):
+        if one.piece.tag or (block and block not in wraps and not _told(one)):
             out.append(one.piece)
             continue
+        others = any(gate.route_facts(other.text) for other in found if other is not one)
         inside = foreign_parts(text, one, tags)
-        if inside and _route_remains(text, one, inside):
+        announced = others and _announces(text, one, inside)
+        inside = [part for part in inside if not _leans(text, one, part)]
+        if announced:
+            out.append(one.piece)
+        elif inside and _route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
-            problem, some = _refused(found, one), _foreign_clauses(text, one)
+            problem, some = _refused(found, one), _foreign_clauses(text, one, others)
             if some:
                 out += some
             elif problem:
@@ -245,13 +259,43 @@ def _chosen(
     return out, reasons
 
 
-def _foreign_clauses(text: str, one: Judged) -> list[Piece]:
-    """Return the clauses of a sentence, parted by semicolons, that are no part of the route, if
-    others tell the way."""
+def _told(one: Judged) -> bool:
+    """Return whether a sentence in markup tells the way and is no attack by itself."""
+    plain = asked(one.text, False)
+    return bool(gate.route_facts(one.text)) and leads(one.text) and plain < gate.ATTACK
+
+
+def _condition(part: str) -> bool:
+    return any(word in CONDITIONS for word in words(part)[:1])
+
+
+def _leans(text: str, one: Judged, part: Piece) -> bool:
+    """Return whether the rest of a sentence depends on a part of it ("If nobody answers, ...")."""
+    behind = text[part.end : one.piece.end]
+    return _condition(part.of(text)) and any(c.isalnum() for c in behind)
+
+
+def _announces(text: str, one: Judged, inside: list[Piece]) -> bool:
+    """Return whether a sentence begins with what is foreign and announces the rest ("New orders:
+    ..."), which then is no part of the route, whatever it tells."""
+    if not inside or any(c.isalnum() for c in text[one.piece.start : inside[0].start]):
+        return False
+    first = inside[0].of(text)
+    announces = first.rstrip().endswith(":") and not _condition(first)
+    return announces or bool(_OF_THE_TEXT.match(first))
+
+
+def _foreign_clauses(text: str, one: Judged, others: bool) -> list[Piece]:
+    """Return the clauses of a sentence, parted by semicolons, that are no part of the route, if the
+    rest tells the way; none where the first says who speaks: the rest is what it is for
+    (``others``: other sentences tell the way)."""
     starts = [one.piece.start, *(one.piece.start + m.end() for m in _SEMICOLON.finditer(one.text))]
     ends = [*starts[1:], one.piece.end]
     made = [Piece(a, b, one.piece.block) for a, b in zip(starts, ends, strict=True)]
     foreign = [asked(piece.of(text).strip(" ;"), False) >= SURE for piece in made]
+    speaks = any(word in GROUPS["authority"] for word in words(made[0].of(text)))
+    if others and foreign[0] and speaks:
+        return []
     rest = [piece for piece, bad in zip(made, foreign, strict=True) if not bad]
     told = all(gate.route_facts(piece.of(text)) for piece in rest)
     return [piece for piece, bad in zip(made, foreign, strict=True) if bad] if rest and told else []
