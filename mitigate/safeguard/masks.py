@@ -98,7 +98,7 @@ def _best(left: str, right: str) -> str:
         if word in (left, right):
             continue
         seen = 20.0 * both[left, word, right]
-        follows = (before[left, word] + 0.01) * (after[word, right] + 0.3) / (plain[word] + 10.0)
+        follows = (before[left, word] + 0.01) * (after[word, right] + 0.01) / (plain[word] + 10.0)
         scores[word] = seen + follows
     return max(sorted(scores), key=scores.__getitem__)
 
