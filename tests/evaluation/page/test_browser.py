@@ -93,6 +93,17 @@ def test_a_cell_opens_its_episodes_and_filters_them(page, report):
     assert lines(page)[0][3] == "41"  # steps
 
 
+def test_episodes_are_searched_as_they_are_typed(page, tmp_path):
+    rows = [made | {"episode_id": f"1{made['episode_id']}"} for made in column(8, {"spatter": 2})]
+    page.open(document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter")
+    page.ask("document.querySelector('dialog input').focus()")
+    page.type("12")
+    assert page.ask("document.activeElement.value") == "12"
+    assert [line[0] for line in lines(page)] == ["12"]
+    page.click("dialog .chip", "lost (")
+    assert page.ask("document.querySelector('dialog input').value") == "12"
+
+
 def test_an_address_opens_a_cell_and_keys_are_enough(page, report):
     page.open(report, "#section=0&agent=0&corruption=spatter")
     assert "base" in page.ask("document.querySelector('dialog h2').textContent")

@@ -15,12 +15,18 @@ function openCell(column, k) {
     row.walk = walkOf(one, row.id, k);
   }
   const view = { filter: "both", sort: { key: "id", down: false }, search: "", most: PAGE };
-  const body = el("div", {});
+  const kinds = el("div", {}), list = el("div", {});
+  const search = el("input", { type: "search", placeholder: "episode id", "aria-label": "Search episodes",
+    oninput: () => { view.search = search.value; view.most = PAGE; show(); } });
   const dialog = el("dialog", { class: "cell", "aria-labelledby": "cell-title" },
     el("header", {}, el("h2", { id: "cell-title" }, one.columns[column].label, " \u00b7 ", one.corruptions[k].title),
       el("button", { type: "button", class: "close", onclick: () => dialog.close() }, "Close")),
-    el("p", { class: "facts" }, one.title), body);
-  const show = () => redraw(body, () => cellBody(one, rows, view, { clean, base, other, column }, show, dialog));
+    el("p", { class: "facts" }, one.title), el("div", { class: "controls" }, kinds, search), list);
+  const others = { clean, base, other, column };
+  const show = () => {
+    redraw(kinds, () => cellKinds(one, rows, view, others, show));
+    redraw(list, () => cellList(one, rows, view, others, show, dialog));
+  };
   dialog.addEventListener("close", () => {
     dialog.remove();
     writeAddress(null);
@@ -44,20 +50,19 @@ const FILTERS = {
   given: ["lost, won by BASE", (row) => row.base && row.success < 0.5 && row.base.success >= 0.5],
 };
 
-function cellBody(one, rows, view, others, show, dialog) {
+function cellKinds(one, rows, view, others, show) {
   const kinds = Object.entries(FILTERS).filter(([name]) =>
     name === "harmed" ? others.clean : name === "gained" || name === "given" ? others.base : true);
   const named = (text) => text.replace("BASE", others.base ? one.columns[others.other].label : "");
   const counted = kinds.map(([name, [text, test]]) => [name, `${named(text)} (${rows.filter(test).length})`]);
+  return chips("Episodes", counted, view.filter, (value) => { view.filter = value; view.most = PAGE; show(); });
+}
+
+function cellList(one, rows, view, others, show, dialog) {
   const wanted = view.search.trim().toLowerCase();
   const kept = rows.filter(FILTERS[view.filter][1]).filter((row) => row.id.toLowerCase().includes(wanted));
   const order = sorted(kept, (row) => row[view.sort.key]?.success ?? (["clean", "base"].includes(view.sort.key) ? null : row[view.sort.key]), view.sort.down);
-  const search = el("input", { type: "search", placeholder: "episode id", value: view.search, "aria-label": "Search episodes",
-    oninput: (event) => { view.search = event.target.value; view.most = PAGE; show(); } });
-  search.value = view.search;
   return [
-    el("div", { class: "controls" },
-      chips("Episodes", counted, view.filter, (value) => { view.filter = value; view.most = PAGE; show(); }), search),
     el("p", { class: "readout", "aria-live": "polite" }, cellSummary(kept)),
     cellTable(one, order, view, others, show, dialog),
     order.length > view.most && el("button", { type: "button", class: "chip", onclick: () => { view.most += 4 * PAGE; show(); } },
