@@ -38,6 +38,8 @@ def section_data(section: Section) -> dict[str, Any]:
     return {
         "title": _title(section),
         "facts": _facts(section),
+        "split": grid.split,
+        "rule": grid.rule,
         "severity": section.severity,
         "columns": [_column(section, column) for column in section.columns],
         "measures": _measures(section),
@@ -87,6 +89,7 @@ def _column(section: Section, column: str) -> dict[str, Any]:
     return {
         "label": column,
         "place": list(section.grid.columns).index(column),
+        "agents": list(agents),
         "seeds": list(seeds),
         "details": [["hash", ", ".join(agents)], ["seeds", ", ".join(map(str, seeds))]],
     }

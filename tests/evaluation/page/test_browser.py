@@ -23,11 +23,14 @@ def page(tmp_path_factory):
     shown.close()
 
 
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
+def made_rows() -> list[dict]:
     """base wins 8 of 10 clean and 2 under spatter, hard 6 and 6."""
     rows = column(8, {"spatter": 2, "gaussian_noise": 7}, steps=41)
-    rows += column(6, {"spatter": 6, "gaussian_noise": 5}, name="hard", agent="ba9876543210")
+    return rows + column(6, {"spatter": 6, "gaussian_noise": 5}, name="hard", agent="ba9876543210")
+
+
+def made_walk(rows: list[dict]) -> dict:
+    """base walks the first episode clean and under spatter."""
     walk = {
         "episode": "0",
         "instruction": EVIL,
@@ -35,6 +38,9 @@ def report(tmp_path_factory):
         "corruption": "spatter",
         "title": "Spatter",
         "severity": 0.6,
+        "split": rows[0]["split"],
+        "rule": rows[0]["rule"],
+        "seed": 0,
         "kind": "won by both",
         "reference": [],
         "goals": [[1.0, 1.0]],
@@ -43,9 +49,15 @@ def report(tmp_path_factory):
         "views": [],
     }
     one = {"agent": "base", "clean": True, "won": True, "left": 0.5, "steps": 9, "agrees": True}
+    one["hash"] = rows[0]["agent"]
     walk["walks"] = [one | {"points": [[0, 0], [1, 1]]}, one | {"clean": False, "points": [[0, 0]]}]
-    out = tmp_path_factory.mktemp("report") / "report.html"
-    return document.write(report_of(rows, walks=[walk]), out)
+    return walk
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    rows, out = made_rows(), tmp_path_factory.mktemp("report") / "report.html"
+    return document.write(report_of(rows, walks=[made_walk(rows)]), out)
 
 
 def agents(page: Page) -> list[str]:
@@ -122,6 +134,34 @@ def test_walks_are_drawn_and_filtered(page, report):
     assert page.ask("document.querySelectorAll('.walk polyline').length") > 0
     page.click("#walks .chip", "base, clean")
     assert page.ask("document.querySelectorAll('.walk circle').length") == 1
+
+
+def test_see_leads_from_a_row_to_its_walk(page, report):
+    page.open(report, "#agent=0&corruption=spatter")
+    page.click("dialog .link", "see")
+    page.until("!document.querySelector('dialog') && document.activeElement.id === 'walk-0'")
+    box = "document.getElementById('walk-0').getBoundingClientRect()"
+    page.until(f"{box}.top < innerHeight && {box}.bottom > 0")
+    page.until("!location.hash.includes('agent')")
+    assert page.ask("document.activeElement.id") == "walk-0"
+
+
+@pytest.mark.parametrize(
+    "other",
+    [{"severity": 0.3}, {"seed": 1}, {"split": "val_seen"}, {"rule": "view points"}, {"hash": "c"}],
+    ids=lambda other: [*other][0],
+)
+def test_see_is_offered_for_the_walks_of_the_row_alone(page, tmp_path, other):
+    rows = made_rows()
+    walk = made_walk(rows) | other
+    walk["walks"] = [one | {"hash": other.get("hash", one["hash"])} for one in walk["walks"]]
+    out = document.write(report_of(rows, walks=[walk]), tmp_path / "page.html")
+    page.open(out, "#agent=0&corruption=spatter")
+    assert len(lines(page)) == 10
+    assert page.ask("document.querySelector('dialog .link')") is None
+    page.open(out, "#agent=0&corruption=clean")
+    seen = page.ask("document.querySelectorAll('dialog .link').length")
+    assert seen == ("severity" in other)  # which a clean walk has none of
 
 
 def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):

@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pytest
 
+from mitigate.core.identity import identity
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import table
 from mitigate.evaluation.episode import run_episode
@@ -21,6 +22,7 @@ from mitigate.evaluation.rows import write
 from mitigate.evaluation.sections import sections
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.episodes import Episode
 from tests.evaluation.made_rows import cell, column, row
 from tests.evaluation.straight import Straight
 
@@ -128,21 +130,50 @@ def test_walks_are_chosen_by_turns_of_outcomes_and_corruptions():
     assert choose(made, ["base", "hard"], 2) == chosen[:2]
 
 
-def test_a_walk_is_compared_with_its_row():
-    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
-    agents = {"base": Straight(1), "hard": Straight(3)}
+def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[dict]:
+    """What agents measure clean and in low light, by their hashes."""
     made = []
     for name, agent in agents.items():
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
             measures = run_episode(agent, world, episode, met, 0)
             at = {"corruption": met.name, "severity": met.severity, "name": name}
+            at["agent"] = identity(agent, world.sensors)
             made.append(row(episode.episode_id, 0, **at) | measures)
+    return made
+
+
+def test_a_walk_is_compared_with_its_row():
+    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
+    agents = {"base": Straight(1), "hard": Straight(3)}
+    made = walked_rows(agents, world, episode)
     made[-1]["steps"] += 1  # a row that says otherwise
     (drawn,) = walk_again(agents, world, [episode], made, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
     assert [len(walk["points"]) for walk in drawn["walks"]] == [2, 2, 4]
     assert drawn["plan"].startswith("data:image/png;base64,") and len(drawn["views"]) == 2
     assert drawn["kind"] == "lost by both" and drawn["title"] == "L-L w/o noise"
+
+
+def test_a_walk_is_compared_with_no_row_of_another_agent_of_its_name():
+    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
+    agents = {"base": Straight(1)}
+    made = walked_rows(agents, world, episode)
+    others = [r | {"agent": "ba9876543210", "steps": r["steps"] + 1} for r in made]
+    (drawn,) = walk_again(agents, world, [episode], made + others, most=3, seed=0)
+    assert [walk["agrees"] for walk in drawn["walks"]] == [True, True]
+    assert {walk["hash"] for walk in drawn["walks"]} == {made[0]["agent"]}
+    with pytest.raises(ValueError, match=r"rows of base are of ba9876543210, and the weights"):
+        next(walk_again(agents, world, [episode], others, most=3, seed=0))
+
+
+def test_an_agent_that_walks_alone_wins_or_loses():
+    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
+    agents = {"base": Straight(1)}
+    (drawn,) = walk_again(
+        agents, world, [episode], walked_rows(agents, world, episode), most=1, seed=0
+    )
+    assert drawn["kind"] == "lost"
+    assert [drawn[key] for key in ("split", "seed", "severity")] == ["val_unseen", 0, 0.6]
 
 
 def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, rows):

@@ -12,9 +12,11 @@ function openCell(column, k) {
   for (const row of rows) {
     row.clean = clean?.get(`${row.seed}/${row.index}`) ?? null;
     row.base = base?.get(`${row.seed}/${row.index}`) ?? null;
-    row.walk = walkOf(one, row.id, k);
+    row.walk = walkOf(one, column, k, row);
   }
   const view = { filter: "both", sort: { key: "id", down: false }, search: "", most: PAGE };
+  let walk = null; // that the dialog leads to
+  const see = (n) => { walk = n; dialog.close(); };
   const kinds = el("div", {}), list = el("div", {});
   const search = el("input", { type: "search", placeholder: "episode id", "aria-label": "Search episodes",
     oninput: () => { view.search = search.value; view.most = PAGE; show(); } });
@@ -22,15 +24,16 @@ function openCell(column, k) {
     el("header", {}, el("h2", { id: "cell-title" }, one.columns[column].label, " \u00b7 ", one.corruptions[k].title),
       el("button", { type: "button", class: "close", onclick: () => dialog.close() }, "Close")),
     el("p", { class: "facts" }, one.title), el("div", { class: "controls" }, kinds, search), list);
-  const others = { clean, base, other, column };
+  const others = { clean, base, other, column, see };
   const show = () => {
     redraw(kinds, () => cellKinds(one, rows, view, others, show));
-    redraw(list, () => cellList(one, rows, view, others, show, dialog));
+    redraw(list, () => cellList(one, rows, view, others, show));
   };
   dialog.addEventListener("close", () => {
     dialog.remove();
     writeAddress(null);
-    document.querySelector(`[data-at="${column}/${k}"]`)?.focus();
+    if (walk !== null) showWalk(walk);
+    else document.querySelector(`[data-at="${column}/${k}"]`)?.focus();
   });
   dialog.addEventListener("click", (event) => { if (event.target === dialog) dialog.close(); });
   document.body.append(dialog);
@@ -53,18 +56,18 @@ const FILTERS = {
 function cellKinds(one, rows, view, others, show) {
   const kinds = Object.entries(FILTERS).filter(([name]) =>
     name === "harmed" ? others.clean : name === "gained" || name === "given" ? others.base : true);
-  const named = (text) => text.replace("BASE", others.base ? one.columns[others.other].label : "");
+  const named = (text) => text.replace("BASE", () => one.columns[others.other].label);
   const counted = kinds.map(([name, [text, test]]) => [name, `${named(text)} (${rows.filter(test).length})`]);
   return chips("Episodes", counted, view.filter, (value) => { view.filter = value; view.most = PAGE; show(); });
 }
 
-function cellList(one, rows, view, others, show, dialog) {
+function cellList(one, rows, view, others, show) {
   const wanted = view.search.trim().toLowerCase();
   const kept = rows.filter(FILTERS[view.filter][1]).filter((row) => row.id.toLowerCase().includes(wanted));
   const order = sorted(kept, (row) => row[view.sort.key]?.success ?? (["clean", "base"].includes(view.sort.key) ? null : row[view.sort.key]), view.sort.down);
   return [
     el("p", { class: "readout", "aria-live": "polite" }, cellSummary(kept)),
-    cellTable(one, order, view, others, show, dialog),
+    cellTable(one, order, view, others, show),
     order.length > view.most && el("button", { type: "button", class: "chip", onclick: () => { view.most += 4 * PAGE; show(); } },
       `Show more (${order.length - view.most} left)`),
   ];
@@ -76,7 +79,7 @@ function cellSummary(rows) {
   return `${rows.length} episodes: SR ${shown(mean("success"), "%")} %, SPL ${shown(mean("spl"), "")}`;
 }
 
-function cellTable(one, order, view, others, show, dialog) {
+function cellTable(one, order, view, others, show) {
   const onsort = (found) => { view.sort = found; show(); };
   const head = (text, key, props) => sortHeading(text, key, view.sort, onsort, props);
   const several = one.columns[others.column].seeds.length > 1;
@@ -89,7 +92,7 @@ function cellTable(one, order, view, others, show, dialog) {
     el("th", { scope: "row" }, row.id), several && el("td", { class: "number" }, row.seed), outcome(row),
     el("td", { class: "number" }, shown(row.spl, "")), el("td", { class: "number" }, row.steps ?? "\u2013"),
     others.clean && outcome(row.clean), others.base && outcome(row.base),
-    walks && el("td", {}, row.walk !== null && el("button", { type: "button", class: "link", onclick: () => { dialog.close(); showWalk(row.walk); } }, "see"))));
+    walks && el("td", {}, row.walk !== null && el("button", { type: "button", class: "link", onclick: () => others.see(row.walk) }, "see"))));
   return el("div", { class: "scroll tall" }, el("table", { class: "episodes" },
     el("thead", {}, el("tr", {}, heads)), el("tbody", {}, lines)));
 }
