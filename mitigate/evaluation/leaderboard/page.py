@@ -75,6 +75,7 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
         ],
         "wanted": first.episodes,
         "pairs": {},
+        "baselines": 0,
         "notes": _notes(values),
         "grid": None,
     }

@@ -7,7 +7,7 @@ The page's scripts read these as JSON, draw them and compute nothing but signs. 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -29,12 +29,14 @@ def section_data(section: Section) -> dict[str, Any]:
     ``columns`` are the agents, ``measures`` the columns of the table, ``values[c][m]`` their
     numbers, where one may need marks with these as the fourth entry. ``corruptions`` are those of
     the heatmap, clean first, ``cells[c][k]`` is [SR, SPL, episodes held]. ``pairs["i-j"]`` are the
-    differences of column i to column j, i > j, j below :data:`BASELINES`.
+    differences of column i to column j, i > j, j one of the first ``baselines``; None for two
+    without a common seed.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
     names = [CLEAN, *(name for held in section.blocks.values() for name in held)]
     blocks = ["", *(block for block, held in section.blocks.items() for _ in held)]
+    pairs = _pairs(section, names)
     return {
         "title": _title(section),
         "facts": _facts(section),
@@ -50,8 +52,9 @@ def section_data(section: Section) -> dict[str, Any]:
         ],
         "cells": [_cells(section, column, names) for column in section.columns],
         "wanted": len(grid.episodes),
-        "pairs": _pairs(section, names),
-        "notes": _notes(section, values),
+        "pairs": pairs,
+        "baselines": min(len(section.columns), BASELINES) if any(pairs.values()) else 0,
+        "notes": _notes(section, values, pairs),
     }
 
 
@@ -144,11 +147,12 @@ def _cells(section: Section, column: str, names: Sequence[str]) -> list[list[Any
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
     """Return the differences of all columns to each of the first ones, paired over the seeds and
-    the episodes that both have."""
-    found = {}
+    the episodes that both have: on other seeds they met corruptions of other keys."""
+    found: dict[str, Any] = {}
     for j, second in enumerate(section.columns[:BASELINES]):
         for i, first in enumerate(section.columns[j + 1 :], start=j + 1):
-            found[f"{i}-{j}"] = _pair(section, first, second, names)
+            common = section.grid.common((first, second), section.severity)
+            found[f"{i}-{j}"] = _pair(section, first, second, names) if common else None
     return found
 
 
@@ -168,9 +172,12 @@ def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> di
     return {"measures": measures, "SR": cells["SR"], "SPL": cells["SPL"]}
 
 
-def _notes(section: Section, values: list[list[Numbers]]) -> list[str]:
+def _notes(
+    section: Section, values: list[list[Numbers]], pairs: Mapping[str, Any]
+) -> list[str]:
     notes = []
-    marks = "".join(value[3] for line in values for value in line if value and len(value) > 3)
+    lines = [*values, *(pair["measures"] for pair in pairs.values() if pair)]
+    marks = "".join(value[3] for line in lines for value in line if value and len(value) > 3)
     if "‡" in marks:
         notes.append("‡ The clean value is so low that a PRS says little.")
     if "†" in marks:
@@ -186,6 +193,8 @@ def _notes(section: Section, values: list[list[Numbers]]) -> list[str]:
             notes.append(
                 f"Seed {seed} of {column} is not finished and left out: {have:,} of {want:,} rows."
             )
+    if None in pairs.values():
+        notes.append("There is no difference of agents without a seed in common.")
     if len(section.columns) > BASELINES:
         notes.append(f"Only the first {BASELINES} agents can be chosen as a baseline.")
     return notes

@@ -6,6 +6,7 @@ import json
 
 import pytest
 
+from mitigate.evaluation.blocks import FRAMES
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.report import report as report_of
 from tests.evaluation.made_rows import column
@@ -84,6 +85,27 @@ def test_headings_sort_the_agents_and_a_baseline_shows_differences(page, report)
     shown = page.ask("document.querySelector('.agents .change').textContent")
     assert shown.startswith("\u221220.0 [\u2212")
     assert "baseline=0" in page.ask("location.hash")
+
+
+def test_a_difference_over_fewer_corruptions_says_so(page, tmp_path):
+    rows = column(8, dict.fromkeys(FRAMES, 2)) + column(6, {"spatter": 6}, name="hard", agent="b")
+    page.open(document.write(report_of(rows), tmp_path / "page.html"), "#section=0&baseline=1")
+    line = "[...document.querySelectorAll('.agents tbody tr')][0]"
+    values, changes = (
+        page.ask(f"[...{line}.querySelectorAll('{part}')].map(one => one.textContent)")
+        for part in (".value", ".change")
+    )
+    assert values[2] == "20.0" and changes[2].endswith("] \u2020 1/12")
+    assert not any("\u2020" in change for change in changes[:2])
+
+
+def test_any_agent_can_be_the_baseline(page, report):
+    page.open(report, "#baseline=1")
+    chosen = "[...document.querySelectorAll('.choose select')].map(s => [s.value, s.textContent])"
+    assert page.ask(chosen) == [["1", "nonebasehard"]]
+    assert page.ask("document.querySelector('.base .agent').textContent") == "hard"
+    page.open(report, "#baseline=2")
+    assert page.ask(chosen)[0][0] == "-1"
 
 
 def test_a_cell_opens_its_episodes_and_filters_them(page, report):

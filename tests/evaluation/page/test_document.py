@@ -60,6 +60,15 @@ def test_values_and_differences_are_those_of_the_table(rows):
     assert [line["label"] for line in shown["columns"]] == ["base", "hard"]
 
 
+def test_agents_without_a_common_seed_have_no_difference(rows):
+    apart = column(6, {"spatter": 6}, name="apart", agent="cccccccccccc", seed=7)
+    (shown,) = held(report(rows + apart))[0]["sections"]
+    assert shown["pairs"]["1-0"] and shown["pairs"]["2-0"] is None and shown["baselines"] == 3
+    assert any("without a seed in common" in note for note in shown["notes"])
+    (alone,) = held(report([r for r in rows + apart if r["name"] != "hard"]))[0]["sections"]
+    assert alone["baselines"] == 0 and [*alone["pairs"].values()] == [None]
+
+
 def test_the_episodes_of_a_cell_come_back_as_they_were(rows):
     data, packed = held(report(rows))
     (grid,) = data["grids"]

@@ -67,7 +67,7 @@ function readAddress() {
   };
   const chosen = whole("section", DATA.sections.length);
   if (chosen !== null) state.section = chosen;
-  state.baseline = whole("baseline", section()?.columns.length ?? 0) ?? -1;
+  state.baseline = whole("baseline", section()?.baselines ?? 0) ?? -1;
   return { agent: whole("agent", section()?.columns.length ?? 0), corruption: given.get("corruption") };
 }
 

@@ -20,15 +20,13 @@ function head() {
 function chooser() {
   const one = section();
   const list = DATA.sections.map((held, n) => [n, held.title]);
-  const some = Object.keys(one.pairs).length > 0;
-  const last = Math.max(-1, ...Object.keys(one.pairs).map((pair) => Number(pair.split("-")[1])));
-  const bases = one.columns.map((column, c) => [c, column.label]).filter(([c]) => c <= last);
-  if (list.length < 2 && !some) return null;
+  const bases = one.columns.slice(0, one.baselines).map((column, c) => [c, column.label]);
+  if (list.length < 2 && !bases.length) return null;
   return el("div", { class: "controls choose" },
     list.length > 1 && labelled("Results", choice(list, state.section, (value) => {
       state.section = Number(value); state.baseline = -1; state.sort = { key: -1, down: false }; writeAddress(null); draw();
     })),
-    some && labelled("Baseline", choice([[-1, "none"], ...bases], state.baseline, (value) => {
+    bases.length > 0 && labelled("Baseline", choice([[-1, "none"], ...bases], state.baseline, (value) => {
       state.baseline = Number(value); writeAddress(null); draw();
     })));
 }
