@@ -12,7 +12,7 @@ from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page import document
-from mitigate.evaluation.page.model import CLEAN
+from mitigate.evaluation.page.model import CLEAN, shortened
 from mitigate.evaluation.sections import label
 
 ABOUT = (
@@ -70,15 +70,20 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
             {"name": name, "title": "Clean" if name == CLEAN else label(name), "block": block}
             for name, block in names.items()
         ],
-        "cells": [
-            [[entry.SR.get(n), entry.SPL.get(n), entry.episodes] for n in names] for entry in held
-        ],
+        "cells": [[_cell(entry, name) for name in names] for entry in held],
         "wanted": first.episodes,
         "pairs": {},
         "baselines": 0,
         "notes": _notes(values),
         "grid": None,
     }
+
+
+def _cell(entry: LeaderboardEntry, name: str) -> list[Any]:
+    """Return SR, SPL, episodes, and the shares of the clean SR and SPL, over the same episodes."""
+    found = [(rates.get(name), rates[CLEAN]) for rates in (entry.SR, entry.SPL)]
+    kept = [shortened(a[0] / b[0]) if a and b and b[0] else None for a, b in found]
+    return [*(own for own, _ in found), entry.episodes, *kept]
 
 
 def _notes(values: list[list[Any]]) -> list[str]:

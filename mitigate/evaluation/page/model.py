@@ -18,7 +18,7 @@ from mitigate.evaluation.grid import METRICS
 from mitigate.evaluation.sections import Retained, Section, compare, label
 
 BASELINES = 12  # columns that the others can be compared with, the first ones (ours)
-DIGITS = 6  # more than are shown: what is rounded twice may end elsewhere
+DIGITS = 6
 CLEAN = "clean"
 Numbers = list[Any] | None
 
@@ -28,7 +28,8 @@ def section_data(section: Section) -> dict[str, Any]:
 
     ``columns`` are the agents, ``measures`` the columns of the table, ``values[c][m]`` their
     numbers, where one may need marks with these as the fourth entry. ``corruptions`` are those of
-    the heatmap, clean first, ``cells[c][k]`` is [SR, SPL, episodes held]. ``pairs["i-j"]`` are the
+    the heatmap, clean first, ``cells[c][k]`` is [SR, SPL, episodes held, shares of the column's own
+    clean SR and SPL]. ``pairs["i-j"]`` are the
     differences of column i to column j, i > j, j one of the first ``baselines``; None for two
     without a common seed.
     """
@@ -47,7 +48,12 @@ def section_data(section: Section) -> dict[str, Any]:
         "measures": _measures(section),
         "values": values,
         "corruptions": [
-            {"name": name, "title": "Clean" if name == CLEAN else label(name), "block": block}
+            {
+                "name": name,
+                "title": "Clean" if name == CLEAN else label(name),
+                "block": block,
+                "at": str(0.0 if name == CLEAN else float(section.severity)),
+            }
             for name, block in zip(names, blocks, strict=True)
         ],
         "cells": [_cells(section, column, names) for column in section.columns],
@@ -63,8 +69,16 @@ def numbers(found: Estimate | None) -> Numbers:
     if found is None or math.isnan(found.value):
         return None
     return [
-        None if math.isnan(x) else round(x, DIGITS) for x in (found.value, found.low, found.high)
+        None if math.isnan(x) else shortened(x) for x in (found.value, found.low, found.high)
     ]
+
+
+def shortened(x: float) -> float:
+    """Return ``x`` with :data:`DIGITS` digits, or whole where that would be shown as another number:
+    in percent with one digit, or with two."""
+    short = round(x, DIGITS)
+    same = f"{100 * x:.1f} {x:.2f}" == f"{100 * short:.1f} {short:.2f}"
+    return short if same else x
 
 
 def _title(section: Section) -> str:
@@ -140,9 +154,22 @@ def _cells(section: Section, column: str, names: Sequence[str]) -> list[list[Any
     tables = {m: [grid.cell(column, n, at, key) for n in names] for m, key in METRICS.items()}
     found = {metric: bootstrap.means(table, shares=True) for metric, table in tables.items()}
     return [
-        [*(numbers(found[metric][k]) for metric in METRICS), int((~np.isnan(values)).sum())]
-        for k, values in enumerate(tables["SR"])
+        [
+            *(numbers(found[metric][k]) for metric in METRICS),
+            int((~np.isnan(tables["SR"][k])).sum()),
+            *(_kept(section, column, name, metric) for metric in METRICS),
+        ]
+        for k, name in enumerate(names)
     ]
+
+
+def _kept(section: Section, column: str, name: str, metric: str) -> float | None:
+    """Return the PRS of one corruption alone: over the episodes that are measured clean, too, and
+    None where these are too few for a PRS."""
+    parts = section.grid.retention([column], [name], section.severity, METRICS[metric])
+    if parts is None or not parts[0].clean.any():
+        return None
+    return shortened(float(parts[0].corrupted.mean() / parts[0].clean.mean()))
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import pytest
 from mitigate.evaluation.blocks import FRAMES
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.report import report as report_of
-from tests.evaluation.made_rows import column
+from tests.evaluation.made_rows import cell, column
 from tests.evaluation.page.chromium import PROGRAM, Page
 
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no Chromium: apt-get install chromium")
@@ -125,6 +125,38 @@ def test_a_cell_opens_its_episodes_and_filters_them(page, report):
     page.until("!document.querySelector('dialog')")
     page.click('[data-at="0/1"]')
     assert lines(page)[0][3] == "41"  # steps
+
+
+@pytest.mark.parametrize("severity", [1 / 3, 1e-5, 1.0])
+def test_cells_open_at_any_severity(page, tmp_path, severity):
+    rows = column(8, {"spatter": 2}, severity)
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    page.click('[data-at="0/1"]')
+    assert len(lines(page)) == 10
+
+
+def test_a_cell_of_several_seeds_is_summed_up_by_its_whole_episodes(page, tmp_path):
+    """Seed 1 lacks the last episode, which seed 0 won, and so has no part in the grid's mean."""
+    first = column(10, {"spatter": 10})
+    second = column(10, {"spatter": 0}, seed=1)
+    rows = first + [r for r in second if r["episode_id"] != "9"]
+    page.open(document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter")
+    shown = page.ask("document.querySelector('[data-at=\"0/1\"]').textContent")
+    said = page.ask("document.querySelector('dialog .readout').textContent")
+    assert shown == "50.0*"
+    assert said == (
+        "19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has"
+    )
+
+
+def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
+    rows = cell(5, 16) + cell(3, 16, corruption="spatter", severity=0.6)
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    values = page.ask("[...document.querySelectorAll('.agents .value')].map(v => v.textContent)")
+    assert values[:3] == ["31.2", "0.16", "18.8 \u2020 1/8"]  # of 31.25, 0.15625 and 18.75
+    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert shown == ["31.2", "18.8"]
+    assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == shown
 
 
 def test_episodes_are_searched_as_they_are_typed(page, tmp_path):

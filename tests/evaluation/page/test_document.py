@@ -16,6 +16,7 @@ from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.page import command
 from mitigate.evaluation.page.choosing import KINDS, choose
 from mitigate.evaluation.page.curves import curves
+from mitigate.evaluation.page.model import shortened
 from mitigate.evaluation.page.report import report
 from mitigate.evaluation.page.walks import walk_again
 from mitigate.evaluation.rows import write
@@ -91,7 +92,36 @@ def test_rows_that_are_missing_are_missing_in_the_page(rows):
 def test_a_page_is_bounded_and_says_what_it_leaves_out(rows):
     data, packed = held(report(rows, most=25))
     assert len(packed) == 3 * 20 and len(data["grids"][0]["cells"]) == 2
-    assert "4 cells (one a seed) are not in this file" in data["notes"][0]
+    assert "4 cells are not in this file" in data["notes"][0]
+
+
+def test_a_cell_is_held_with_all_its_seeds_or_not_at_all(rows):
+    two = [r | {"seed": seed} for seed in (0, 1) for r in rows if r["name"] == "base"]
+    data, _ = held(report(two, most=50))
+    begun = sorted(data["grids"][0]["cells"])
+    assert begun == [f"0|{at}|{seed}" for at in ("clean|0.0", "spatter|0.6") for seed in (0, 1)]
+    assert "episodes of 1 cell are not" in data["notes"][0]
+
+
+def test_the_share_of_the_clean_value_is_over_the_episodes_of_both(rows):
+    """As a PRS is: sure kept all that it was measured to have."""
+    sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
+    lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
+    fewer = [r for r in lost if (r["episode_id"], r["corruption"]) != ("9", "spatter")]
+    (shown,) = held(report(rows + fewer))[0]["sections"]
+    place = [one["name"] for one in shown["corruptions"]].index("spatter")
+    assert shown["cells"][2][place][3:] == [1.0, 1.0]
+    assert shown["cells"][0][place][3:] == [0.25, 0.25] and shown["cells"][0][0][3:] == [1.0, 1.0]
+    least = [r for r in fewer if r["corruption"] == "clean" or r["episode_id"] < "5"]
+    (shown,) = held(report(rows + least))[0]["sections"]
+    assert shown["cells"][2][place][3:] == [None, None]  # too few for a PRS
+
+
+@pytest.mark.parametrize("x", [0.3125, 0.31250000001, 0.0049999999, 0.125, 1 / 3, 0.0, 37 / 900])
+def test_a_number_is_shortened_where_it_shows_the_same(x):
+    short = shortened(x)
+    assert f"{short:.2f} {100 * short:.1f}" == f"{x:.2f} {100 * x:.1f}"
+    assert len(repr(short)) <= 8 or short == x
 
 
 def test_several_seeds_and_kinds_of_corruption_have_their_own_cells(rows):

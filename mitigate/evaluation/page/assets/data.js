@@ -28,22 +28,22 @@ function difference(one, i, j, pick) {
 }
 
 function cellKey(one, column, k, seed) {
-  const name = one.corruptions[k].name;
-  const at = name === "clean" ? 0 : one.severity;
+  const { name, at } = one.corruptions[k];
   return `${one.columns[column].place}|${name}|${at}|${seed}`;
 }
 
+// Whether the episodes of a cell are in the file, of all its seeds.
+const opens = (one, column, k) => one.grid !== null && one.columns[column].seeds.every(
+  (seed) => DATA.grids[one.grid].cells[cellKey(one, column, k, seed)] !== undefined);
+
 // The episodes of a cell: {seed, index, id, success, spl, steps}; null if they are not in the file.
 function episodesOf(one, column, k) {
-  const grid = one.grid === null ? null : DATA.grids[one.grid];
-  if (!grid) return null;
+  if (!opens(one, column, k)) return null;
+  const grid = DATA.grids[one.grid];
   const count = grid.episodes.length;
   const rows = [];
-  let held = false;
   for (const seed of one.columns[column].seeds) {
     const begin = grid.cells[cellKey(one, column, k, seed)];
-    if (begin === undefined) continue;
-    held = true;
     const values = packed().subarray(3 * begin, 3 * (begin + count));
     for (let n = 0; n < count; n++) {
       if (values[n] === MISSING) continue;
@@ -52,11 +52,8 @@ function episodesOf(one, column, k) {
         spl: values[count + n] / SCALE, steps: steps === MISSING ? null : steps });
     }
   }
-  return held ? rows : null;
+  return rows;
 }
-
-const opens = (one, column, k) => one.grid !== null && one.columns[column].seeds.some(
-  (seed) => DATA.grids[one.grid].cells[cellKey(one, column, k, seed)] !== undefined);
 
 // The address after # says which section, baseline and cell are shown.
 function readAddress() {

@@ -9,7 +9,9 @@ function openCell(column, k) {
   const clean = k > 0 ? lookup(episodesOf(one, column, 0)) : null;
   const other = state.baseline >= 0 && state.baseline !== column ? state.baseline : -1;
   const base = other >= 0 ? lookup(episodesOf(one, other, k)) : null;
+  const seeds = one.columns[column].seeds.length, held = byEpisode(rows);
   for (const row of rows) {
+    row.whole = held.get(row.index).length === seeds;
     row.clean = clean?.get(`${row.seed}/${row.index}`) ?? null;
     row.base = base?.get(`${row.seed}/${row.index}`) ?? null;
     row.walk = walkOf(one, column, k, row);
@@ -42,6 +44,12 @@ function openCell(column, k) {
   writeAddress({ column, k });
 }
 
+function byEpisode(rows) {
+  const held = new Map();
+  for (const row of rows) held.set(row.index, [...(held.get(row.index) ?? []), row]);
+  return held;
+}
+
 const lookup = (rows) => rows && new Map(rows.map((row) => [`${row.seed}/${row.index}`, row]));
 
 const FILTERS = {
@@ -66,17 +74,22 @@ function cellList(one, rows, view, others, show) {
   const kept = rows.filter(FILTERS[view.filter][1]).filter((row) => row.id.toLowerCase().includes(wanted));
   const order = sorted(kept, (row) => row[view.sort.key]?.success ?? (["clean", "base"].includes(view.sort.key) ? null : row[view.sort.key]), view.sort.down);
   return [
-    el("p", { class: "readout", "aria-live": "polite" }, cellSummary(kept)),
+    el("p", { class: "readout", "aria-live": "polite" }, cellSummary(kept, one.columns[others.column].seeds.length)),
     cellTable(one, order, view, others, show),
     order.length > view.most && el("button", { type: "button", class: "chip", onclick: () => { view.most += 4 * PAGE; show(); } },
       `Show more (${order.length - view.most} left)`),
   ];
 }
 
-function cellSummary(rows) {
+// Counts and means of rows. Each episode counts as the mean of its walks, if each seed has one, as in the cells.
+function cellSummary(rows, seeds) {
   if (!rows.length) return "No such episode.";
-  const mean = (name) => rows.reduce((sum, row) => sum + row[name], 0) / rows.length;
-  return `${rows.length} episodes: SR ${shown(mean("success"), "%")} %, SPL ${shown(mean("spl"), "")}`;
+  const episodes = [...byEpisode(rows).values()], whole = episodes.filter(([row]) => row.whole);
+  const mean = (list, value) => list.reduce((sum, one) => sum + value(one), 0) / list.length;
+  const measure = (name) => (whole.length ? mean(whole, (own) => mean(own, (row) => row[name])) : null);
+  const count = seeds > 1 ? `${rows.length} walks of ${episodes.length} episodes` : `${rows.length} episodes`;
+  const over = whole.length < episodes.length ? `, over the ${whole.length} that each seed has` : "";
+  return `${count}: SR ${shown(measure("success"), "%")} %, SPL ${shown(measure("spl"), "")}${over}`;
 }
 
 function cellTable(one, order, view, others, show) {
