@@ -183,6 +183,74 @@ def test_an_address_opens_a_cell_and_keys_are_enough(page, report):
     assert "hard" in page.ask("document.querySelector('dialog h2').textContent")
 
 
+def test_an_address_leads_on_in_an_open_report(page, report):
+    page.open(report, "#section=0&agent=0&corruption=spatter")
+    page.ask("location.hash = '#section=0&baseline=1&agent=1&corruption=clean'")
+    page.until("document.querySelector('dialog h2').textContent === 'hard \u00b7 Clean'")
+    assert page.ask("document.querySelectorAll('dialog').length") == 1
+    assert page.ask("document.querySelector('.base .agent').textContent") == "hard"
+    page.press("Escape")
+    page.until("!document.querySelector('dialog')")
+    assert page.ask("location.hash") == "#section=0&baseline=1"
+    page.click(".skip")
+    page.until("location.hash === '#main'")
+    assert page.ask("document.querySelector('.base .agent').textContent") == "hard"
+
+
+def test_a_click_beside_a_dialog_closes_it_and_one_in_it_does_not(page, report):
+    page.open(report, "#agent=0&corruption=spatter")
+    box = page.ask("(b => [b.left, b.top])(document.querySelector('dialog').getBoundingClientRect())")
+
+    def click(x: float, y: float) -> None:
+        for kind in ("mousePressed", "mouseReleased"):
+            at = {"x": x, "y": y, "button": "left", "clickCount": 1}
+            page.call("Input.dispatchMouseEvent", type=kind, **at)
+
+    click(box[0] + 8, box[1] + 8)
+    assert page.ask("document.querySelector('dialog').open")
+    click(box[0] - 8, box[1] + 8)
+    page.until("!document.querySelector('dialog')")
+
+
+def test_a_line_is_hidden_in_all_curves(page, tmp_path):
+    rows = column(8, {"spatter": 2}, 0.3) + column(8, {"spatter": 1})
+    rows += [r | {"split": "val_seen"} for r in rows]
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    key = "[...document.querySelectorAll('[aria-label=\"Severity curves\"] .chip')]"
+    assert page.ask("document.querySelectorAll('.panel polyline').length") == 2
+    page.ask(f"{key}[0].click()")
+    assert page.ask(f"{key}.map(one => one.ariaPressed)") == ["false", "false"]
+    assert page.ask("document.querySelectorAll('.panel polyline').length") == 0
+
+
+def test_details_stay_open(page, report):
+    page.open(report)
+    page.click(".agents summary")
+    page.until("document.querySelector('.agents details').open")
+    page.click(".agents .sort", "Clean SR")
+    page.click(".agents .sort", "Clean SR")
+    assert agents(page) == ["hard", "base"]
+    opened = "[...document.querySelectorAll('.agents details')].map(one => one.open)"
+    page.until(f"String({opened}) === 'false,true'")
+
+
+@pytest.mark.parametrize("width", [400, 1300])
+def test_no_name_makes_the_page_scroll_sideways(page, tmp_path, width):
+    names = {"name": "n" * 190, "split": "s" * 190, "rule": "r" * 190}
+    rows = [r | names for r in made_rows()] + made_rows()
+    rows += [r | {"severity": 0.3} for r in rows if r["severity"]]
+    walk = made_walk(rows[:1]) | {"episode": "e" * 190, "kind": "k" * 100}
+    walk["walks"] = [one | {"agent": "n" * 190} for one in walk["walks"]]
+    out = document.write(report_of(rows, title="t" * 190, walks=[walk]), tmp_path / "page.html")
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    page.call("Emulation.setDeviceMetricsOverride", **size)
+    for n in range(2):
+        page.open(out, f"#section={n}&baseline=0&agent=1&corruption=spatter")
+        assert page.ask("document.documentElement.scrollWidth") <= width
+        assert page.ask("(d => d.scrollWidth - d.clientWidth)(document.querySelector('dialog'))") <= 0
+    page.call("Emulation.clearDeviceMetricsOverride")
+
+
 def test_walks_are_drawn_and_filtered(page, report):
     page.open(report)
     assert page.ask("document.querySelectorAll('.walk polyline').length") > 0

@@ -2,7 +2,7 @@
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const MISSING = 65535, SCALE = 1000;
-const state = { section: DATA.first, baseline: -1, metric: "SR", show: "value", sort: { key: -1, down: false }, intervals: false };
+const state = { section: DATA.first, baseline: -1, metric: "SR", show: "value", sort: { key: -1, down: false }, intervals: false, open: new Set() };
 
 const packed = (() => {
   let values = null;
@@ -16,6 +16,12 @@ const packed = (() => {
 })();
 
 const section = () => DATA.sections[state.section];
+
+function choose(n) {
+  state.section = n;
+  state.baseline = -1;
+  state.sort = { key: -1, down: false };
+}
 
 // Difference of column i to column j of a section: [value, low, high, marks] by `pick`, or null.
 function difference(one, i, j, pick) {
@@ -63,7 +69,7 @@ function readAddress() {
     return found !== null && /^\d+$/.test(found) && Number(found) < most ? Number(found) : null;
   };
   const chosen = whole("section", DATA.sections.length);
-  if (chosen !== null) state.section = chosen;
+  if (chosen !== null) choose(chosen);
   state.baseline = whole("baseline", section()?.baselines ?? 0) ?? -1;
   return { agent: whole("agent", section()?.columns.length ?? 0), corruption: given.get("corruption") };
 }

@@ -22,10 +22,10 @@ function openCell(column, k) {
   const kinds = el("div", {}), list = el("div", {});
   const search = el("input", { type: "search", placeholder: "episode id", "aria-label": "Search episodes",
     oninput: () => { view.search = search.value; view.most = PAGE; show(); } });
-  const dialog = el("dialog", { class: "cell", "aria-labelledby": "cell-title" },
+  const dialog = el("dialog", { class: "cell", "aria-labelledby": "cell-title" }, el("div", { class: "inside" },
     el("header", {}, el("h2", { id: "cell-title" }, one.columns[column].label, " \u00b7 ", one.corruptions[k].title),
       el("button", { type: "button", class: "close", onclick: () => dialog.close() }, "Close")),
-    el("p", { class: "facts" }, one.title), el("div", { class: "controls" }, kinds, search), list);
+    el("p", { class: "facts" }, one.title), el("div", { class: "controls" }, kinds, search), list));
   const others = { clean, base, other, column, see };
   const show = () => {
     redraw(kinds, () => cellKinds(one, rows, view, others, show));

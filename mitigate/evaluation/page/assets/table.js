@@ -32,7 +32,8 @@ function summaryTable(one) {
 function agentHeading(one, c) {
   const column = one.columns[c];
   const facts = column.details.map(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
-  const about = el("details", {}, el("summary", {}, "details"), el("dl", {}, facts));
+  const keep = (event) => state.open[event.target.open ? "add" : "delete"](column.label);
+  const about = el("details", { open: state.open.has(column.label), ontoggle: keep }, el("summary", {}, "details"), el("dl", {}, facts));
   return el("th", { scope: "row", class: "name" }, el("span", { class: "agent" }, breakable(column.label)),
     c === state.baseline && el("span", { class: "tag" }, "baseline"), facts.length && one.grid !== null ? about : null);
 }
