@@ -131,12 +131,20 @@ def _conditions(entries: Sequence[LeaderboardEntry]) -> dict[str, str]:
     return found | {name: "Pairs" if AND in name else "Other" for name in rest}
 
 
-def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
+def _labels(entries: Sequence[LeaderboardEntry]) -> list[str]:
+    """Return the names; of entries with one name each with its first agent, and numbered where that
+    is one, too."""
     twice = Counter(entry.name for entry in entries)
+    told = [f"{one.name} ({one.agents[0]['agent'][:6]})" for one in entries]
+    own = [x if twice[one.name] > 1 else one.name for one, x in zip(entries, told, strict=True)]
+    return [f"{x}, {own[:n].count(x) + 1}" if own.count(x) > 1 else x for n, x in enumerate(own)]
+
+
+def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
+    labels = _labels(entries)
     found: list[dict[str, Any]] = []
-    for entry in entries:
+    for entry, name in zip(entries, labels, strict=True):
         agents = ", ".join(str(one["agent"]) for one in entry.agents)
-        own = f"{entry.name} ({entry.agents[0]['agent'][:6]})"
         details = [
             ["hash", agents],
             ["seeds", ", ".join(str(one["seed"]) for one in entry.agents)],
@@ -147,7 +155,6 @@ def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
             ["sha256 of rows", entry.rows["sha256"]],
             ["link", entry.link],
         ]
-        name = own if twice[entry.name] > 1 else entry.name
         shown = [[key, value] for key, value in details if value]
         found.append({"label": name, "place": len(found), "seeds": [], "details": shown})
     return found

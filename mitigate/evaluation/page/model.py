@@ -68,14 +68,12 @@ def numbers(found: Estimate | None) -> Numbers:
     """Return an estimate as the page reads it."""
     if found is None or math.isnan(found.value):
         return None
-    return [
-        None if math.isnan(x) else shortened(x) for x in (found.value, found.low, found.high)
-    ]
+    return [None if math.isnan(x) else shortened(x) for x in (found.value, found.low, found.high)]
 
 
 def shortened(x: float) -> float:
-    """Return ``x`` with :data:`DIGITS` digits, or whole where that would be shown as another number:
-    in percent with one digit, or with two."""
+    """Return ``x`` with :data:`DIGITS` digits, or whole where that would show another number: shown
+    is percent with one digit, or two digits."""
     short = round(x, DIGITS)
     same = f"{100 * x:.1f} {x:.2f}" == f"{100 * short:.1f} {short:.2f}"
     return short if same else x
@@ -199,9 +197,7 @@ def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> di
     return {"measures": measures, "SR": cells["SR"], "SPL": cells["SPL"]}
 
 
-def _notes(
-    section: Section, values: list[list[Numbers]], pairs: Mapping[str, Any]
-) -> list[str]:
+def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, Any]) -> list[str]:
     notes = []
     lines = [*values, *(pair["measures"] for pair in pairs.values() if pair)]
     marks = "".join(value[3] for line in lines for value in line if value and len(value) > 3)

@@ -140,13 +140,13 @@ def test_a_cell_of_several_seeds_is_summed_up_by_its_whole_episodes(page, tmp_pa
     first = column(10, {"spatter": 10})
     second = column(10, {"spatter": 0}, seed=1)
     rows = first + [r for r in second if r["episode_id"] != "9"]
-    page.open(document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter")
+    page.open(
+        document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
+    )
     shown = page.ask("document.querySelector('[data-at=\"0/1\"]').textContent")
     said = page.ask("document.querySelector('dialog .readout').textContent")
     assert shown == "50.0*"
-    assert said == (
-        "19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has"
-    )
+    assert said == ("19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has")
 
 
 def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
@@ -161,7 +161,9 @@ def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
 
 def test_episodes_are_searched_as_they_are_typed(page, tmp_path):
     rows = [made | {"episode_id": f"1{made['episode_id']}"} for made in column(8, {"spatter": 2})]
-    page.open(document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter")
+    page.open(
+        document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
+    )
     page.ask("document.querySelector('dialog input').focus()")
     page.type("12")
     assert page.ask("document.activeElement.value") == "12"
@@ -199,7 +201,9 @@ def test_an_address_leads_on_in_an_open_report(page, report):
 
 def test_a_click_beside_a_dialog_closes_it_and_one_in_it_does_not(page, report):
     page.open(report, "#agent=0&corruption=spatter")
-    box = page.ask("(b => [b.left, b.top])(document.querySelector('dialog').getBoundingClientRect())")
+    box = page.ask(
+        "(b => [b.left, b.top])(document.querySelector('dialog').getBoundingClientRect())"
+    )
 
     def click(x: float, y: float) -> None:
         for kind in ("mousePressed", "mouseReleased"):
@@ -247,7 +251,9 @@ def test_no_name_makes_the_page_scroll_sideways(page, tmp_path, width):
     for n in range(2):
         page.open(out, f"#section={n}&baseline=0&agent=1&corruption=spatter")
         assert page.ask("document.documentElement.scrollWidth") <= width
-        assert page.ask("(d => d.scrollWidth - d.clientWidth)(document.querySelector('dialog'))") <= 0
+        assert (
+            page.ask("(d => d.scrollWidth - d.clientWidth)(document.querySelector('dialog'))") <= 0
+        )
     page.call("Emulation.clearDeviceMetricsOverride")
 
 
