@@ -47,6 +47,9 @@ def test_an_entry_has_the_figures_of_the_table_and_comes_back_from_its_file(rows
     assert entry.scores["PRS-SR (RGB)"] == pytest.approx([prs.value, prs.low, prs.high], abs=1e-4)
     assert entry.scores["Clean SR"][0] == 0.8 and entry.SR["spatter"][0] == 0.2
     assert entry.episodes == 10 and entry.rows["count"] == 30
+    (shown,) = held(render([entry]))[0]["sections"]
+    kept = [cell[3:] for cell in shown["cells"][0]]
+    assert [pytest.approx([share] * 2) for share in (1.0, 0.25, 0.875)] == kept
     assert load(entry.save(tmp_path / "base.json")) == entry
     assert [p.name for p in tmp_path.iterdir()] == ["base.json"]
     assert "PRS-SR (RGB): 0.250 [" in str(entry)

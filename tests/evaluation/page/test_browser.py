@@ -159,6 +159,14 @@ def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
     assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == shown
 
 
+def test_a_share_of_the_clean_value_is_over_the_episodes_of_both(page, tmp_path):
+    rows = [r for r in column(9, {"spatter": 9}) if (r["episode_id"], r["severity"]) != ("9", 0.6)]
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    page.click(".chip", "share of own clean")
+    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert shown == ["1.00", "1.00*"]  # not 1.0 / 0.9
+
+
 def test_episodes_are_searched_as_they_are_typed(page, tmp_path):
     rows = [made | {"episode_id": f"1{made['episode_id']}"} for made in column(8, {"spatter": 2})]
     page.open(
