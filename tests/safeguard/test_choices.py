@@ -36,7 +36,7 @@ def test_columns_tell_safeguards_apart(tmp_path):
     before = label(first)
     _adapter(tmp_path / "first" / "agent", b"c")
     assert label(first) != before
-    assert label("http://one:80/v1@m") == "one-80-v1@m"
+    assert label("http://one:80/v1@m") == label("HTTP://one:80/v1@m") == "one-80-v1@m"
     assert [label(choice) for choice in ("rules", "lora")] == ["rules", "lora"]
 
 
