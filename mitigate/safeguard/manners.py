@@ -13,7 +13,7 @@ import re
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import chatty_words, formal_words, gate
 from mitigate.safeguard.lexicon import FUNCTION
-from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.neighbours import HALTS, SEEKS
 from mitigate.safeguard.speech_words import speech_words
 from mitigate.safeguard.steps import MOVES, STEP
 from mitigate.safeguard.text import MASK, sentences, words
@@ -59,7 +59,7 @@ _FRAME = re.compile(
 _ASK = re.compile(rf"(?:^|[ ,]){_ASKS} $", re.IGNORECASE)
 _INSIDE = re.compile(rf"(?P<join>, |\band (?:then )?)(?:{_ASKS}|to) (?={_VERB})", re.IGNORECASE)
 _MOVES = MOVES | STEP.keys() | bag("circle ride betake")
-_STEPS = _MOVES | STOPS | SEEKS
+_STEPS = _MOVES | HALTS | SEEKS
 _VERBS = _STEPS | bag(
     """
     make effect execute perform convey direct egress depart transition maintain face position orient

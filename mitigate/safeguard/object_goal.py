@@ -27,7 +27,7 @@ from mitigate.safeguard.goal_words import (
     VERBS,
 )
 from mitigate.safeguard.meaning import CATEGORIES
-from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.neighbours import HALTS, SEEKS
 from mitigate.safeguard.steps import MOVES
 from mitigate.safeguard.text import words
 
@@ -48,7 +48,7 @@ _BEFORE = bag(
     """
 )
 _ONLY = bag("first last only next same other")
-_NOUNS_BEHIND = STOPS | bag(
+_NOUNS_BEHIND = HALTS | bag(
     "unit area station object item items objects position place space sweep"
 )
 _SOUGHT = SEEKS | bag("locating need needs want wants require get see where")
