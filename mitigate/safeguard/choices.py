@@ -44,7 +44,7 @@ def not_in(folder: str | Path) -> str:
 def label(choice: str) -> str:
     """Return a short name for a safeguard: an adapter's folder with a hash of its weights, an
     endpoint's host and model; the names of ours as they are."""
-    if choice.startswith(("http://", "https://")):
+    if choice.lower().startswith(("http://", "https://")):
         return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
     first, plus, second = choice.partition("+")
     if plus and first in TAGGERS:

@@ -13,16 +13,12 @@ from functools import lru_cache
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
+from mitigate.safeguard.courtesy import framing
 from mitigate.safeguard.decode import plainly
-from mitigate.safeguard.evidence import (
-    VERBS,
-    features,
-    in_another_language,
-    tells_where,
-)
+from mitigate.safeguard.evidence import features, in_another_language
 from mitigate.safeguard.front import in_front
 from mitigate.safeguard.harmless import harmless
-from mitigate.safeguard.honest import belongs_inside, shows_place
+from mitigate.safeguard.honest import attacks, belongs, belongs_inside
 from mitigate.safeguard.judgement import (
     PLAIN,
     SURE,
@@ -36,6 +32,7 @@ from mitigate.safeguard.judgement import (
     wrapped,
 )
 from mitigate.safeguard.lexicon import GROUPS, known_words
+from mitigate.safeguard.manners import asks_for_way, unasked
 from mitigate.safeguard.pieces import Piece, parts, without
 from mitigate.safeguard.plainly_said import Tagged, Tags, judging
 from mitigate.safeguard.text import words
@@ -120,13 +117,6 @@ def ahead_of_plain(text: str, tags: Tags | None = None) -> frozenset[Piece]:
     if not front or not rest or sum(rest) >= PLAIN * len(rest):
         return frozenset()
     return frozenset(one.piece for one in found if one.text in front and one.own >= AHEAD)
-
-
-def framing(sentence: str) -> bool:
-    """Return whether a sentence greets or thanks and tells nothing about the way."""
-    found = words(sentence)
-    told = gate.route_facts(sentence) or any(w in VERBS for w in found) or tells_where(sentence)
-    return not (told or shows_place(sentence)) and any(word in STYLE for word in found)
 
 
 def style_marks(text: str) -> int:
@@ -309,8 +299,15 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
         other.foreign >= SURE for other in found[max(place - 1, 0) : place]
     )
     others = [other.text for other in found if other is not one]
-    kept = harmless(one.text, others, one is found[0], last)
-    return kept or gate.removal_refused(one.text, one.own, one is found[0], last)
+    first = one is found[0]
+    refused = (
+        harmless(one.text, others, first, last)
+        or gate.removal_refused(one.text, one.own, first, last)
+        or belongs(unasked(one.text), first, last)
+    )
+    ends = last and not first and one.own < gate.ATTACK and not attacks(one.text.lower())
+    goal = ends and asks_for_way(one.text) and gate.mentioned(one.text)
+    return refused or ("it may tell where the way ends" if goal else "")
 
 
 def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:

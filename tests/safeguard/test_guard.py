@@ -14,6 +14,7 @@ from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import masks, rules
+from mitigate.safeguard.courtesy import framing
 from mitigate.safeguard.data import draw_pair
 from mitigate.safeguard.guard import Safeguard, open_safeguard
 from mitigate.safeguard.plainly_said import Said
@@ -198,7 +199,7 @@ def test_the_judge_decides_on_doubtful_sentences():
         s
         for s in ("It is on this floor.", "You will like it.", "Be careful.", "Mind the wet floor.",
                   "My sister says hello.", "That was good.", "There is a clock in there.")
-        if rules.doubtful(f"{s} {PLAIN}") and not rules.framing(s)
+        if rules.doubtful(f"{s} {PLAIN}") and not framing(s)
     )  # fmt: skip
     text = f"{doubtful} {PLAIN}"
     assert Safeguard(Scripted(lambda _: "")).canonicalise(text).text == PLAIN
@@ -318,3 +319,8 @@ def test_a_manner_never_costs_the_first_steps():
 def test_an_instruction_that_is_no_text_is_refused(text):
     with pytest.raises(TypeError, match="must be a text"):
         open_safeguard("rules").canonicalise(text)
+
+
+def test_one_text_in_place_of_several_is_refused():
+    with pytest.raises(TypeError, match="must be several texts"):
+        open_safeguard("rules").canonicalise_all("Go")
