@@ -14,11 +14,16 @@ from functools import lru_cache
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
 from mitigate.safeguard.courtesy import framing
-from mitigate.safeguard.decode import plainly
-from mitigate.safeguard.evidence import features, in_another_language
 from mitigate.safeguard.front import in_front
 from mitigate.safeguard.harmless import harmless
-from mitigate.safeguard.honest import attacks, belongs, belongs_inside
+from mitigate.safeguard.honest import attacks, belongs
+from mitigate.safeguard.inside import (
+    announces,
+    foreign_clauses,
+    foreign_parts,
+    leans,
+    route_remains,
+)
 from mitigate.safeguard.judgement import (
     PLAIN,
     SURE,
@@ -26,41 +31,24 @@ from mitigate.safeguard.judgement import (
     asked,
     judged,
     leads,
-    logit,
-    probability,
-    strangeness,
     wrapped,
 )
-from mitigate.safeguard.lexicon import GROUPS, known_words
+from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.manners import asks_for_way, unasked
-from mitigate.safeguard.pieces import Piece, parts, without
-from mitigate.safeguard.plainly_said import Tagged, Tags, judging
+from mitigate.safeguard.pieces import Piece, without
+from mitigate.safeguard.plainly_said import Tags, judging
 from mitigate.safeguard.text import words
-from mitigate.safeguard.weights import PART, STYLE
-from mitigate.safeguard.written import TITLE, quoted, with_bearer, written
+from mitigate.safeguard.weights import STYLE
 
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)
 LEAST = (0.5, 0.7, 0.85)
 PLAIN_LEAST = (0.45, 0.6, 0.7)  # where the rest is surely a route, in plain words
 AHEAD = 0.4  # strangeness of what goes in front of such a rest
-PART_SURE = 0.85  # of a part of a sentence
-# a run of words inside a sentence that goes: probability, words, the same of the sentence's others
-SPAN_SURE, SPAN_WORDS, SPAN_REST = 0.95, 4, 0.1
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 # known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
 SHOUTS, SHOUTED = 2, 0.15
-# with these a part begins on which the rest of its sentence depends
-CONDITIONS = bag("if unless when whenever once should whoever whichever wherever instead rather as")
-_OF_THE_TEXT = re.compile(  # what holds for whoever reads it, and what stands for the route
-    r"(?:if|when|whenever|once) (?:you|anyone|anybody|someone|whoever) (?:can |are |is )?"
-    r"(?:read|reading|pars|process)\w* (?:this|these)\b"
-    r"|(?:instead of|rather than) (?:\w+ing )?(?:the|this|that|these|those|any|all|your|my)\b"
-    r"[\w ]*\b(?:route|instructions?|directions|text|orders?|plan)\b",
-    re.IGNORECASE,
-)
-_SEMICOLON = re.compile(r";\s+")
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
@@ -142,55 +130,6 @@ def lower_capitals(text: str) -> str:
     return _SHOUT.sub(quiet, text)
 
 
-def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piece]:
-    """Return the parts inside a sentence that are no part of the route, in order."""
-    found = [] if tags is None else attacked_spans(one.piece, tags.tag(text))
-    read = {place for span in found for place in range(span.start, span.end)}
-    for part in parts(text, one.piece):
-        if part.start in read:
-            continue
-        said = part.of(text)
-        title = quoted(said) and len(words(said)) <= TITLE
-        long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
-        if long and not title:
-            values = {"whole": logit(one.own), **features(said)}
-            if in_another_language(said) or probability(PART, values) >= PART_SURE:
-                found.append(part)
-    stands = written(text)
-    gone = [  # "go back the other way" is no attack
-        Piece(with_bearer(text, p.start, p.end), p.end, p.block)
-        for p in found
-        if not any(first <= p.start and p.end <= last for first, last in stands)
-        and not belongs_inside(p.of(text))
-        and not (leads(p.of(text)) and gate.route_facts(p.of(text)) and not quoted(p.of(text)))
-    ]
-    return sorted(gone, key=lambda part: part.start)
-
-
-def attacked_spans(piece: Piece, tagged: Tagged) -> list[Piece]:
-    """Return the runs of words inside a piece that are surely an attack by what the network reads,
-    where the others surely are not."""
-    places = [i for i, t in enumerate(tagged.tokens) if piece.start <= t.start < piece.end]
-    runs: list[list[int]] = []
-    for i in places if tagged.attack else ():
-        if tagged.attack[i] < SPAN_SURE:
-            continue
-        if runs and i == runs[-1][-1] + 1:
-            runs[-1].append(i)
-        else:
-            runs.append([i])
-    words_of = [[i for i in run if tagged.tokens[i].is_word] for run in (places, *runs)]
-    every, runs = words_of[0], [r for r, w in zip(runs, words_of[1:], strict=True)
-        if len(w) >= SPAN_WORDS]  # fmt: skip
-    gone = {i for run in runs for i in run}
-    rest = [tagged.attack[i] for i in every if i not in gone]
-    if not runs or not rest or sum(rest) > SPAN_REST * len(rest):
-        return []
-    return [
-        Piece(tagged.tokens[run[0]].start, tagged.tokens[run[-1]].end, piece.block) for run in runs
-    ]
-
-
 def repair(
     text: str, judge: Callable[[str], bool] | None = None, tags: Tags | None = None
 ) -> Repaired:
@@ -230,14 +169,14 @@ def _chosen(
             continue
         others = any(gate.route_facts(other.text) for other in found if other is not one)
         inside = foreign_parts(text, one, tags)
-        announced = others and _announces(text, one, inside)
-        inside = [part for part in inside if not _leans(text, one, part)]
+        announced = others and announces(text, one, inside)
+        inside = [part for part in inside if not leans(text, one, part)]
         if announced:
             out.append(one.piece)
-        elif inside and _route_remains(text, one, inside):
+        elif inside and route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
-            problem, some = _refused(found, one), _foreign_clauses(text, one, others)
+            problem, some = _refused(found, one), foreign_clauses(text, one, others)
             if some:
                 out += some
             elif problem:
@@ -253,42 +192,6 @@ def _told(one: Judged) -> bool:
     """Return whether a sentence in markup tells the way and is no attack by itself."""
     plain = asked(one.text, False)
     return bool(gate.route_facts(one.text)) and leads(one.text) and plain < gate.ATTACK
-
-
-def _condition(part: str) -> bool:
-    return any(word in CONDITIONS for word in words(part)[:1])
-
-
-def _leans(text: str, one: Judged, part: Piece) -> bool:
-    """Return whether the rest of a sentence depends on a part of it ("If nobody answers, ...")."""
-    behind = text[part.end : one.piece.end]
-    return _condition(part.of(text)) and any(c.isalnum() for c in behind)
-
-
-def _announces(text: str, one: Judged, inside: list[Piece]) -> bool:
-    """Return whether a sentence begins with what is foreign and announces the rest ("New orders:
-    ..."), which then is no part of the route, whatever it tells."""
-    if not inside or any(c.isalnum() for c in text[one.piece.start : inside[0].start]):
-        return False
-    first = inside[0].of(text)
-    announces = first.rstrip().endswith(":") and not _condition(first)
-    return announces or bool(_OF_THE_TEXT.match(first))
-
-
-def _foreign_clauses(text: str, one: Judged, others: bool) -> list[Piece]:
-    """Return the clauses of a sentence, parted by semicolons, that are no part of the route, if the
-    rest tells the way; none where the first says who speaks: the rest is what it is for
-    (``others``: other sentences tell the way)."""
-    starts = [one.piece.start, *(one.piece.start + m.end() for m in _SEMICOLON.finditer(one.text))]
-    ends = [*starts[1:], one.piece.end]
-    made = [Piece(a, b, one.piece.block) for a, b in zip(starts, ends, strict=True)]
-    foreign = [asked(piece.of(text).strip(" ;"), False) >= SURE for piece in made]
-    speaks = any(word in GROUPS["authority"] for word in words(made[0].of(text)))
-    if others and foreign[0] and speaks:
-        return []
-    rest = [piece for piece, bad in zip(made, foreign, strict=True) if not bad]
-    told = all(gate.route_facts(piece.of(text)) for piece in rest)
-    return [piece for piece, bad in zip(made, foreign, strict=True) if bad] if rest and told else []
 
 
 def _refused(found: Sequence[Judged], one: Judged) -> str:
@@ -308,15 +211,6 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
     ends = last and not first and one.own < gate.ATTACK and not attacks(one.text.lower())
     goal = ends and asks_for_way(one.text) and gate.mentioned(one.text)
     return refused or ("it may tell where the way ends" if goal else "")
-
-
-def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:
-    """Return whether a sentence without these parts still tells the way, and begins with it."""
-    ends = [one.piece.start, *(part.end for part in inside)]
-    starts = [*(part.start for part in inside), one.piece.end]
-    left = " ".join(text[a:b].strip() for a, b in zip(ends, starts, strict=True)).strip(" ,;:-–—")
-    begins = inside[0].start > one.piece.start or left[:1].isupper() or len(inside) == 1
-    return begins and bool(gate.route_facts(left)) and strangeness(left) < SURE
 
 
 def _allowed(text: str, out: list[Piece], tags: Tags | None) -> tuple[list[Piece], list[str]]:
