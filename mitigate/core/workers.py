@@ -21,7 +21,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, ClassVar, Protocol
 
 from mitigate.core.progress import Progress, duration
-from mitigate.core.signals import ENDING, Ended, held
+from mitigate.core.signals import ENDING, held
 
 SECOND = 1.0  # between two looks at workers that say nothing
 STUCK = 60.0  # seconds with one job after which a worker is reported, and again after as many
@@ -93,8 +93,7 @@ def results(
                     with held() as ending:  # a job that was begun is finished
                         result = next(found)
                     yield number, result
-                    if ending.number is not None:
-                        raise Ended(ending.number)
+                    ending.check()
 
 
 class _Worker:
@@ -159,8 +158,7 @@ class _Crew:
                     yield from self._hear(worker)
                 self._report_stuck()
                 yield None
-                if ending.number is not None:
-                    raise Ended(ending.number)
+                ending.check()
         finally:
             for worker in self.crew:
                 worker.process.kill()
