@@ -22,7 +22,7 @@ import cv2
 import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
-from mitigate.bridge.results import stem_of
+from mitigate.bridge.episodes import stem_of
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.observation import DEPTH, RGB
 
