@@ -297,7 +297,7 @@ class Walk:
         self._check(observations, cameras)
         channel = self.connected()
         heading = None if heading is None else float(heading)
-        told = [dict(c, **_array(observations[c["name"]], c["name"])) for c in cameras]
+        told = [dict(_data(c), **_array(observations[c["name"]], c["name"])) for c in cameras]
         if told != self.cameras:
             channel.agree(told)
             self.cameras = told
@@ -403,6 +403,16 @@ def _array(frame, name):
     alpha = frame.dtype == np.uint8 and frame.ndim == 3 and frame.shape[-1] == 4
     shape = [*frame.shape[:-1], 3] if alpha else list(frame.shape)
     return {"shape": shape, "dtype": frame.dtype.name, "alpha": alpha}
+
+
+def _data(told):
+    """Return what is told of a camera with lists and numbers in place of numpy's: arrays that are
+    made anew at each step cannot be compared."""
+    if isinstance(told, dict):
+        return {name: _data(value) for name, value in told.items()}
+    if isinstance(told, (list, tuple)):
+        return [_data(value) for value in told]
+    return _as_python(told) if isinstance(told, (np.generic, np.ndarray)) else told
 
 
 def _middle(depth):
