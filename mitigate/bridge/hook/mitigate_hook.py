@@ -767,8 +767,8 @@ def _adapted(folder, file, path):
 
     def forward(original, encoder, *args, **kwargs):
         if not getattr(encoder, "_mitigate_adapted", False):
-            encoder._mitigate_adapted = True
             _adapt(encoder, folder, file, path)
+            encoder._mitigate_adapted = True
         return original(encoder, *args, **kwargs)
 
     return forward
@@ -799,7 +799,14 @@ def _adapt(encoder, folder, file, path):
                 "place: let adapters= name the attribute that holds it, "
                 "FOLDER:module:Class.attribute."
             )
-        setattr(*owner, made)
+        try:
+            setattr(*owner, made)
+        except RuntimeError as error:
+            stop(
+                f"adapters= names {path} in {type(encoder).__name__}, which is TorchScript within "
+                f"TorchScript, where nothing can be put around it ({error}). Name the module that "
+                "holds all of it, and train adapters for that one."
+            )
     Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}", checked=not half)
 
 
