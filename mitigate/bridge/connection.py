@@ -158,6 +158,9 @@ class Connection:
         and of a loop each call is a step."""
         if self.open and self.calls > (0 if self.loop else 1):
             note(self.folder, event="dropped", scene=self.scene, episode=self.episode)
+        if self.open:
+            for observer in self.condition.observers:
+                observer.leave()
         self.open = False
 
     def _greet(self) -> bool:
