@@ -20,6 +20,7 @@ from mitigate.core.files import write_bytes
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import Imitate, batch_of, falling_share
+from mitigate.training import success
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
@@ -29,7 +30,8 @@ class Dagger(Imitate):
     the oracle's share of the decisions falls from 1 to ``follow_oracle``.
 
     A step's walks depend on its weights alone and are written before they are learned from, so a
-    resumed run draws the same ones. Raises ValueError for an agent whose walks are no plain data.
+    resumed run draws the same ones. Raises ValueError for an agent whose walks are no plain data,
+    and for a schedule by success, of which an agent from nothing has none.
     """
 
     @classmethod
@@ -57,6 +59,7 @@ class Dagger(Imitate):
         seed: int = 0,
         losses: Mapping[str, float] | None = None,
     ) -> None:
+        success.refuse(schedule)
         schedule = schedule or Schedule("clean", 0.0)
         super().__init__(
             agent, world, training, schedule, train_parts, episodes, follow_oracle, seed, losses

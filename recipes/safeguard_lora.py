@@ -28,7 +28,7 @@ class SafeguardLora(Recipe):
     pairs: a step. micro_batch: pairs at once in memory.
     files: episode files of R2R or RxR whose instructions are corrupted as well as our own.
     chats: chat files (``messages``) of further pairs.
-    share: of a step's pairs that come from either, if given.
+    share: of a step's pairs that come from either, from both alike if both are given.
     """
 
     ahead = True
@@ -64,10 +64,13 @@ class SafeguardLora(Recipe):
 
     def pair(self, index: int) -> Pair:
         """Return the pair ``index``, a function of the seed."""
+        if not self.chats:
+            return draw_pair(self.seed, index, self.texts, self.share)
         rng = generator(self.seed, "chat", index)
-        if self.chats and rng.random() < self.share:
+        given = rng.random() < self.share
+        if given and not (self.texts and rng.random() < 0.5):
             return self.chats[int(rng.integers(len(self.chats)))]
-        return draw_pair(self.seed, index, self.texts, self.share)
+        return draw_pair(self.seed, index, self.texts, float(given))
 
     def jobs(self, step: int) -> list[int]:
         return list(range(step * self.pairs, (step + 1) * self.pairs))

@@ -50,6 +50,9 @@ def main() -> None:
         parser.error("name one commit, to compare with the working tree, or two")
     found = [figures(commit, args.only, args.episodes) for commit in (*args.commits, None)[:2]]
     names = list(dict.fromkeys(name for part in found for name in part))
+    unknown = sorted({*(args.only or ())} - {name.rpartition("/")[2] for name in names})
+    if unknown or not names:
+        parser.error(f"there is nothing to compare: no recipe or agent {', '.join(unknown)}")
     differing = [name for name in names if len({part.get(name) for part in found}) > 1]
     for name in names:
         first, second = (part.get(name, "not there") for part in found)

@@ -33,7 +33,8 @@ def main() -> None:
     with atomic_text(folder / "config.yaml") as text:
         text.write(OmegaConf.to_yaml({"agent": written(node, agent)}))
     for path in folder.iterdir():
-        path.chmod(0o644)
+        if path.is_file():
+            path.chmod(0o644)
     shipped = load(node, str(folder))
     print(f"wrote {file}, {file.stat().st_size / 1e6:.1f} MB")
     print(f"sha {identity(agent, sensors)} before rounding, {identity(shipped, sensors)} after")

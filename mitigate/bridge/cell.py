@@ -15,7 +15,7 @@ from typing import Any, TextIO
 from mitigate.bridge import results, verdict
 from mitigate.bridge.connection import EVENTS, Condition
 from mitigate.bridge.identity import files_of
-from mitigate.bridge.recording import is_whole
+from mitigate.bridge.recording import delete_left, is_whole
 from mitigate.bridge.results import Told, without_path
 from mitigate.bridge.server import Listener
 from mitigate.bridge.subset import Subset
@@ -141,6 +141,8 @@ class Cell:
         chosen = self.chosen if self.clean is None else None
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
             chosen.forget()  # of a run that came to nothing
+        if self.recording is not None:
+            delete_left(self.recording)
         self.files = files_of(self.command)
         self.listener = Listener(self.condition, self.folder, self.patience).__enter__()
         words = {

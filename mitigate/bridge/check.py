@@ -52,6 +52,9 @@ class FirstLook:
     def end(self, told: Mapping[str, Any]) -> None:
         """Nothing: one look is enough."""
 
+    def leave(self) -> None:
+        """Nothing: the look stays."""
+
 
 def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
     with open(path, "wb") as file:

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.bridge.cameras import CHANNELS, Rig
-from mitigate.bridge.ends import ended
+from mitigate.bridge.episodes import begun, ended
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
 from mitigate.bridge.words import Words
@@ -158,6 +158,9 @@ class Connection:
         and of a loop each call is a step."""
         if self.open and self.calls > (0 if self.loop else 1):
             note(self.folder, event="dropped", scene=self.scene, episode=self.episode)
+        if self.open:
+            for observer in self.condition.observers:
+                observer.leave()
         self.open = False
 
     def _greet(self) -> bool:
@@ -215,7 +218,8 @@ class Connection:
         """An episode begins: answer with its words as the agent is to hear them."""
         self._leave()
         self._check_chosen()
-        self.scene, self.episode, self.open = str(message["scene"]), str(message["id"]), True
+        self.scene, self.episode = begun(message)
+        self.open = True
         self.worked, self.calls, self.loop = 0.0, 0, message.get("loop") is True
         self.kinds = set()
         key = self.condition.key(self.scene, self.episode, 0)
@@ -270,7 +274,7 @@ class Connection:
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """How the episode went."""
-        said = ended(message)
+        said = ended(message, self.episode)
         failed = self.loop and not said.get("metrics", {}).get("success")  # before its first look
         if self.calls == 0 and not failed:
             raise ValueError(

@@ -22,7 +22,7 @@ import cv2
 import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
-from mitigate.bridge.results import stem_of
+from mitigate.bridge.episodes import stem_of
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.observation import DEPTH, RGB
 
@@ -30,6 +30,7 @@ CAMERAS = "cameras.json"
 LONGEST = 150  # characters of a name that are kept in a path (ours; a file name has 255 bytes)
 MILLIMETRES, MOST = 1000.0, 65535  # of a count of 16-bit depth; its largest one
 _PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
+_LEFT = re.compile(r"\..+\.(\d+)\.tmp")  # the folder of an episode that a process is in
 
 
 def plain(name: str) -> str:
@@ -60,8 +61,7 @@ class Recorder:
     def episode(self, told: Mapping[str, Any]) -> None:
         """Begin the folder of an episode."""
         place = self.folder / part(stem_of(str(told["scene"]))) / part(str(told["id"]))
-        if self.here is not None:  # left in the middle
-            shutil.rmtree(self.here, ignore_errors=True)
+        self.leave()
         self.place, self.cameras = place, {}
         self.here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
         shutil.rmtree(self.here, ignore_errors=True)
@@ -103,6 +103,31 @@ class Recorder:
             shutil.rmtree(self.place, ignore_errors=True)  # of an earlier run, or a loop's second
             os.replace(self.here, self.place)
         self.here = self.place = None
+
+    def leave(self) -> None:
+        """Delete what there is of an episode that did not end."""
+        if self.here is not None:
+            shutil.rmtree(self.here, ignore_errors=True)
+        self.here = self.place = None
+
+
+def delete_left(folder: Path) -> None:
+    """Delete the episodes in a recording that processes were in which are no more."""
+    for path in folder.glob("*/.*.tmp"):
+        found = _LEFT.fullmatch(path.name)
+        if found and not _is_alive(int(found[1])):
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _is_alive(pid: int) -> bool:
+    """Whether there is such a process, of any user."""
+    try:
+        os.kill(pid, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return True
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:

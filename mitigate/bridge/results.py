@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.bridge.connection import EVENTS
+from mitigate.bridge.episodes import MEASURES, name_of
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 from mitigate.evaluation.metrics import RULES, Rule, path_length, spl
@@ -19,7 +20,6 @@ from mitigate.evaluation.rows import Row
 
 OWN = "own: the agent's Success measure"
 COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: some never say it
-MEASURES = ("path_length", "geodesic_distance", "distance_to_goal", "ndtw", "collisions")
 
 
 @dataclass
@@ -90,17 +90,6 @@ def _events(file: Path) -> Iterator[dict[str, Any]]:
             return
 
 
-def name_of(scene: str, episode: str) -> str:
-    """The name of an episode in rows: ids repeat from scene to scene in ObjectNav's files."""
-    stem = stem_of(scene)
-    return f"{stem}/{episode}" if stem else str(episode)
-
-
-def stem_of(scene: str) -> str:
-    """The name of a scene: of its file, without its folder and what a GLB file ends in."""
-    return scene.rpartition("/")[2].removesuffix(".glb").removesuffix(".basis")
-
-
 def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | None) -> list[Row]:
     """Return the rows of one condition, by the agent's own rule of success and by a common one.
 
@@ -138,7 +127,7 @@ def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[R
         }
     for known in ([RULES[rule]] if rule else []) + [common]:
         metres = end.get("distance", metrics.get("distance_to_goal"))
-        if metres is not None and not math.isnan(metres):
+        if metres is not None:
             won = known.met(float(metres), bool(end.get("stopped")))
             judged[str(known)] = {"success": float(won), "spl": _spl(end, won)}
     return [{"rule": name, **values} for name, values in judged.items()]

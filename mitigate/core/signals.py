@@ -28,39 +28,59 @@ def raise_ended(number: int, frame: FrameType | None) -> None:
 
 
 class Held:
-    """``number``: of the first signal that came, None while none did."""
+    """The handler of a block that holds signals. ``number``: of the first that came, None while
+    none did; ``again``: whether another came. ``outer``: the handlers of before, which are told of
+    a signal if they hold signals themselves."""
 
-    number: int | None = None
+    def __init__(self) -> None:
+        self.number: int | None = None
+        self.again = False
+        self.outer = {number: signal.getsignal(number) for number in ENDING}
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        outer = self.outer[signal.Signals(number)]
+        if isinstance(outer, Held):
+            outer(number, frame)
+        if self.number is not None:
+            self.again = True
+            raise_ended(number, frame)
+        self.number = number
+
+    def check(self) -> None:
+        """Raise :class:`Ended` if a signal came."""
+        if self.number is not None:
+            raise Ended(self.number)
+
+    @property
+    def nested(self) -> bool:
+        """Whether a block around it holds signals, too."""
+        return any(isinstance(handler, Held) for handler in self.outer.values())
 
 
 @contextmanager
 def held(on: bool = True) -> Iterator[Held]:
-    """Within it, if ``on``, the first signal only sets ``number``, so that what is at hand can be
-    finished and saved; a second one ends it at once. In threads other than the main one nothing is
-    held."""
+    """Within it, if ``on``, the first signal only sets ``number``, here and in each such block
+    around it, so that what is at hand can be finished and saved; a second one ends it at once. In
+    threads other than the main one nothing is held."""
     found = Held()
-
-    def note(number: int, frame: FrameType | None) -> None:
-        if found.number is not None:
-            raise_ended(number, frame)
-        found.number = number
-
     if not on or threading.current_thread() is not threading.main_thread():
         yield found
         return
-    before = {number: signal.signal(number, note) for number in ENDING}
     try:
+        for number in ENDING:
+            signal.signal(number, found)
         yield found
     finally:
-        for number, handler in before.items():
+        for number, handler in found.outer.items():
             signal.signal(number, handler)
 
 
 @contextmanager
 def unbroken() -> Iterator[None]:
     """Within it nothing is interrupted: what native code does not survive, what is to be whole. A
-    signal that came raises :class:`Ended` at its end; a second one does so at once."""
+    signal that came raises :class:`Ended` at its end, unless a block around it holds signals, which
+    is told; a second one does so at once."""
     with held() as ending:
         yield
-    if ending.number is not None:
-        raise Ended(ending.number)
+    if not ending.nested:
+        ending.check()

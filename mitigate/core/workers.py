@@ -18,14 +18,16 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
 from multiprocessing.connection import Connection, wait
+from multiprocessing.reduction import ForkingPickler
 from typing import Any, ClassVar, Protocol
 
 from mitigate.core.progress import Progress, duration
-from mitigate.core.signals import ENDING, Ended, held
+from mitigate.core.signals import ENDING, held
 
 SECOND = 1.0  # between two looks at workers that say nothing
 STUCK = 60.0  # seconds with one job after which a worker is reported, and again after as many
 DEATHS = 1  # workers that are replaced
+ALONE = "give workers=1, or define what it holds at the head of a module"
 
 
 class Task(Protocol):
@@ -93,8 +95,7 @@ def results(
                     with held() as ending:  # a job that was begun is finished
                         result = next(found)
                     yield number, result
-                    if ending.number is not None:
-                        raise Ended(ending.number)
+                    ending.check()
 
 
 class _Worker:
@@ -109,10 +110,11 @@ class _Worker:
         self.heard = self.told = time.monotonic()
 
     def give(self, group: Sequence[tuple[int, Any]]) -> None:
+        jobs = packed([job for _, job in group], "What a worker is to do", ALONE)
         self.left.extend(group)
         self.heard = self.told = time.monotonic()
         with suppress(OSError):  # it is dead, as whoever reads the pipe will see
-            self.pipe.send([job for _, job in group])
+            self.pipe.send_bytes(jobs)
 
     def end(self) -> str:
         """Make sure that it is dead; say what it died of."""
@@ -142,8 +144,7 @@ class _Crew:
         self.waiting = deque(groups)
         self.total, self.done, self.deaths = sum(map(len, groups)), 0, 0
         self.context = context(task.preload)
-        own = "give workers=1, or define what it holds at the head of a module"
-        self.copy = packed(task, "The agent or its world", own)  # tensors do not become shared
+        self.copy = packed(task, "The agent or its world", ALONE)  # tensors do not become shared
         self.crew: list[_Worker] = []
         self.size = workers
 
@@ -159,8 +160,7 @@ class _Crew:
                     yield from self._hear(worker)
                 self._report_stuck()
                 yield None
-                if ending.number is not None:
-                    raise Ended(ending.number)
+                ending.check()
         finally:
             for worker in self.crew:
                 worker.process.kill()
@@ -224,14 +224,17 @@ class _Crew:
                 )
 
 
-def packed(thing: Any, what: str, instead: str) -> bytes:
-    """``thing`` for other processes, by value. Raises ValueError, which names ``what`` it is and
-    what to do ``instead``, where it cannot be pickled."""
+def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> bytes:
+    """``thing`` for other processes, by value; ``shared``: its tensors by shared memory, for one
+    process that reads it once. Raises ValueError, which names ``what`` it is and what to do
+    ``instead``, where it cannot be pickled."""
     try:
-        return pickle.dumps(thing)
-    except (pickle.PicklingError, AttributeError, TypeError, RecursionError) as error:
+        return bytes(ForkingPickler.dumps(thing)) if shared else pickle.dumps(thing)
+    except Exception as error:  # of any kind: what is in it pickles itself
+        cause = " ".join(str(error).split())[:300]
         raise ValueError(
-            f"{what} cannot be sent to other processes ({error}): {instead}."
+            f"{what} cannot be sent to other processes ({type(error).__name__}: {cause}): "
+            f"{instead}."
         ) from error
 
 
@@ -260,7 +263,8 @@ def _serve(pipe: Connection, copy: bytes) -> None:
         with task.ready():
             while jobs := _next(pipe):
                 for result in task.work(jobs):
-                    pipe.send((result, None))
+                    what = "What a worker found"
+                    pipe.send_bytes(packed((result, None), what, ALONE, shared=True))
     except Exception as error:
         with suppress(OSError):  # the parent is gone
             pipe.send((None, portable(error)))
@@ -268,9 +272,10 @@ def _serve(pipe: Connection, copy: bytes) -> None:
 
 def _next(pipe: Connection) -> list[Any]:
     try:
-        return pipe.recv()
+        message = pipe.recv_bytes()
     except (EOFError, OSError):
         return []  # the parent is gone
+    return pickle.loads(message)
 
 
 def portable(error: Exception) -> tuple[Exception, Exception]:

@@ -93,8 +93,12 @@ class Grid:
         """Return the grid to compare columns in: over the seeds that all have, if there are any,
         so that they meet corruptions of the same keys."""
         labels = tuple(labels)
-        common = set.intersection(*(set(self.seeds[label, severity]) for label in labels))
-        return self.over(labels, sorted(common), severity) if common else self
+        common = self.common(labels, severity)
+        return self.over(labels, common, severity) if common else self
+
+    def common(self, labels: Iterable[str], severity: float) -> list[int]:
+        """Return the seeds that all of ``labels`` have at ``severity``."""
+        return sorted(set.intersection(*(set(self.seeds[label, severity]) for label in labels)))
 
     @cached_property
     def severities(self) -> list[float]:

@@ -171,6 +171,13 @@ def _notes(section: Section) -> str:
         )
     if section.gained:
         notes.append("Differences in bold have intervals that exclude zero.")
+    others = [c for c in section.columns if c != section.reference]
+    apart = [c for c in others if not section.grid.common((c, section.reference), section.severity)]
+    if apart:
+        notes.append(
+            f"No seed in common with {markdown_of(section.reference)}, and so no difference: "
+            f"{', '.join(map(markdown_of, apart))}."
+        )
     if section.by_seed:
         notes.append(
             "Several seeds: an episode counts as their mean, and two columns are compared over the "

@@ -201,14 +201,15 @@ def _problem(row: Any) -> str:
         if not isinstance(row[key], kind):
             return f"has a wrong {key}: {short(row[key])}"
     for key, value in row.items():
-        allowed = _allowed(key, value)
-        if allowed:
-            return f"has a wrong {short(key)}: {short(value)} ({allowed})"
+        wanted = allowed(key, value)
+        if wanted:
+            return f"has a wrong {short(key)}: {short(value)} ({wanted})"
     return ""
 
 
-def _allowed(key: str, value: Any) -> str:
-    """Return what ``value`` may be in place of what it is; empty if it is good."""
+def allowed(key: str, value: Any) -> str:
+    """Return what the ``value`` of a row's ``key`` may be in place of what it is; empty if it is
+    good."""
     if key in _NUMBERS and isinstance(value, bool):  # which Python takes for one
         return "a number: 1 for true, 0 for false"
     if key in _SHARES and value is not None and not _number(value, 0, 1):

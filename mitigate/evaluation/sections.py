@@ -178,7 +178,10 @@ def _measured(blocks: dict[str, tuple[str, ...]]) -> dict[str, tuple[str, ...]]:
 def _compared(
     grid: Grid, severity: float, pair: tuple[str, str], blocks: dict[str, tuple[str, ...]]
 ) -> Compared:
-    """Return the differences of the first of ``pair`` to the second."""
+    """Return the differences of the first of ``pair`` to the second; none if no seed is common:
+    on other seeds they met corruptions of other keys."""
+    if not grid.common(pair, severity):
+        return Compared(None, None, {})
     both = grid.paired(pair, severity)
     first, second = (both.cell(label, "clean", severity, METRICS["SR"]) for label in pair)
     change = first - second

@@ -13,6 +13,7 @@ _TO_WAY = rf"{_STEPS}{BEFORE_WAY}"
 _NICE = r"(?:(?:nice|quick|easy|little|lovely|cheerful|gentle|simple|cheeky) )*"
 _REST = r"(?:breather|rest|bit|moment|second|sec|minute|while)"
 _HERE = r"(?= (?:at|by|near|beside|next to|in front of|before|in|inside|on|under|when|once)\b)"
+_THING = r"(?= (?:the|a|an|this|that|these|those|your|any|some|it)\b)"
 # chatty alone: two of them tell that a text is restyled
 _CHATTY = (
     (rf"(?:pop|hop|scoot|cruise|zip|nip|breeze|waltz|bop|scurry|skip|toddle|zoom){_TO_WAY}", "go"),
@@ -21,7 +22,8 @@ _CHATTY = (
     (r"(?:take|make) an? (?:(?:nice|cheerful|cheeky|lovely|easy) )+(left|right)\b(?! turn)",
      r"turn \1"),
     (r"swing(?: on)? over to (?:the|your) (left|right)\b", r"turn \1"),
-    (r"(?:swing|spin)(?: yourself)? (?:all the way )?around\b", "turn around"),
+    (rf"swing(?: on)? around{_THING}", "go around"),
+    (rf"(?:swing|spin)(?: yourself)? (?:all the way )?around\b(?!{_THING})", "turn around"),
     (rf"stop for an? (?:(?:little|quick|nice) )?{_REST}\b", "stop"),
     (r"stop right there\b", "stop there"),
     (r"wait (?:right )?(?:there )?for (?:me|us)\b", "wait"),

@@ -21,7 +21,7 @@ FOLDER = (
     "RECIPE=safeguard_tagger` or RECIPE=safeguard_reader), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (RECIPE=safeguard_lora)."
 )
-VERSION = "6"  # of what the rules give on: another one where any text is repaired otherwise
+VERSION = "7"  # of what the rules give on: another one where any text is repaired otherwise
 ANSWERS = "2"  # of what is taken of a language model's answers
 
 
@@ -50,7 +50,7 @@ def not_in(folder: str | Path) -> str:
 def label(choice: str) -> str:
     """Return a short name for a safeguard: an adapter's folder with a hash of its weights, an
     endpoint's host and model; the names of ours as they are."""
-    if choice.startswith(("http://", "https://")):
+    if choice.lower().startswith(("http://", "https://")):
         return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
     first, plus, second = choice.partition("+")
     if plus and first in TAGGERS:

@@ -10,6 +10,7 @@ from mitigate.safeguard import gate, masks, rules
 from mitigate.safeguard.formatting import unformatted
 from mitigate.safeguard.manners import plainer, restyled
 from mitigate.safeguard.object_goal import object_goal
+from mitigate.safeguard.pieces import sections
 from mitigate.safeguard.plainly_said import (
     Said,
     Tags,
@@ -23,8 +24,9 @@ from mitigate.safeguard.text import MASK, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
-# words and marks from which a text is left as it is: time grows with their square (ours)
-ENDLESS, MARKED = 10_000, 4_000
+# words and marks from which a text is read in sections: time grows with their square (ours)
+ENDLESS, MARKED = 2_000, 1_000
+SECTION, READ = 2_000, 20_000  # characters of a section, and of the text that is read (ours)
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
 
 
@@ -57,17 +59,16 @@ class Draft:
         self.judge = tagger if short else None  # reads the text as it is heard
         self.reasons: list[str] = []
         self.asked = self.taken = 0
-        self.plain = (
-            self.endless
-            or not _readable(self.tidied)
-            or (
-                _untouched(self.heard, self.judge)
-                and not self._spoken()
-                and object_goal(self.tidied) is None
-            )
+        self.plain = not _readable(self.tidied) or (
+            not self.endless
+            and _untouched(self.heard, self.judge)
+            and not self._spoken()
+            and object_goal(self.tidied) is None
         )
-        heard = rules.lower_capitals(self.heard)
-        self.doubtful = [] if self.plain else rules.doubtful(heard, judging(self.judge, heard))
+        self.doubtful: list[str] = []
+        if not (self.plain or self.endless):
+            heard = rules.lower_capitals(self.heard)
+            self.doubtful = rules.doubtful(heard, judging(self.judge, heard))
         self.repair(set())
 
     def _spoken(self) -> bool:
@@ -80,7 +81,10 @@ class Draft:
         self.passages: list[Said] = []
         if self.plain:
             self.repaired, self.same = self.heard, True
-            self.reasons = [why] if (why := self._left()) else []
+            self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
+            return
+        if self.endless:
+            self._repair_sections()
             return
         done = rules.repair(self.heard, empty.__contains__, self.judge)
         self.same = done.text == self.heard
@@ -94,11 +98,17 @@ class Draft:
             parts = self._say_speech() or [Said(part, part) for part in sentences(self.repaired)]
             self.passages = _passages(parts)
 
-    def _left(self) -> str:
-        """Why the rules do not look at the text, "" if they do."""
-        if self.endless:
-            return f"over {ENDLESS:,} words or {MARKED:,} marks: left as it is"
-        return "" if _readable(self.tidied) else "nothing readable in English"
+    def _repair_sections(self) -> None:
+        """Apply the rules to one section of the text after the other, and to none behind READ."""
+        read = sections(self.heard[:READ], SECTION)
+        done = [rules.repair(part).text for part in read]
+        self.same = done == read
+        said = "".join(
+            old if old == new else f"{tidy(new)} " for old, new in zip(read, done, strict=True)
+        )
+        self.repaired, self.reasons = said + self.heard[READ:], ["read in sections, by the rules"]
+        if self.heard[READ:]:
+            self.reasons.append(f"what is behind {READ:,} characters left as it is")
 
     def _say_goal(self) -> bool:
         """Say a request for one thing in plain words; return whether it was one."""

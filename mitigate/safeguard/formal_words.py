@@ -106,7 +106,13 @@ _BEGINS = re.compile(
     r"\b(?:initiate (?:movement|motion|navigation)|commence|begin|start) by (?P<verb>[a-z]+ing)\b",
     re.IGNORECASE,
 )
-_GERUND = re.compile(rf"\b(?:{'|'.join(_VERBS_ING)})\b", re.IGNORECASE)
+# of what one does, not of what a thing is ("the ascending escalator")
+_GERUND = re.compile(
+    rf"(?<!\bthe )(?<!\ban )(?<!\ba )(?<!\bthis )(?<!\bthat )\b(?:{'|'.join(_VERBS_ING)})\b"
+    r"(?:(?= (?:the|a|an|this|that|these|those|your|it|them|both|all|one|two|three|until|when|"
+    rf"while|and|or|then)\b)|{BEFORE_WAY}|(?=[.,;:!?]|$))",
+    re.IGNORECASE,
+)
 
 
 def formal(text: str) -> int:

@@ -15,15 +15,24 @@ _INLINE = re.compile(
     rf"</?{_LOOKS}(?:\s+[\w-]+\s*=\s*(?:\"[^\"]*\"|'[^']*'|[^\s<>]+))*\s*/?>", re.I
 )
 _BREAK = re.compile(r"\s*<br\s*/?>\s*", re.I)
+# Markdown: bold and slanted words, and a page's headings and lists
+_BOLD = re.compile(r"(?<![\w*_])(\*\*|__|\*|_)(?=[^\s*_])([^*_\n]*[^\s*_])\1(?![\w*_])")
+_LINE = re.compile(r"^[ \t]*(?:#{1,6}|\d{1,2}[.)]|[-*+•](?: \[[ xX]?\])?)[ \t]+(?=\S)", re.M)
 _ENTITY = re.compile(r"&(?:amp|nbsp|lt|gt|quot|apos|#0?39|#160|ndash|mdash|[lr][sd]quo|hellip);")
 _HALF = re.compile("[\ud800-\udfff]")  # of a character in two parts, cut in the middle
+_SPACES = re.compile(r"\s{20,}")  # nobody means so many (ours)
+_MARKS = re.compile(r"([^\w\s])\1{9,}")
 
 
 def unformatted(text: str) -> str:
-    """Return ``text`` without marks of how words look, HTML's names of characters and halves of
-    characters; itself if it has none."""
+    """Return ``text`` without marks of how words look, HTML's names of characters, halves of
+    characters, and long runs of spaces or of one mark; itself if it has none."""
+    text = _MARKS.sub(r"\1\1\1", _SPACES.sub(lambda m: "\n" if "\n" in m.group() else " ", text))
     if "<" in text:
         text = _BREAK.sub("\n", _INLINE.sub("", text))
+    text = _BOLD.sub(r"\2", text)
+    if "\n" in text:
+        text = _LINE.sub("", text)
     if "&" in text:
         text = _ENTITY.sub(lambda m: html.unescape(m.group()).replace("\xa0", " "), text)
     return _HALF.sub("", text)

@@ -23,7 +23,8 @@ from mitigate.safeguard.text import MASK, sentences, words
 from mitigate.safeguard.weights import FRONT
 
 SURE, LIKELY = 0.4, 0.2
-STYLE = bag(
+# other words than weights.STYLE, which is fitted on other texts
+MANNERISMS = bag(
     """
     advisable appreciated ask betake breather briefing bunch closing colleague commence complete
     completion conclude conclusion cooperation course cruise day dear depart direction do easy
@@ -48,7 +49,7 @@ _SETS = {
 }
 CLOSED = {name: bag(text) for name, text in _SETS.items()}
 # style words that attacks use, too (ours, chosen on the validation families)
-MANNER = STYLE - bag("this for do think what have want that's let let's like or so")
+MANNER = MANNERISMS - bag("this for do think what have want that's let let's like or so")
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 VERBS = MOTION | STOPS | TURN_VERBS
 # no words about all cases; "the" may be hidden
@@ -67,7 +68,7 @@ def counts(sentence: str) -> dict[str, float]:
         for name, group in CLOSED.items()
     }
     return values | {
-        "style": min(3.0, float(sum(word in STYLE for word in found))),
+        "style": min(3.0, float(sum(word in MANNERISMS for word in found))),
         "unknown": 1 - known / size,
         "late_verb": min(lead, 6) / 3,
         "no_verb": float(lead == size),

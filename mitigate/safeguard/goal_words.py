@@ -6,7 +6,7 @@ import re
 
 from mitigate.corruptions.language.directions import TURN_VERBS
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.neighbours import HALTS, SEEKS
 from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.steps import MOVES
 from mitigate.safeguard.text import words
@@ -143,13 +143,13 @@ ACTS = bag(
     "get give take put hold call report come go look return bring carry home have stay leave"
 )
 KNOWN = (
-    GREETINGS | POLITE | TALK | ORDERS | PLACES | SMALL | VERBS | STOPS | TELLS_NOTHING
+    GREETINGS | POLITE | TALK | ORDERS | PLACES | SMALL | VERBS | HALTS | TELLS_NOTHING
     | bag("towards toward another")
 )  # fmt: skip
 # what a plain request does not say
 MANNERED = (
     (GREETINGS | POLITE | TALK | ORDERS)
-    - (VERBS | STOPS | PLACES | SMALL)
+    - (VERBS | HALTS | PLACES | SMALL)
     - bag("and then or but so once until")
 )
 # which of several things, when, and what not

@@ -64,8 +64,10 @@ class Safeguard:
     def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:
         """Return the decision on each text; the model sees the passages of all in batches.
 
-        Raises TypeError for an instruction that is no text.
+        Raises TypeError for one text in place of several, and for an instruction that is no text.
         """
+        if isinstance(texts, str):
+            raise TypeError(f"These must be several texts, but this is one: [{texts!r}] is a list.")
         texts = list(texts)
         for text in texts:
             if not isinstance(text, str):

@@ -34,11 +34,14 @@ _OTHER_WAY = re.compile(
     r"(?:way|direction)"
 )
 _WHICH = re.compile(
-    rf"{_THEN}(?:not )?(?:the|that) (?:(?:very|next|other|second|third|fourth|first|last|far|near|"
-    r"farther|nearer|left|right|one on the) )*(?:one|left|right|other|next|second|third|last)"
+    rf"{_THEN}(?:not )?(?:(?:the|that) |(?=\w+ one))(?:(?:very|next|other|second|third|fourth|"
+    r"first|last|far|near|farther|nearer|left|right|one on the) )*"
+    r"(?:one|left|right|other|next|second|third|last)"
     r"(?:,? (?:just )?(?:after|before|beyond|behind|past|beside|next to)(?: (?:that|it|this))?)?"
 )
 _NOT_WHERE = re.compile(
+    rf"{_THEN}(?:ignore|skip|forget(?: about)?) the "
+    rf"(?:first|second|third|fourth|left|right|near|far) one|"
     rf"{_THEN}not (?:in|into|inside|past|through|on|under|behind|to) (?:it|them|that)"
 )
 _AGAIN = re.compile(

@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import re
 
+from mitigate.corruptions.language.fidelity import ATTRIBUTES
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.evidence import VERBS
 from mitigate.safeguard.lexicon import GROUPS, places
+from mitigate.safeguard.short_steps import short_step
 from mitigate.safeguard.text import words
 from mitigate.safeguard.written import without_written
 
@@ -34,32 +36,58 @@ _LOOKS = (
     r"(?:labell?ed|marked|called|named|titled|numbered|lined|covered|decorated|tiled|panell?ed|"
     r"carpeted)"
 )
+# how a place looks; none that says it cannot be used
+_LIKE = rf"(?:{'|'.join(sorted(ATTRIBUTES - bag('closed')))}|lit|dark|bright|huge|tiny|on|off)"
+# where one is and what one notices there, beside what routes name
+_SEEN = bag(
+    "floor floors ceiling light lights path paths garden church chapel museum coffee food music "
+    "water"
+)
 _SHOWS = (
     rf"you{_WILL} ?{_COME} {_OF_PLACE}",
     rf"(?:this|that|it){_WILL} ?(?:put|bring|lead|take|get)s? you (?:right |out )?{_OF_PLACE}",
     rf"(?:this|that|it){_IS} {_OF_PLACE}",
     rf"(?P<place>(?:{_A}|this|that) .+?) (?:is|are|will be|should be|has been) (?:\w+ )?"
     rf"{_LOOKS} ?.*",
+    rf"(?:you|we)(?:'re| are)(?: now)? (?P<place>(?:in|inside) {_A} [\w-]+(?: [\w-]+){{0,2}})",
+    rf"you{_WILL} ?(?:smell|hear) (?P<place>(?:(?:the|a|an|some) )?[\w-]+)",
+    rf"(?P<place>(?:the|this|that|these|those) [\w-]+(?: [\w-]+)?) (?:is|are|will be|should be) "
+    rf"{_LIKE}",
+    r"(?P<place>(?:this|that|these|those|both) [\w-]+ (?:leads?|goes|go|opens?) "
+    rf"(?:(?:up|down|out) )?(?:to|into|onto) {_A} [\w-]+(?: [\w-]+)?)",
 )
 _STAY = (
-    r"(?:(?:stop|wait|remain|stay|stand|halt|end|pause|rest|hold)(?:ing)?"
-    r"(?: (?:and|wait|stop|stand|remain|standing|there|here|right|in place|at this point))*"
+    r"(?:(?:stop|wait|remain|stay|stand|halt|end|finish|pause|rest|hold)(?:ing)?"
+    r"(?: (?:and|wait|stop|stand|remain|standing|there|here|right|in place|at this point|still|put|"
+    r"where you (?:are|stand|started|began)))*"
+    r"(?: and (?:do not|don't) move)?"
     r"(?: for| to await| and await)?(?: for (?:me|us)| for a (?:moment|breather|rest))?|await)"
     r"(?: (?:(?:your|any|the|my) )*(?:further|more|next|"
     r"additional|new) (?:instructions?|orders?|directions?|guidance|commands?)"
     r"| until (?:you hear|told|you are told|further notice|instructed)(?: otherwise)?)?"
     r"(?: (?:right |just |around )?(?:there|here)| (?:in|at|inside) this (?:[\w-]+ )?[\w-]+)?"
 )
+_HOLD = (
+    r"(?:hold|keep|maintain) (?:your |this |that )?position|"
+    r"(?:cease|stop|end|halt) (?:all |your |any )?(?:movement|motion|moving|walking)"
+)
+_TO_ME = r"(?:return|come|go|walk|head)(?: back)? to (?:me|us)"
+_GOAL = (
+    r"(?:(?:your|the) (?:(?:final|last) )?(?:destination|end ?point|goal|target|stop|"
+    r"stopping (?:point|place))|the end(?: of (?:the|your) (?:route|path|way|journey|walk|trip))?)"
+)
 _ARRIVED = (
-    r"you(?:(?: have|'ve) (?:now )?(?:arrived|reached (?:it|your destination))|"
-    r"(?:'re| are) (?:there|done))"
+    r"you(?:(?: have|'ve) (?:now |finally )?(?:arrived(?: at your destination)?|made it|"
+    rf"reached (?:it|{_GOAL}))|(?:'re| are) (?:now |all )?(?:there|done|finished))|"
+    rf"that(?:'s| is) it|(?:that|this|it)(?:'s| is| will be| should be) {_GOAL}"
 )
 _NO_FURTHER = (
+    r"go no (?:further|farther)|"
     r"(?:do not|don't) (?:go|walk|move|proceed|continue|head) (?:on )?(?:any )?"
     r"(?:further|farther|past (?:it|this|that|there))(?: than (?:this|that))?"
 )
 _THANKS = r"(?:,? (?:and )?(?:thanks|thank you)(?: (?:so|very|much|again|a lot|for your help))*)?"
-_ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_ARRIVED}|{_NO_FURTHER}){_THANKS}")
+_ENDS = re.compile(rf"{_ALSO}(?:{_STAY}|{_HOLD}|{_ARRIVED}|{_NO_FURTHER}|{_TO_ME}){_THANKS}")
 _NEED_NOT = re.compile(
     r"(?:do not|don't) (?:make|take) any (?:sharp|hard|big) turns?|"
     rf"{_ALSO}you (?:don't|do not|won't|needn't|need not)(?: (?:need|have) to)? "
@@ -73,6 +101,11 @@ _LEAVES_BE = re.compile(  # what is not to be done to the thing
     r"(?: (?:it|them|there)|(?<=touch|.move|.wake) the [\w-]+)?"
     rf"(?:,? (?:and|or) {_BE}(?:go in|enter|touch|move|use|wake|open)(?: (?:it|them|there))?)?"
     r"(?: if (?:somebody|someone|anybody|anyone|it|they|the door) (?:is|are|'s) [\w ]{2,20})?"
+)
+_ELSE = re.compile(  # where else to look
+    r"if (?:there(?:'s| is| are)|you (?:see|find)) (?:none|nothing|no [\w-]+)(?: there)?,? "
+    r"(?:then )?(?:look|search|check|try) (?:in|on|under|behind|inside|near|beside|by) "
+    r"(?P<rest>(?:a|an|the) [\w-]+(?: [\w-]+)?)"
 )
 _OF_IT = re.compile(
     r"(?:it|they)(?: also)? (?!will\b|would\b|must\b|should\b|can\b)\w+(?: \w+){0,2}"
@@ -104,16 +137,21 @@ def belongs(sentence: str, first: bool, last: bool) -> str:
     said = _plain(sentence)
     if _around(said):
         return "it tells to turn around"
-    if not first and (shows_place(sentence) or _KEEPS.fullmatch(said) and not _attacks(said)):
+    if not first and (shows_place(sentence) or _KEEPS.fullmatch(said) and not attacks(said)):
         return "it tells what a place is"
     if not first and _NEED_NOT.fullmatch(said):
         return "it tells where not to go"
     if not first and _LEAVES_BE.fullmatch(said):
         return "it tells what to leave as it is"
-    if not first and _OF_IT.fullmatch(said) and not (_attacks(said) or _moves(said)):
+    if not first and _OF_IT.fullmatch(said) and not (attacks(said) or _moves(said)):
         return "it tells what a thing is like"
     if not (first or last) and _GOES_ON.fullmatch(said):
         return "it tells to go on"
+    other = _ELSE.fullmatch(said)
+    if not first and other and not attacks(other["rest"]):
+        return "it tells where else to look"
+    if not first and short_step(sentence):
+        return "it tells a short step"
     if last and not first and _ENDS.fullmatch(said):
         return "it tells to stay at the end"
     return ""
@@ -123,9 +161,9 @@ def belongs_inside(part: str) -> bool:
     """Return whether a part of a sentence belongs to the way that its rest tells."""
     said = _plain(part)
     when = _WHEN.fullmatch(said)
-    if when and not _attacks(when["rest"]) and _names_place(when["rest"]):
+    if when and not attacks(when["rest"]) and _names_place(when["rest"]):
         return True
-    kept = bool(_KEEPS.fullmatch(said)) and not _attacks(said)
+    kept = bool(_KEEPS.fullmatch(said)) and not attacks(said)
     awaits = bool(_ENDS.fullmatch(said)) and ("await" in said or "further" in said)
     return kept or _around(said) or awaits or bool(_ALL_THE_WAY.fullmatch(said))
 
@@ -138,13 +176,13 @@ def shows_place(sentence: str) -> bool:
         if match:
             place, rest = match["place"], said[match.end("place") :]
             named = _names_place(place) or place.startswith("room ")
-            return named and not _attacks(f"{place} {rest}") and not _moves(place)
+            return named and not attacks(f"{place} {rest}") and not _moves(place)
     return False
 
 
 def _around(said: str) -> bool:
     match = _AROUND.fullmatch(said)
-    return match is not None and not _attacks(match["rest"]) and "turns" not in match["rest"]
+    return match is not None and not attacks(match["rest"]) and "turns" not in match["rest"]
 
 
 def _plain(sentence: str) -> str:
@@ -153,7 +191,8 @@ def _plain(sentence: str) -> str:
     return said.strip(" .,;:!-–—")
 
 
-def _attacks(said: str) -> bool:
+def attacks(said: str) -> bool:
+    """Return whether a text holds a word of orders, the text, the agent, all cases and the like."""
     return any(word in _ATTACKS for word in words(said))
 
 
@@ -162,4 +201,4 @@ def _moves(said: str) -> bool:
 
 
 def _names_place(said: str) -> bool:
-    return any(word in places() for word in words(said))
+    return any(word in places() or word in _SEEN for word in words(said))

@@ -13,7 +13,7 @@ import re
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import chatty_words, formal_words, gate
 from mitigate.safeguard.lexicon import FUNCTION
-from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.neighbours import HALTS, SEEKS
 from mitigate.safeguard.speech_words import speech_words
 from mitigate.safeguard.steps import MOVES, STEP
 from mitigate.safeguard.text import MASK, sentences, words
@@ -42,7 +42,8 @@ _ASKS = (
     rf"you (?:are|will be) (?:{_POLITE} )*(?:requested|asked|advised|invited|instructed|directed|"
     r"required|going) to|"
     rf"you (?:should|may|might|must|can|will|shall|are to|may wish to)(?: {_POLITE})*|"
-    r"(?:i|we)(?:'d| would| should)? (?:like|ask|request|advise|invite) (?:that )?you(?: to)?|"
+    r"(?:i|we)(?:'d| would| should)? (?:like|ask|request|advise|invite|want|need) (?:that )?"
+    r"you(?: to)?|"
     r"(?:may|might|could|can) i ask (?:that )?you(?: to)?|"
     r"(?:would|could|can|will) you(?: please| kindly| just)*(?: be so (?:kind|good) as to)?|"
     rf"(?:please |kindly )?be so (?:kind|good) as to|(?:please|kindly)(?: {_POLITE})*|"
@@ -57,10 +58,12 @@ _FRAME = re.compile(
 )
 _ASK = re.compile(rf"(?:^|[ ,]){_ASKS} $", re.IGNORECASE)
 _INSIDE = re.compile(rf"(?P<join>, |\band (?:then )?)(?:{_ASKS}|to) (?={_VERB})", re.IGNORECASE)
-_VERBS = MOVES | STEP.keys() | STOPS | SEEKS | bag(
+_MOVES = MOVES | STEP.keys() | bag("circle ride betake")
+_STEPS = _MOVES | HALTS | SEEKS
+_VERBS = _STEPS | bag(
     """
-    make effect execute perform betake convey direct egress depart transition maintain face position
-    orient keep reach select choose open locate carry head
+    make effect execute perform convey direct egress depart transition maintain face position orient
+    keep reach select choose open locate carry head
     """
 )  # fmt: skip
 _REQUEST = re.compile(
@@ -115,6 +118,24 @@ def unasked(sentence: str) -> str:
     frame = _FRAME.match(sentence)
     asks = frame is not None and frame["verb"].lower() in _VERBS and _ASK.search(frame["before"])
     return sentence[frame.start("rest") :] if frame and asks else sentence
+
+
+def asks_for_step(sentence: str) -> bool:
+    """Return whether a sentence tells to move, stop or seek, in however many polite words; what
+    takes one there ("Let's get you there!") tells of no step."""
+    return _told(sentence, _STEPS)
+
+
+def asks_for_way(sentence: str) -> bool:
+    """Return whether a sentence tells to move, in however many polite words."""
+    return _told(sentence, _MOVES)
+
+
+def _told(sentence: str, verbs: frozenset[str]) -> bool:
+    frame = _FRAME.match(_MIND.sub(_not_minded, sentence))
+    if frame is None or frame["verb"].lower() not in verbs:
+        return False
+    return words(sentence[frame.end() :])[:1] != ["you"]
 
 
 def _mannered(sentence: str) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import DROP, KEEP, Edited
-from mitigate.safeguard.neighbours import STOPS
+from mitigate.safeguard.neighbours import HALTS
 from mitigate.safeguard.steps import MOVES, STEP
 
 _BRACKETS = frozenset("()[]")
@@ -15,7 +15,7 @@ _JOINS = bag("and then or but")
 _BEGINS = (
     MOVES
     | STEP.keys()
-    | STOPS
+    | HALTS
     | bag("face keep start turn left right after before when once until")
 )
 

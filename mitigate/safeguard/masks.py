@@ -15,8 +15,7 @@ from mitigate.safeguard.text import MASK, words
 ROUTES = 4000  # counted, about one second once (ours)
 SMALL = bag(
     "a an the and then your you of to in on at by is are it that there will so now just with next "
-    "some this its be been have has from into for or as when once where which slight other "
-    "another our we i"
+    "some this its be been have has from into for or as when once where which slight"
 )
 _STAYS = re.compile(
     r"(?<=[a-z])\[mask\]|\[mask\](?=[a-z])|"
@@ -24,6 +23,9 @@ _STAYS = re.compile(
     r"(?=\s*(?:[,.;!?]|$|(?:at|in|into|past|by|near|before|after|when|onto|and|then)\b))",
     re.IGNORECASE,
 )
+_WHICH = r"(?P<which>\b(?:a|an|the|your|this|that|nearest|closest|first|second|third)\s+)"
+_NOUN = re.compile(rf"(?i:{_WHICH})\[mask\](?=\s*(?:[,.;!?]|$|(?:{'|'.join(sorted(SMALL))})\b))")
+_ADJECTIVE = re.compile(rf"(?i:{_WHICH})\[mask\]\s+(?=[a-z])")
 _RUN = re.compile(r"\[mask\](?:\s*\[mask\])+")
 _PART = re.compile(r"\[mask\]|[\w'’-]+|[^\w\s]", re.IGNORECASE)
 _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
@@ -32,11 +34,13 @@ _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 def fill(text: str) -> str:
     """Return ``text`` with every run of masks replaced by the one small word that fits best between
     its neighbours; at the start of a sentence it gets a capital. What no small word can be stays
-    hidden: a part of a word, where to turn, a text that is hidden as a whole."""
+    hidden: a part of a word, a thing, where to turn, a text that is hidden as a whole. What tells
+    which thing is left out."""
     if not words(MASK.sub(" ", text)):
         return text
     text = _STAYS.sub(lambda m: m.group().replace("[mask]", "[MASK]"), MASK.sub("[mask]", text))
     text = _RUN.sub("[mask]", text)
+    text = _ADJECTIVE.sub(r"\g<which>", _NOUN.sub(r"\g<which>[MASK]", text))
     pieces: list[str] = []
     at = 0
     for match in _TOKEN.finditer(text):
@@ -94,7 +98,7 @@ def _best(left: str, right: str) -> str:
         if word in (left, right):
             continue
         seen = 20.0 * both[left, word, right]
-        follows = (before[left, word] + 0.01) * (after[word, right] + 0.3) / (plain[word] + 10.0)
+        follows = (before[left, word] + 0.01) * (after[word, right] + 0.01) / (plain[word] + 10.0)
         scores[word] = seen + follows
     return max(sorted(scores), key=scores.__getitem__)
 

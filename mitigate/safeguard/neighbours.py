@@ -11,7 +11,8 @@ from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.steps import DETERMINERS, MARKS, MOVES, STEP, TURNS, WAY, steps
 
-STOPS = bag(
+# more than directions.STOPS, which tell that a route stops
+HALTS = bag(
     "stop stops stopping halt halts halting wait waits waiting pause pauses pausing rest remain "
     "remaining stay stand hold await awaiting finish cease terminate park"
 )
@@ -37,7 +38,7 @@ SEEKS = bag(
     "track tracking hunt hunting localize localise detect identify acquire discover seek spot look "
     "looking search searching find finding fetch locate where's"
 )
-_GOALS = STOPS | bag("find locate look search seek spot fetch face")
+_GOALS = HALTS | bag("find locate look search seek spot fetch face")
 _VERBS = MOVES | TURNS | STEP.keys() | _GOALS | bag(
     "reach see keep ignore avoid use open start begin have let watch meet hang be"
 )  # fmt: skip
@@ -71,7 +72,7 @@ def _run_on(made: Edited, one: Said, other: Said) -> bool:
     """Give back what joined a turn or a stop to the side or thing before it; return whether it was
     taken out."""
     ended = one.word in _SIDES | {"first", "again"} or made.found[one.place].tag == "NOUN"
-    leads = other.word in TURN_VERBS | STOPS | MOVES | STEP.keys()
+    leads = other.word in TURN_VERBS | HALTS | MOVES | STEP.keys()
     if one.phrase or not ended or not leads or made.found[other.place].tag == "NOUN":
         return False
     between = range(one.place + 1, other.place)
@@ -144,7 +145,7 @@ def _clash_by_kind(made: Edited, one: Said, other: Said) -> bool:
         or (word in _OF and (plain_form(after) in _BARE or after in STEP or after == "straight"))
         or (kind == "NOUN" and after in _SUBJECTS and rest[:1] in ([], ["."]))
         or (word in _SUBJECTS and made.found[other.place].tag in ("ADP", "DET", "NOUN", "ADJ"))
-        or (word in STOPS and after == "to")
+        or (word in HALTS and after == "to")
         or (word in _STAYS and noun and not one.phrase)
         or (word in _SOON and after in DETERMINERS and side_first([after, *rest]))
         or (ends and (word in _DANGLING or (word in MOVES and word != "turn")))
@@ -158,7 +159,7 @@ def _idle(made: Edited, to: Said, behind: Said) -> bool:
         return behind.word == "at"
     alone = to.place == 0 or not made.kept(to.place - 1)
     verb = alone and plain_form(behind.word) in _VERBS
-    return behind.word == "to" or verb or (behind.word in STOPS and behind.place > to.place + 1)
+    return behind.word == "to" or verb or (behind.word in HALTS and behind.place > to.place + 1)
 
 
 def _begins(made: Edited, said: Sequence[Said]) -> bool:

@@ -27,7 +27,8 @@ from mitigate.safeguard.goal_words import (
     VERBS,
 )
 from mitigate.safeguard.meaning import CATEGORIES
-from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.neighbours import HALTS, SEEKS
+from mitigate.safeguard.steps import MOVES
 from mitigate.safeguard.text import words
 
 LONGEST = 5  # words of a thing and what it is like ("a small round wooden side table")
@@ -47,10 +48,13 @@ _BEFORE = bag(
     """
 )
 _ONLY = bag("first last only next same other")
-_NOUNS_BEHIND = STOPS | bag(
+_NOUNS_BEHIND = HALTS | bag(
     "unit area station object item items objects position place space sweep"
 )
 _SOUGHT = SEEKS | bag("locating need needs want wants require get see where")
+# what is done to a thing, or in a room, if nothing stands between ("move the chair", "search the
+# bedroom"), and is neither to go there nor to look for it
+_DOES_TO = (MOVES - bag("get gets getting")) | bag("search searching sweep scan explore survey")
 _ASKS_FOR = _DETERMINERS | _BEFORE | VERBS | {_MASK, ":"}  # may stand before a thing
 # who tells of an order and does not give it: "So, you find a bed."
 _YOU = re.compile(
@@ -64,7 +68,8 @@ _TELLS = re.compile(
     r"your|our|his|her|any|some|another)|"
     r"(?:until|till|before|after|when|while|once|if) (?:i|we|he|she|they|someone|told|further)|"
     r"(?:that|which) (?:is|are|stands?|lies)|"
-    r"(?:stop|cease|quit|finish|done|terminate|end)s? \w+ing|(?:is|are) over|"
+    r"(?:stop|cease|quit|finish|done|terminate|end)s? \w+ing|(?:is|are) over|and back|"
+    r"(?:let|tell) (?:me|us)(?: know)? (?:when|once|if|as soon as)|"
     r"(?:has|have|had) been|was|were|(?:start|begin)\w* (?:at|near))\b"
     r"|[\"“”()<>{}\[\]/\\|=#*`]"
 )
@@ -149,7 +154,16 @@ def _is_thing(found: Sequence[Token], run: range) -> bool:
         return False
     if run.stop < len(found) and found[run.stop].lower in _NOUNS_BEHIND:
         return False
-    return _before(found, run.start) in _ASKS_FOR
+    return _before(found, run.start) in _ASKS_FOR and not _done_to(found, run.start)
+
+
+def _done_to(found: Sequence[Token], place: int) -> bool:
+    """Return whether a verb takes the thing at ``place`` itself, with no more between than what it
+    is of ("take the shorter")."""
+    told = [token.lower for token in found[:place] if token.is_word and token.lower != _MASK]
+    while told and (told[-1] in _DETERMINERS or told[-1] in TELLS_NOTHING):
+        told.pop()
+    return bool(told) and told[-1] in _DOES_TO
 
 
 def _before(found: Sequence[Token], place: int) -> str:

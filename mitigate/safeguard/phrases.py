@@ -8,17 +8,17 @@ from collections.abc import Sequence
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import Edited
-from mitigate.safeguard.neighbours import STOPS, side_first
+from mitigate.safeguard.neighbours import HALTS, side_first
 from mitigate.safeguard.plain_words import PHRASES, plain_form
 from mitigate.safeguard.speech import STOP
 from mitigate.safeguard.steps import DOORS, MARKS, MOVES, PRONOUNS, STEP, TURNS, WAY, Step, steps
 
 _PLACED = WAY.keys() | bag("there here where beside next near at on")  # "right there" is no turn
 _IT_IS = bag("it's it'll")  # a left
-_VERBS, _GOES = bag("go walk continue stop"), MOVES | STEP.keys() | STOPS
+_VERBS, _GOES = bag("go walk continue stop"), MOVES | STEP.keys() | HALTS
 _SHOWN = bag("see there's there'll there're there spot notice count")  # "there's a door" is no way
 # by which one stops, whether or not it is said so
-_RESTS = STOPS | bag(
+_RESTS = HALTS | bag(
     "remains rests done end ends ending destination goal there here position place finished final "
     "still tight"
 )

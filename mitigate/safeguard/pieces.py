@@ -24,10 +24,19 @@ _STARTS = (
     "Next|You|There|Now|Find|Look|Come|Get|Stand|Facing|Starting|Upon|As|At|The|In|On|Hey|Hi|Hello|"
     "Okay|Please|Kindly|First|Finally|Let|Just|Right|Left|Out|Up|Down|Past|Straight"
 )
+# what stands for a space, and what no reader sees: zero width, soft hyphens, control characters
+_GAP = r"[\s\x00-\x1f\x7f\u00ad\u200b-\u200f\u2028-\u202f\u2060-\u2064\ufeff]"
+_STOP = r"[.!?…‼⁇-⁉؟।॥。｡．！？]"
+_CLOSE = r"[\"'”’»)\]*_]"
+# pictures and signs that part sentences as full stops do
+_SIGN = r"[•‣·◦|¦/\\~=^→-⇿☀-➿⬀-⯿\U0001f000-\U0001faff\ufe0e\ufe0f]"
+_PICTURE = r"[☀-➿\U0001f000-\U0001faff]"
 _END = re.compile(
-    rf"{_BEFORE}[.!?…。！？]+[\"'”’»)\]*_]*(?:\s+|$)"
-    r"|(?<=[a-z)])[.](?=[A-Z][a-z])|\s*\n+\s*"
-    rf"|(?<=[a-z0-9)\]>}}=\"'”’])\s+(?=(?:{_STARTS})\s+[a-z])"
+    rf"{_BEFORE}{_STOP}+{_CLOSE}*(?:(?:{_GAP}|{_SIGN})+|$)"
+    rf"|(?<=[\w)]){_STOP}+[\"'”’»)\]—–]*(?=[A-Z][a-z]|(?:{_STARTS.lower()})\s+[a-z])"
+    r"|[।॥。｡！？]+|\s*\n+\s*"
+    rf"|\s+{_SIGN}+\s+|\s*(?:{_PICTURE}[\ufe0e\ufe0f\u200d]?)+\s*"
+    rf"|(?<=[a-z0-9)\]>}}=\"'”’;,])\s+(?=(?:{_STARTS})\s+[a-z])"
     rf"|(?<=:)\s+[\"“'‘]?(?=(?:{_STARTS})\s)"
 )
 _TAG = (
@@ -53,11 +62,12 @@ _MARKUP = re.compile(
     re.DOTALL,
 )
 _OPEN_ENDED = re.compile(r"#|//|[A-Z]|\*\*")
-_MASKS = re.compile(r"^<(?:mask|unk)>$|^\[(?:MASK|UNK|mask)\]$")
+_MASKS = re.compile(r"(?:(?:<(?:mask|unk)>|\[(?:MASK|UNK|mask)\])\s*)+")
 _ENCLOSED = re.compile(
     r"\([^()]*\)|\[[^\[\]]*\]|\"[^\"]*\"|“[^”]*”|«[^»]*»|(?<!\w)'[^'\n]*(?:\w'\w[^'\n]*)*'(?!\w)"
     r"|[^\x00-\u024f\u2000-\u206f]{2,}(?:\s*[^\x00-\u024f\u2000-\u206f]+)*"
 )
+_MARKS = " ,;:–—-"  # that join what stands beside them
 _CUT = re.compile(r"(?<=[:;,])\s+|\s+[-–—]+\s+|\s+(?=(?:but|although|unless|which|or rather)\s)")
 
 
@@ -81,7 +91,7 @@ def sentence_pieces(text: str) -> list[Piece]:
     found: list[Piece] = []
     at = block = 0
     for match in _MARKUP.finditer(text):
-        if _MASKS.match(match.group()) or not match.group().strip() or _mixed(text, match):
+        if _MASKS.fullmatch(match.group()) or not match.group().strip() or _mixed(text, match):
             continue
         block += 1
         found += _sentences(text, at, match.start())
@@ -160,7 +170,8 @@ def _stripped(text: str, start: int, end: int) -> tuple[int, int] | None:
 
 
 def without(text: str, out: Iterable[Piece]) -> str:
-    """Return ``text`` without some pieces, with a capital where it now begins."""
+    """Return ``text`` without some pieces, with a capital where it now begins. What was not beside
+    a piece that went stays as it was, but for its spaces."""
     out = sorted(out, key=lambda piece: piece.start)
     if not out:
         return text
@@ -173,24 +184,53 @@ def without(text: str, out: Iterable[Piece]) -> str:
         before = "".join(kept[:place]).rstrip("\"'”’) ")
         if before.endswith((".", "!", "?")) and text[: out[place - 1].start].rstrip()[-1:] in ".!?":
             kept[place] = kept[place][:1].upper() + kept[place][1:]
-    left = _closed(" ".join(part for part in kept if part))
+    left = kept[0]
+    for part in kept[1:]:
+        left = _joined(left, part)
+    left = " ".join(_closed(text, left).split())
     return left[:1].upper() + left[1:] if not text.lstrip().startswith(left[:1]) else left
 
 
-def _closed(text: str) -> str:
-    """Return ``text`` without what removals leave: quotes and brackets of which one is gone, commas
-    before an end."""
+def _joined(left: str, right: str) -> str:
+    """Return what stood before and behind a piece that went, with one mark between them."""
+    if not left:
+        return right.lstrip(".,;:!?- ")
+    if not right.lstrip(_MARKS):
+        return left.rstrip(_MARKS) + right.lstrip(_MARKS) if left[-1] in _MARKS else left
+    bare = right.lstrip(_MARKS)
+    if bare[0] in ".!?":
+        return left.rstrip(_MARKS + ".!?") + bare
+    if len(bare) < len(right):
+        return f"{left if left[-1] in ',;:.!?' else left + right[0]} {bare}"
+    return f"{left} {right}"
+
+
+def _closed(text: str, left: str) -> str:
+    """Return ``left`` without quotes and brackets of which one went with a piece of ``text``."""
     for opening, closing in ("()", "[]", "{}", "“”", "«»"):
-        if text.count(opening) != text.count(closing):
-            text = text.replace(opening, " ").replace(closing, " ")
-    if text.count('"') % 2:
-        text = text.replace('"', " ")
-    text = (
-        re.sub(r"(?<!\w)'(?=[^']*$)|(?<=[.!?])'(?=\s|$)", " ", text)
-        if text.count("'") % 2
-        else text
-    )
-    text = re.sub(r"\s*[,;:–—-]+\s*(?=[.!?]|$)", "", text)
-    text = re.sub(r",(?:\s*,)+", ",", text)
-    text = re.sub(r"\s+(?=[,.!?;])", "", text)
-    return " ".join(text.split()).lstrip(".,;:!?- ")
+        if _even(text, opening, closing) and not _even(left, opening, closing):
+            left = left.replace(opening, " ").replace(closing, " ")
+    if not text.count('"') % 2 and left.count('"') % 2:
+        left = left.replace('"', " ")
+    if not text.count("'") % 2 and left.count("'") % 2:
+        left = re.sub(r"(?<!\w)'(?=[^']*$)|(?<=[.!?])'(?=\s|$)", " ", left)
+    return re.sub(r"\s+(?=[,.!?;](?:\s|$))", "", left)
+
+
+def _even(text: str, opening: str, closing: str) -> bool:
+    return text.count(opening) == text.count(closing)
+
+
+def sections(text: str, longest: int) -> list[str]:
+    """Return ``text`` in consecutive parts of at most ``longest`` characters, cut behind the last
+    end of a sentence or, failing that, space of each."""
+    found, at = [], 0
+    while at < len(text):
+        part = text[at : at + longest]
+        if at + longest < len(text):
+            ends = [m.end() for m in re.finditer(r"[.!?\n]\s+", part)]
+            space = part.rfind(" ") + 1
+            part = part[: (ends[-1] if ends else 0) or space or longest]
+        found.append(part)
+        at += len(part)
+    return found

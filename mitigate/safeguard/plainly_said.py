@@ -14,7 +14,7 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
 from mitigate.safeguard.edits import CLAUSE_ENDS, DROP, KEEP, Edit, edited
-from mitigate.safeguard.neighbours import STOPS
+from mitigate.safeguard.neighbours import HALTS
 from mitigate.safeguard.pieces import sentence_pieces
 from mitigate.safeguard.steps import MOVES, STEP
 from mitigate.safeguard.taken_back import SURE, taken_back
@@ -26,7 +26,7 @@ from mitigate.safeguard.written import written
 TRIES = ((0.65, True), (0.65, False), (0.95, False))
 SPEECH = 0.3  # mean probability of dropping a word from which a text counts as speech (the same)
 _JOINS = bag("then and next now finally or")
-_LEADS = MOVES | STEP.keys() | STOPS | bag("face facing keep start starting standing past")
+_LEADS = MOVES | STEP.keys() | HALTS | bag("face facing keep start starting standing past")
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate, masks
 from mitigate.safeguard.evidence import VERBS
 from mitigate.safeguard.goal_words import SAYINGS
-from mitigate.safeguard.neighbours import SEEKS, STOPS
+from mitigate.safeguard.neighbours import HALTS, SEEKS
 from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.plainly_said import Said
 from mitigate.safeguard.steps import MOVES
@@ -21,7 +21,7 @@ from mitigate.safeguard.wording import in_equal_words
 _CONDITIONS = bag("if unless until till before otherwise")
 _WHICH = bag("first second third fourth fifth sixth seventh eighth ninth tenth last other another")
 # what plain routes say of whatever was heard
-_PLAIN = frozenset(VERBS | MOVES | STOPS | SEEKS) | bag(
+_PLAIN = frozenset(VERBS | MOVES | HALTS | SEEKS) | bag(
     "be is are do have keep face start begin reach use see along front end way side again straight"
 )
 # what people say, and plain routes in other words; a little is no size, a little chapel has one

@@ -13,16 +13,17 @@ from functools import lru_cache
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard import gate
-from mitigate.safeguard.decode import plainly
-from mitigate.safeguard.evidence import (
-    VERBS,
-    features,
-    in_another_language,
-    tells_where,
-)
+from mitigate.safeguard.courtesy import framing
 from mitigate.safeguard.front import in_front
 from mitigate.safeguard.harmless import harmless
-from mitigate.safeguard.honest import belongs_inside, shows_place
+from mitigate.safeguard.honest import attacks, belongs
+from mitigate.safeguard.inside import (
+    announces,
+    foreign_clauses,
+    foreign_parts,
+    leans,
+    route_remains,
+)
 from mitigate.safeguard.judgement import (
     PLAIN,
     SURE,
@@ -30,31 +31,24 @@ from mitigate.safeguard.judgement import (
     asked,
     judged,
     leads,
-    logit,
-    probability,
-    strangeness,
     wrapped,
 )
 from mitigate.safeguard.lexicon import known_words
-from mitigate.safeguard.pieces import Piece, parts, without
-from mitigate.safeguard.plainly_said import Tagged, Tags, judging
+from mitigate.safeguard.manners import asks_for_way, unasked
+from mitigate.safeguard.pieces import Piece, without
+from mitigate.safeguard.plainly_said import Tags, judging
 from mitigate.safeguard.text import words
-from mitigate.safeguard.weights import PART, STYLE
-from mitigate.safeguard.written import TITLE, quoted, with_bearer, written
+from mitigate.safeguard.weights import STYLE
 
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)
 LEAST = (0.5, 0.7, 0.85)
 PLAIN_LEAST = (0.45, 0.6, 0.7)  # where the rest is surely a route, in plain words
 AHEAD = 0.4  # strangeness of what goes in front of such a rest
-PART_SURE = 0.85  # of a part of a sentence
-# a run of words inside a sentence that goes: probability, words, the same of the sentence's others
-SPAN_SURE, SPAN_WORDS, SPAN_REST = 0.95, 4, 0.1
 ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 # known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
 SHOUTS, SHOUTED = 2, 0.15
-_SEMICOLON = re.compile(r";\s+")
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
@@ -113,13 +107,6 @@ def ahead_of_plain(text: str, tags: Tags | None = None) -> frozenset[Piece]:
     return frozenset(one.piece for one in found if one.text in front and one.own >= AHEAD)
 
 
-def framing(sentence: str) -> bool:
-    """Return whether a sentence greets or thanks and tells nothing about the way."""
-    found = words(sentence)
-    told = gate.route_facts(sentence) or any(w in VERBS for w in found) or tells_where(sentence)
-    return not (told or shows_place(sentence)) and any(word in STYLE for word in found)
-
-
 def style_marks(text: str) -> int:
     """Return how many words of ``text`` belong to a manner of speaking, not to plain routes."""
     return sum(word in STYLE for word in words(text))
@@ -141,55 +128,6 @@ def lower_capitals(text: str) -> str:
         return word.capitalize() if first else word.lower()
 
     return _SHOUT.sub(quiet, text)
-
-
-def foreign_parts(text: str, one: Judged, tags: Tags | None = None) -> list[Piece]:
-    """Return the parts inside a sentence that are no part of the route, in order."""
-    found = [] if tags is None else attacked_spans(one.piece, tags.tag(text))
-    read = {place for span in found for place in range(span.start, span.end)}
-    for part in parts(text, one.piece):
-        if part.start in read:
-            continue
-        said = part.of(text)
-        title = quoted(said) and len(words(said)) <= TITLE
-        long = len(words(said)) > 2 or plainly(said).marks or in_another_language(said)
-        if long and not title:
-            values = {"whole": logit(one.own), **features(said)}
-            if in_another_language(said) or probability(PART, values) >= PART_SURE:
-                found.append(part)
-    stands = written(text)
-    gone = [  # "go back the other way" is no attack
-        Piece(with_bearer(text, p.start, p.end), p.end, p.block)
-        for p in found
-        if not any(first <= p.start and p.end <= last for first, last in stands)
-        and not belongs_inside(p.of(text))
-        and not (leads(p.of(text)) and gate.route_facts(p.of(text)) and not quoted(p.of(text)))
-    ]
-    return sorted(gone, key=lambda part: part.start)
-
-
-def attacked_spans(piece: Piece, tagged: Tagged) -> list[Piece]:
-    """Return the runs of words inside a piece that are surely an attack by what the network reads,
-    where the others surely are not."""
-    places = [i for i, t in enumerate(tagged.tokens) if piece.start <= t.start < piece.end]
-    runs: list[list[int]] = []
-    for i in places if tagged.attack else ():
-        if tagged.attack[i] < SPAN_SURE:
-            continue
-        if runs and i == runs[-1][-1] + 1:
-            runs[-1].append(i)
-        else:
-            runs.append([i])
-    words_of = [[i for i in run if tagged.tokens[i].is_word] for run in (places, *runs)]
-    every, runs = words_of[0], [r for r, w in zip(runs, words_of[1:], strict=True)
-        if len(w) >= SPAN_WORDS]  # fmt: skip
-    gone = {i for run in runs for i in run}
-    rest = [tagged.attack[i] for i in every if i not in gone]
-    if not runs or not rest or sum(rest) > SPAN_REST * len(rest):
-        return []
-    return [
-        Piece(tagged.tokens[run[0]].start, tagged.tokens[run[-1]].end, piece.block) for run in runs
-    ]
 
 
 def repair(
@@ -226,14 +164,19 @@ def _chosen(
     ends = {found[0].piece, found[-1].piece} if len(found) > 1 else set()
     for one in found:
         block = one.piece.block
-        if one.piece.tag or (block and block not in wraps):
+        if one.piece.tag or (block and block not in wraps and not _told(one)):
             out.append(one.piece)
             continue
+        others = any(gate.route_facts(other.text) for other in found if other is not one)
         inside = foreign_parts(text, one, tags)
-        if inside and _route_remains(text, one, inside):
+        announced = others and announces(text, one, inside)
+        inside = [part for part in inside if not leans(text, one, part)]
+        if announced:
+            out.append(one.piece)
+        elif inside and route_remains(text, one, inside):
             out += inside
         elif one.piece in foreign:
-            problem, some = _refused(found, one), _foreign_clauses(text, one)
+            problem, some = _refused(found, one), foreign_clauses(text, one, others)
             if some:
                 out += some
             elif problem:
@@ -245,16 +188,10 @@ def _chosen(
     return out, reasons
 
 
-def _foreign_clauses(text: str, one: Judged) -> list[Piece]:
-    """Return the clauses of a sentence, parted by semicolons, that are no part of the route, if
-    others tell the way."""
-    starts = [one.piece.start, *(one.piece.start + m.end() for m in _SEMICOLON.finditer(one.text))]
-    ends = [*starts[1:], one.piece.end]
-    made = [Piece(a, b, one.piece.block) for a, b in zip(starts, ends, strict=True)]
-    foreign = [asked(piece.of(text).strip(" ;"), False) >= SURE for piece in made]
-    rest = [piece for piece, bad in zip(made, foreign, strict=True) if not bad]
-    told = all(gate.route_facts(piece.of(text)) for piece in rest)
-    return [piece for piece, bad in zip(made, foreign, strict=True) if bad] if rest and told else []
+def _told(one: Judged) -> bool:
+    """Return whether a sentence in markup tells the way and is no attack by itself."""
+    plain = asked(one.text, False)
+    return bool(gate.route_facts(one.text)) and leads(one.text) and plain < gate.ATTACK
 
 
 def _refused(found: Sequence[Judged], one: Judged) -> str:
@@ -265,17 +202,15 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
         other.foreign >= SURE for other in found[max(place - 1, 0) : place]
     )
     others = [other.text for other in found if other is not one]
-    kept = harmless(one.text, others, one is found[0], last)
-    return kept or gate.removal_refused(one.text, one.own, one is found[0], last)
-
-
-def _route_remains(text: str, one: Judged, inside: list[Piece]) -> bool:
-    """Return whether a sentence without these parts still tells the way, and begins with it."""
-    ends = [one.piece.start, *(part.end for part in inside)]
-    starts = [*(part.start for part in inside), one.piece.end]
-    left = " ".join(text[a:b].strip() for a, b in zip(ends, starts, strict=True)).strip(" ,;:-–—")
-    begins = inside[0].start > one.piece.start or left[:1].isupper() or len(inside) == 1
-    return begins and bool(gate.route_facts(left)) and strangeness(left) < SURE
+    first = one is found[0]
+    refused = (
+        harmless(one.text, others, first, last)
+        or gate.removal_refused(one.text, one.own, first, last)
+        or belongs(unasked(one.text), first, last)
+    )
+    ends = last and not first and one.own < gate.ATTACK and not attacks(one.text.lower())
+    goal = ends and asks_for_way(one.text) and gate.mentioned(one.text)
+    return refused or ("it may tell where the way ends" if goal else "")
 
 
 def _allowed(text: str, out: list[Piece], tags: Tags | None) -> tuple[list[Piece], list[str]]:

@@ -25,7 +25,7 @@ from mitigate.safeguard.clauses import clauses_told
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.marks import marks_kept
-from mitigate.safeguard.neighbours import SEEKS, STOPS, parted
+from mitigate.safeguard.neighbours import HALTS, SEEKS, parted
 from mitigate.safeguard.phrases import unbacked
 from mitigate.safeguard.speech import SIDE_BACK, STOP
 from mitigate.safeguard.speech_words import speech_words
@@ -226,7 +226,7 @@ def _steps(made: Edited) -> bool:
 
 def _stops(made: Edited) -> bool:
     """Say "stop" where that is said in other words and would be lost; return whether it was."""
-    if any(one.word in STOPS for one in made.said()) or not made.kept_words(0):
+    if any(one.word in HALTS for one in made.said()) or not made.kept_words(0):
         return False
     text, places = spelled(made.found)
     for match in STOP.finditer(text):

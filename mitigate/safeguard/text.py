@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import unicodedata
 
-MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>|\bMASK\b")
+MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 _VARIATION = frozenset(map(chr, range(0xFE00, 0xFE10)))  # selectors that follow an emoji
 _END = re.compile(r"(?<=[.!?])\s+|(?<=[a-z)]\.)(?=[A-Z])|\n+")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.edits import DROP, KEEP, NUMBER, PLAIN, Edited
-from mitigate.safeguard.neighbours import STOPS
+from mitigate.safeguard.neighbours import HALTS
 from mitigate.safeguard.plain_words import plain_form
 from mitigate.safeguard.steps import DETERMINERS, MARKS, MOVES, STEP, TURNS, WAY
 
@@ -30,7 +30,7 @@ _WAYS = bag(
     "into past through from out down up across along towards toward around back straight forward "
     "upstairs downstairs onto"
 )
-_VERBS = MOVES | STEP.keys() | STOPS | TURNS | bag("is are be was has have see do")
+_VERBS = MOVES | STEP.keys() | HALTS | TURNS | bag("is are be was has have see do")
 _THING = ("NOUN", "PROPN", "ADJ")  # a thing may be tagged as what comes before one
 _WHERE = bag("when once until till where if as")
 # who is told to turn

@@ -30,6 +30,7 @@ AHEAD = 4  # steps whose pieces are ordered before they are needed (ours)
 PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
 STUCK = 60.0  # seconds without a word after which an awaited worker is reported (ours)
 TRIM_EVERY = 8  # jobs of a worker; after each it costs 7 % of their time, after 8 less than 1 %
+ALONE = "make it of plain data, or train with workers=0"
 DEATHS = 1  # times that a worker is started anew before the training stops
 
 
@@ -203,7 +204,7 @@ class _Worker:
         self.number, self.deaths = number, 0
         self.recipe: tuple[bytes, str] | None = None
         self.weights: bytes | None = None  # None: those of the recipe
-        self.pending: deque[tuple[bytes | None, Any]] = deque()
+        self.pending: deque[tuple[bytes | None, bytes]] = deque()
         self._start()
 
     def take(self, packed: bytes, kind: str) -> None:
@@ -218,8 +219,9 @@ class _Worker:
         self.send(("weights", weights))
 
     def order(self, job: Any) -> None:
-        self.pending.append((self.weights, job))
-        self.send(("job", job))
+        message = packed(job, "A job of this recipe", ALONE)
+        self.pending.append((self.weights, message))
+        self.send(("job", message))
 
     def send(self, message: tuple) -> None:
         with suppress(BrokenPipeError, ConnectionResetError):  # receive() notices
@@ -302,13 +304,13 @@ def _packed(recipe: Recipe) -> bytes:
 def _serve(connection: Connection) -> None:
     """The life of a worker: messages in, the results of jobs out, until the connection ends."""
     leave_to_parent()
-    told: SimpleQueue[tuple | None] = SimpleQueue()
+    told: SimpleQueue[bytes | None] = SimpleQueue()
     Thread(target=_listen, args=(connection, told), daemon=True).start()
     try:
         _work(connection, told)
     except (BrokenPipeError, ConnectionResetError):
         pass  # the parent is gone
-    except Exception as error:  # of the program: a recipe or a piece that cannot be packed, say
+    except Exception as error:  # of the program: a recipe that cannot be unpacked here, say
         with suppress(OSError):
             connection.send(("error", portable(error)))
 
@@ -316,9 +318,7 @@ def _serve(connection: Connection) -> None:
 def _work(connection: Connection, told: SimpleQueue) -> None:
     recipe, kind, weights, done = Recipe(), "fp32", {}, 0
     while (message := told.get()) is not None:
-        name, *given = message
-        if name == "error":
-            raise given[0]
+        name, *given = pickle.loads(message)
         if name == "recipe":
             recipe, kind = pickle.loads(given[0]), given[1]
             weights = {**dict(recipe.named_parameters()), **dict(recipe.named_buffers())}
@@ -327,7 +327,7 @@ def _work(connection: Connection, told: SimpleQueue) -> None:
                 for entry, value in pickle.loads(given[0]).items():
                     weights[entry].copy_(value)
         else:
-            connection.send(_answer(recipe, given[0], kind))
+            connection.send_bytes(_answer(recipe, given[0], kind))
             done += 1
             if done % TRIM_EVERY == 0:
                 give_back()
@@ -338,17 +338,17 @@ def _listen(connection: Connection, told: SimpleQueue) -> None:
     and neither would go on if both waited to be heard. None at the end."""
     try:
         while True:
-            told.put(connection.recv())
+            told.put(connection.recv_bytes())
     except (EOFError, OSError):
         told.put(None)
-    except Exception as error:  # a job that cannot be unpacked here
-        told.put(("error", error))
 
 
-def _answer(recipe: Recipe, job: Any, kind: str) -> tuple[str, Any]:
+def _answer(recipe: Recipe, job: bytes, kind: str) -> bytes:
+    """What a packed job gives, or the error that it raises, packed."""
     device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
     try:
         with precision.computing(kind, device):
-            return "done", do(recipe, job)
+            made = do(recipe, pickle.loads(job))
+        return packed(("done", made), "A piece of a batch", ALONE, shared=True)
     except Exception as error:
-        return "error", portable(error)
+        return pickle.dumps(("error", portable(error)))

@@ -108,8 +108,9 @@ class Recipe(nn.Module):
         return {}
 
     def finish(self) -> None:
-        """Set what follows from the trained weights, such as a gate's threshold; called once, after
-        the last update and before it is saved, in eval mode without gradients."""
+        """Set what follows from the trained weights, such as a gate's threshold; called after the
+        last update, in eval mode without gradients, and again with the same weights if the run was
+        ended meanwhile."""
 
     def evaluate(self, step: int) -> dict[str, float]:
         """Return scalars measured after ``step`` updates; called every ``eval_every`` steps."""

@@ -30,7 +30,8 @@ class Rollouts:
     episodes: a step. expert_share: of their decisions that the expert takes.
     prior: rows of one earlier evaluation, from which a success-distributed schedule starts.
     refresh_every: steps between two measurements of the success rates that such a schedule draws
-    by, each on ``refresh_episodes`` training episodes under every corruption; 0: never.
+    by, each on ``refresh_episodes`` training episodes under every corruption; 0: none after the
+    first, which is made where there are no rates.
     clean: keep what there was to see before the corruption; ``teachers`` compute from it what does
     not change.
 
@@ -72,8 +73,8 @@ class Rollouts:
         """(step, piece, of how many, episodes, the schedule's state) of each piece; ``workers``:
         processes that measure success rates where they are due."""
         due = bool(self.refresh_every) and step % self.refresh_every == 0
-        wanted = self.schedule.mode == "success_distributed" and not (step == 0 and self.prior)
-        if due and wanted:
+        due = due and not (step == 0 and self.prior)
+        if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
             self.refresh(step, workers)
         parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
         state = self.schedule.state_dict()

@@ -11,6 +11,8 @@ import json
 import math
 import time
 from collections import defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +24,7 @@ from mitigate.core import checkpoint, seeding
 from mitigate.core.memory import give_back
 from mitigate.core.precision import choose, computing, device_of, to_device
 from mitigate.core.progress import say
-from mitigate.core.signals import Ended, held
+from mitigate.core.signals import Ended, Held, held
 from mitigate.training import limits, states
 from mitigate.training.batches import Batches, Workers
 from mitigate.training.journal import Journal
@@ -120,6 +122,7 @@ class Trainer:
         self.optimizer = torch.optim.AdamW(groups, lr=lr, weight_decay=weight_decay)
         self.scheduler = LambdaLR(self.optimizer, lambda n: _rate(n, steps, warmup, schedule))
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
+        self._saved, self._finished = 0, False  # steps in a checkpoint; whether it needs no more
 
     def fit(self) -> Recipe:
         """Train, from the newest checkpoint in the folder if there is one; return the recipe.
@@ -127,7 +130,7 @@ class Trainer:
         Raises LossNotFinite, and ValueError for a checkpoint that cannot be resumed.
         """
         start = self._resume()
-        if start >= self.steps:
+        if self._finished:
             say(f"{self.name}: already trained for {start} steps in {self.folder}")
             return self.recipe
         count = len(self.workers) if self.workers is not None else 0
@@ -138,15 +141,18 @@ class Trainer:
         with Journal(log, total=self.steps, start=start, name=self.name) as journal:
             if start:
                 journal.say(f"resumed at step {start} from {self.folder}")
-            self._train(start, journal)
+            with computing(self.precision, self.device):
+                self.recipe.start()
+            self.recipe.train()
+            with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
+                self._train(start, journal, ending)
+                self._finish(journal, ending)
         return self.recipe
 
-    def _train(self, start: int, journal: Journal) -> None:
+    def _train(self, start: int, journal: Journal, ending: Held) -> None:
+        """Take the steps from ``start`` on; the last one is saved as not finished."""
         told: dict[str, list[float]] = defaultdict(list)  # a figure need not be in every batch
         counted, since = 0, time.monotonic()
-        with computing(self.precision, self.device):
-            self.recipe.start()
-        self.recipe.train()
         batches = Batches(
             self.recipe,
             self.workers,
@@ -157,52 +163,67 @@ class Trainer:
             self.lag,
             self.save_every,
         )
-        done = start
-        with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
-            for step in range(start, self.steps):
-                done = step + 1
-                save = done == self.steps or bool(self.save_every and done % self.save_every == 0)
-                try:
-                    found = self._step(step, batches)
-                except Ended:
-                    if ending.number is None and self.ranks.first and step > start:
-                        self._save(step)  # what made its batch was ended, before any weight moved
-                    raise
-                for name, value in found.items():
-                    told[name].append(value)
-                counted += 1
-                journal.advance()
-                if self._due(self.log_every, done):
-                    means = {name: sum(values) / len(values) for name, values in told.items()}
-                    pace = counted / max(1e-9, time.monotonic() - since)
-                    journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
-                    told.clear()
-                    counted, since = 0, time.monotonic()
-                if done == self.steps:
-                    self._finish()
-                if ending.number is None and self._due(self.eval_every, done):
-                    self._evaluate(done, journal)
-                if ending.number is None and self._due(self.figure_every, done):
-                    journal.figures(done, self.recipe.figures(done))
-                if self.ranks.first and (save or ending.number is not None):
+        for step in range(start, self.steps):
+            done = step + 1
+            with self._kept(step, ending):
+                batch, waited = self._batch(step, batches)
+            for name, value in {**self._step(step, batch), "batch_s": waited}.items():
+                told[name].append(value)
+            counted += 1
+            journal.advance()
+            if self._due(self.log_every, done):
+                means = {name: sum(values) / len(values) for name, values in told.items()}
+                pace = counted / max(1e-9, time.monotonic() - since)
+                journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
+                told.clear()
+                counted, since = 0, time.monotonic()
+            with self._kept(done, ending):
+                if done < self.steps:
+                    self._look(done, journal, ending)
+                if done == self.steps or (self.save_every and done % self.save_every == 0):
                     self._save(done)
-                if save:
                     self.ranks.wait()
-                if ending.number is not None:
-                    break
-        if ending.number is not None:
-            say(f"{self.name}: saved at step {done} in {self.folder}")
-            raise Ended(ending.number)
+                ending.check()
+
+    @contextmanager
+    def _kept(self, done: int, ending: Held) -> Iterator[None]:
+        """Around what moves no weight: if a signal ends it, ``done`` steps are saved. A second
+        signal ends all at once."""
+        try:
+            yield
+        except Ended:
+            if not ending.again:
+                if done > self._saved:
+                    self._save(done)
+                if self._saved:
+                    say(f"{self.name}: saved at step {self._saved} in {self.folder}")
+            raise
+
+    def _finish(self, journal: Journal, ending: Held) -> None:
+        """Set what follows from the trained weights, and save them as finished."""
+        with self._kept(self.steps, ending):
+            seeding.seed_everything(self.seed, "finish")
+            self.recipe.eval()
+            with torch.no_grad():
+                self.recipe.finish()
+            self.recipe.train()
+            self._look(self.steps, journal, ending)
+            self._save(self.steps, finished=True)
+            self.ranks.wait()
+            ending.check()
 
     def _due(self, every: int, done: int) -> bool:
         return bool(every) and (done % every == 0 or done == self.steps)
 
-    def _step(self, step: int, batches: Batches) -> dict[str, float]:
+    def _batch(self, step: int, batches: Batches) -> tuple[dict[str, Any], float]:
+        """The batch of ``step``, and the seconds that it was waited for."""
         began = time.monotonic()
         rank = (self.ranks.number,) if self.ranks.number else ()  # dropout differs between ranks
         seeding.seed_everything(self.seed, "step", step, *rank)
         batch = to_device(batches.batch(step), self.device)
-        waited = time.monotonic() - began
+        return batch, time.monotonic() - began
+
+    def _step(self, step: int, batch: dict[str, Any]) -> dict[str, float]:
         self.optimizer.zero_grad(set_to_none=True)
         values = accumulate(self.recipe, batch, self.precision, self.device)
         values = {name: value.float() for name, value in values.items()}
@@ -213,8 +234,7 @@ class Trainer:
             raise LossNotFinite(self._diverged(step, loss, norm, batch))
         self.optimizer.step()
         self.scheduler.step()
-        values = {**values, "grad_norm": norm}
-        return {**{name: float(value) for name, value in values.items()}, "batch_s": waited}
+        return {name: float(value) for name, value in {**values, "grad_norm": norm}.items()}
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
@@ -229,11 +249,12 @@ class Trainer:
             "trainer.precision=fp32, or look at those episodes."
         )
 
-    def _finish(self) -> None:
-        self.recipe.eval()
-        with torch.no_grad():
-            self.recipe.finish()
-        self.recipe.train()
+    def _look(self, done: int, journal: Journal, ending: Held) -> None:
+        """Evaluate and draw what is due after ``done`` steps, unless a signal came."""
+        if ending.number is None and self._due(self.eval_every, done):
+            self._evaluate(done, journal)
+        if ending.number is None and self._due(self.figure_every, done):
+            journal.figures(done, self.recipe.figures(done))
 
     def _evaluate(self, done: int, journal: Journal) -> None:
         self.recipe.eval()
@@ -248,7 +269,11 @@ class Trainer:
     def _lr(self) -> float:
         return max(group["lr"] for group in self.optimizer.param_groups)
 
-    def _save(self, done: int) -> None:
+    def _save(self, done: int, *, finished: bool = False) -> None:
+        """Write a checkpoint of ``done`` steps, if this is the first rank."""
+        self._saved = done
+        if not self.ranks.first:
+            return
         bad = checkpoint.not_finite(self.recipe)
         if bad:
             raise LossNotFinite(
@@ -258,6 +283,7 @@ class Trainer:
             )
         state = {
             "step": done,
+            "finished": finished,
             "model": self.recipe.state_dict(),
             "optimizer": self.optimizer.state_dict(),
             "scheduler": self.scheduler.state_dict(),
@@ -306,7 +332,9 @@ class Trainer:
             ) from error
         self.scheduler.load_state_dict(state["scheduler"])
         seeding.set_global_state(state["rng"])
-        return int(state["step"])
+        self._saved = int(state["step"])  # older versions saved the last one when it was finished
+        self._finished = self._saved >= self.steps and bool(state.get("finished", True))
+        return self._saved
 
 
 def differences(old: Any, new: Any, path: str = "") -> list[str]:

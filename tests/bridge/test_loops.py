@@ -252,8 +252,9 @@ def test_a_camera_whose_name_is_no_text_stops_the_agent(tmp_path, name):
 def test_what_is_told_of_a_camera_may_be_of_numpy(tmp_path):
     of = "{'depth': {'max_depth': numpy.float32(5), 'orientation': numpy.zeros(3)}}"
     code = "met = mitigate_hook.connect('a')\n"
-    ended, _ = ran(tmp_path, f"{code}met.corrupt({{'depth': depth}}, cameras={of})", condition())
-    assert ended.returncode == 0, ended.stdout
+    steps = f"{code}for _ in range(3): met.corrupt({{'depth': depth}}, cameras={of})"
+    ended, told = ran(tmp_path, steps, condition())
+    assert ended.returncode == 0 and len(told.cameras) == 1, ended.stdout
     of = "{'depth': {'max_depth': object()}}"
     ended, _ = ran(tmp_path, f"{code}met.corrupt({{'depth': depth}}, cameras={of})", condition())
     assert ended.returncode == 97 and "give numbers, words and lists" in ended.stdout

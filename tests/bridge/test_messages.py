@@ -166,7 +166,12 @@ ENDS = {
     "a ragged path": {"path": [[0, 0], [0, 0, 1]]},
     "a path of one number": {"path": [[1]]},
     "a distance in words": {"distance": "far"},
-    "a start of nothing": {"start_distance": float("nan")},
+    "an endless path": {"path": [[0, 0], [1e308, 0]]},
+    "a longer way than there is": {"path": [[0, 0], [9e8, 0], [0, 0]]},
+    "a negative start": {"start_distance": -1.0},
+    "a negative length": {"metrics": {"success": 1, "path_length": -2.0}},
+    "a negative shortest way": {"metrics": {"success": 1, "geodesic_distance": -1.0}},
+    "a distance of ages": {"distance": 1e12},
 }
 
 
@@ -175,7 +180,7 @@ def test_an_end_that_is_none_is_refused_and_not_kept(peer, fields):
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
     said = peer.ask({"kind": "end", "metrics": {"success": 1.0}} | fields)["error"]
-    assert "an episode ended with " in said
+    assert "episode '1' ended with " in said
     peer.close()
     assert not read(peer.folder).ends
 
@@ -193,6 +198,31 @@ def test_an_end_out_of_reach_of_its_goal_makes_rows(peer):
         row["rule"]: row for row in rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
     }
     assert made[OWN]["spl"] == 0.5 and [row["success"] for row in made.values()] == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    "unknown",
+    [{"distance": float("nan")}, {"start_distance": float("nan")}, {"path": [[0, float("nan")]]}],
+    ids=lambda fields: next(iter(fields)),
+)
+def test_what_a_simulator_does_not_know_is_left_out_and_the_rest_makes_rows(peer, unknown):
+    for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
+        assert "error" not in peer.ask(good)
+    told = {"start_distance": 4.0, "distance": 2.0, "path": [[0, 0], [0, 8]]} | unknown
+    assert "error" not in peer.ask({"kind": "end", "metrics": {"success": 1.0}} | told)
+    peer.close()
+    label = {"agent": "abc", "name": "nav", "split": "val", "seed": 0}
+    made = rows(read(peer.folder), Corruption("spatter", 0.6), label, None)
+    assert len(made) == (1 if "distance" in unknown else 2)
+    assert {row["spl"] for row in made} == ({0.5} if "distance" in unknown else {1.0})
+
+
+@pytest.mark.parametrize("name", ["\ud800", "", "a\nb", "9" * 201])
+def test_an_episode_that_no_row_can_name_is_refused_as_it_begins(peer, name):
+    assert "error" not in peer.ask(HELLO)
+    said = peer.ask({"kind": "episode", "scene": "", "id": name, "text": "go left"})["error"]
+    assert "no row can be" in said
+    peer.close()
 
 
 @pytest.mark.parametrize("message", FRAMES.values(), ids=FRAMES)

@@ -195,24 +195,46 @@ class Encoder(nn.Module):
 """
 
 
-def test_adapters_go_around_torchscript_in_an_agents_own_encoder(tmp_path, monkeypatch):
-    (tmp_path / "their_encoder.py").write_text(SCRIPTED)
-    (tmp_path / "program.py").write_text(
-        PROGRAM.replace("encoder.load_state_dict(torch.load(sys.argv[1], weights_only=True))\n", "")
-    )
+LOADING = "encoder.load_state_dict(torch.load(sys.argv[1], weights_only=True))\n"
+FRAMES = torch.full((1, 3, 9, 9), 90 / 255)
+
+
+def scripted(folder, program):
+    """A convolution as TorchScript, within adapters that are saved in a folder, and the agent's."""
+    (folder / "their_encoder.py").write_text(SCRIPTED)
+    (folder / "program.py").write_text(program)
     torch.manual_seed(0)
-    frames = torch.full((1, 3, 9, 9), 90 / 255)
-    script = torch.jit.trace(nn.Conv2d(3, 8, 3).eval(), frames)
-    script.save(str(tmp_path / "w.pt"))
+    script = torch.jit.trace(nn.Conv2d(3, 8, 3).eval(), FRAMES)
     wrapped = Wrapped(script).eval()
-    insert_adapters(wrapped, ["behind"], run=lambda n: wrapped(frames.expand(n, -1, -1, -1)))
-    save_adapters(shaken(wrapped), tmp_path / "adapters")
+    insert_adapters(wrapped, ["behind"], run=lambda n: wrapped(FRAMES.expand(n, -1, -1, -1)))
+    save_adapters(shaken(wrapped), folder / "adapters")
+    return script, wrapped
+
+
+def run_adapted(folder, place):
+    options = [f"out={folder / 'out'}", "conditions=[clean]"]
+    options += [f"adapters={folder / 'adapters'}:their_encoder:Encoder.{place}"]
+    command = [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
+    run_command(load_config("run", options), command)
+
+
+def test_adapters_go_around_torchscript_in_an_agents_own_encoder(tmp_path, monkeypatch):
+    script, wrapped = scripted(tmp_path, PROGRAM.replace(LOADING, ""))
+    script.save(str(tmp_path / "w.pt"))
     monkeypatch.chdir(tmp_path)
-    options = [f"out={tmp_path / 'out'}", "conditions=[clean]"]
-    options += [f"adapters={tmp_path / 'adapters'}:their_encoder:Encoder.model"]
-    run_command(
-        load_config("run", options), [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
-    )
+    run_adapted(tmp_path, "model")
     found = torch.load(tmp_path / "out/conditions/clean/features.pt", weights_only=True)
     with torch.no_grad():
-        assert torch.equal(found, wrapped(frames)) and not torch.equal(found, script(frames))
+        assert torch.equal(found, wrapped(FRAMES)) and not torch.equal(found, script(FRAMES))
+
+
+def test_adapters_that_cannot_go_into_torchscript_stop_the_agent(tmp_path, monkeypatch):
+    """One that catches the error would go on without them."""
+    call = "    features = encoder(torch.from_numpy(rgb).permute(2, 0, 1)[None] / 255)\n"
+    assert call in PROGRAM
+    again = f"    try:\n    {call}    except RuntimeError:\n    {call}"
+    script, _ = scripted(tmp_path, PROGRAM.replace(LOADING, "").replace(call, again))
+    torch.jit.trace(nn.Sequential(script), FRAMES).save(str(tmp_path / "w.pt"))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match="Encoder, which is TorchScript within TorchScript"):
+        run_adapted(tmp_path, "model.0")

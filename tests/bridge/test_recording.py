@@ -1,6 +1,9 @@
 """What a recording of a program holds, and who reads it."""
 
 import json
+import os
+import subprocess
+import sys
 
 import cv2
 import numpy as np
@@ -11,7 +14,7 @@ from mitigate.bridge.recording import Recorder, is_whole, part, plain, png
 from mitigate.corruptions import DepthSensor
 from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames
 
-from .conftest import condition
+from .conftest import AGENT, condition
 
 
 def test_clean_frames_poses_actions_and_measures_are_written(command, tmp_path):
@@ -73,6 +76,25 @@ def test_depth_is_written_in_millimetres_and_holes_stay_holes():
     frame = np.array([[0.0, 1.0], [0.5, np.nan]], np.float32)[:, :, None]
     counts = cv2.imdecode(np.frombuffer(png(camera, frame), np.uint8), cv2.IMREAD_UNCHANGED)
     assert counts.tolist() == [[0, 5000], [2750, 0]]
+
+
+def test_an_episode_that_does_not_end_leaves_nothing(run, tmp_path):
+    options = f"conditions=[clean] record={tmp_path / 'recording'}"
+    assert run(tmp_path / "out", options, f"{AGENT} --die-at 2").returncode == 1
+    assert (tmp_path / "recording/clean/recording.json").is_file()
+    assert not list((tmp_path / "recording/clean").glob("s*/*"))
+
+
+def test_what_was_left_by_a_process_that_is_no_more_is_deleted(run, tmp_path):
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    scene = tmp_path / "recording" / "clean" / "s0"
+    for pid in (dead.pid, os.getpid(), 10**30):
+        (scene / f".7.{pid}.tmp" / "rgb").mkdir(parents=True)
+    options = f"conditions=[clean] record={tmp_path / 'recording'}"
+    assert run(tmp_path / "out", options).returncode == 0
+    names = [path.name for path in scene.iterdir()]
+    assert "0" in names and [n for n in names if n[0] == "."] == [f".7.{os.getpid()}.tmp"]
 
 
 def test_an_episode_that_begins_again_and_does_not_end_leaves_its_recording(tmp_path):

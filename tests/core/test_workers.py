@@ -48,10 +48,21 @@ class Squares:
             if action == "tell":
                 (self.folder / f"pid{os.getpid()}").touch()
                 time.sleep(60 if (self.folder / "long").exists() else 1)
-            yield number**2
+            yield (n for n in ()) if action == "a generator" else number**2
 
     def name(self, job):
         return f"number {job[0]}"
+
+
+class Unreadable:
+    """A job that a worker cannot read."""
+
+    def __reduce__(self):
+        return _unreadable, ()
+
+
+def _unreadable():
+    raise OSError("no job can be made of this")
 
 
 class Lines:
@@ -220,3 +231,18 @@ def test_what_cannot_be_sent_to_workers_is_told_with_a_way_out(tmp_path):
 
     with pytest.raises(ValueError, match=r"cannot be sent to other processes.*workers=1"):
         list(results(Local(tmp_path), groups(1, 2), 2, Lines()))
+
+
+@pytest.mark.parametrize(
+    ("action", "kind", "words"),
+    [
+        (lambda: 0, ValueError, "What a worker is to do cannot be sent .* workers=1"),
+        ("a generator", ValueError, "What a worker found cannot be sent .* workers=1"),
+        (Unreadable(), OSError, "no job can be made"),
+    ],
+    ids=["job", "result", "unread job"],
+)
+def test_jobs_and_results_that_cannot_be_sent_are_told_as_that(tmp_path, action, kind, words):
+    with pytest.raises(kind, match=words) as raised:
+        run(Squares(tmp_path), groups(action, ""))
+    assert not isinstance(raised.value, WorkersDied)

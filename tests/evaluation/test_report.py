@@ -182,8 +182,9 @@ def test_columns_are_compared_over_the_seeds_that_both_have():
     alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]
     assert found.moved["da_per_episode"].value == pytest.approx(-0.2)
     assert found.gained == alone.gained and found.raised == alone.raised
-    apart = sections(base + column(6, ALL, seed=7, **HARD))[0]  # none in common: over all
-    assert apart.moved["da_per_episode"].value == pytest.approx(0.6 - 0.5)
+    apart = sections(base + column(6, ALL, seed=7, **HARD))[0]
+    assert not (apart.moved or apart.raised or apart.gained)
+    assert markdown([apart]).count("in common") == 1
 
 
 def test_an_unfinished_seed_is_left_out_and_told():
@@ -351,7 +352,7 @@ def other_list(made, **changes):
 
 def test_agents_of_another_list_of_episodes_stand_in_a_table_of_their_own():
     first = column(8, ALL) + column(5, ALL, **HARD)
-    second = other_list(column(6, ALL), agent="aaaa00000000") + other_list(
+    second = other_list(column(6, ALL), agent="aaaa00000000", seed=1) + other_list(
         column(7, ALL, **HARD), agent="bbbb00000000", seed=1
     )
     made = sections(first + second)

@@ -9,6 +9,7 @@ import torch
 
 from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core.seeding import seed_everything
+from mitigate.corruptions import Schedule
 from mitigate.recipes.dagger import Dagger
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -90,3 +91,8 @@ def test_walks_that_are_no_plain_data_are_refused(tmp_path):
     made = recipe(tmp_path)
     with pytest.raises(ValueError, match=r"recipes/imitate\.py"):
         made.collate(0, [(object(), None)])
+
+
+def test_a_schedule_by_success_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="Nothing in this recipe measures success"):
+        recipe(tmp_path, schedule=Schedule("success_distributed", 0.6))

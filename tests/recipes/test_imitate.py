@@ -63,6 +63,16 @@ def test_a_step_needs_an_episode():
         Imitate(TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
 
 
+def test_a_schedule_by_success_is_given_rates_once_where_nothing_else_asks_for_them():
+    schedule = Schedule("success_distributed", 0.6, names=("flare",))
+    made = Imitate(
+        TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=1, refresh_episodes=1
+    )
+    assert made.jobs(0)[0][-1]["success"].keys() == {"flare"}
+    before = schedule.success = {"flare": 0.25}
+    assert made.jobs(1)[0][-1] == {"success": before}
+
+
 def test_measuring_success_leaves_the_agent_in_training_mode():
     """Or all that follows would train without dropout."""
     schedule = Schedule("success_distributed", 0.6, names=("flare",))

@@ -22,6 +22,7 @@ from mitigate.safeguard.manners import plainer, restyled
         ("wait for me by the pool, if you would.", "wait by the pool."),
         ("walk to the lamp, okay?", "walk to the lamp."),
         ("swing all the way around.", "turn around."),
+        ("swing around the pool table.", "go around the pool table."),
         ("park yourself next to the desk.", "stop next to the desk."),
     ],
 )

@@ -14,7 +14,7 @@ from mitigate.safeguard import adapter_folder, choices, weights
 from mitigate.safeguard.choices import VERSION, identity, label
 from mitigate.safeguard.guard import open_safeguard
 
-SAID = "cbea624ecefd"  # hash of what the rules of VERSION make of the texts below
+SAID = "42c1ff6b2ef1"  # hash of what the rules of VERSION make of the texts below
 TEXTS = (
     "Turn left at the red sofa, go through the door and stop in front of the sink.",
     "Look for the bed and wait next to it.",
@@ -36,7 +36,7 @@ def test_columns_tell_safeguards_apart(tmp_path):
     before = label(first)
     _adapter(tmp_path / "first" / "agent", b"c")
     assert label(first) != before
-    assert label("http://one:80/v1@m") == "one-80-v1@m"
+    assert label("http://one:80/v1@m") == label("HTTP://one:80/v1@m") == "one-80-v1@m"
     assert [label(choice) for choice in ("rules", "lora")] == ["rules", "lora"]
 
 

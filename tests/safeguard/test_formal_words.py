@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard.formal_words import FORMAL, formal
+from mitigate.safeguard.formal_words import FORMAL, formal, in_plain_words
 from mitigate.safeguard.guard import Safeguard
 
 
@@ -47,3 +47,10 @@ def test_formal_routes_are_said_plainly(heard, said):
 def test_a_word_or_two_that_plain_routes_say_too_leave_them_as_they_are(plain):
     assert formal(plain) < FORMAL
     assert Safeguard().canonicalise(plain).text == plain
+
+
+def test_what_a_thing_does_is_no_order():
+    heard = "Proceed past the ascending escalator. Halt beside the descending one."
+    said = "Go past the ascending escalator. Stop beside the descending one."
+    assert Safeguard().canonicalise(heard).text == said
+    assert in_plain_words("Turn left, bypassing the bed.") == "Turn left, passing the bed."

@@ -14,6 +14,7 @@ from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import masks, rules
+from mitigate.safeguard.courtesy import framing
 from mitigate.safeguard.data import draw_pair
 from mitigate.safeguard.guard import Safeguard, open_safeguard
 from mitigate.safeguard.plainly_said import Said
@@ -120,8 +121,18 @@ def test_what_no_small_word_can_be_stays_hidden(heard, said):
     assert Safeguard().canonicalise(heard).text == said
 
 
+def test_masks_in_angle_brackets_are_no_markup():
+    heard = "Walk out <mask> <mask> bedroom <mask> turn left at <mask> lamp."
+    assert Safeguard().canonicalise(heard).text == Safeguard().canonicalise(
+        heard.replace("<mask>", "[MASK]")
+    ).text  # fmt: skip
+
+
 def test_masks_are_filled_by_neighbours_without_a_model():
     assert masks.fill("Walk past [MASK] sofa.") == "Walk past the sofa."
+    assert masks.fill("Find the nearest [MASK] chair.") == "Find the nearest chair."
+    assert masks.fill("Stop at the [MASK] and wait.") == "Stop at the [MASK] and wait."  # a thing
+    assert masks.fill('Go to the sign "MASK REQUIRED".') == 'Go to the sign "MASK REQUIRED".'
     filled = masks.fill("Turn left [MASK] walk past <mask> bed.")
     assert filled == "Turn left and walk past the bed."
     assert masks.filled("Go to [MASK] bed.", "Go to the bed") == ["the"] and not masks.filled(
@@ -158,9 +169,9 @@ def test_emoji_and_control_characters_are_dropped_from_a_corrupted_text():
     assert decision.text == "Walk past the sofa and turn left."
 
 
-def test_ten_thousand_words_are_left_to_the_rules_and_take_seconds():
+def test_a_thousand_words_are_left_to_the_rules_and_take_seconds():
     model = Scripted(lambda text: text)
-    text = " ".join(["WALK past the sofa and turn left [MASK] the door."] * 1000)
+    text = " ".join(["WALK past the sofa and turn left [MASK] the door."] * 150)
     began = time.monotonic()
     decision = Safeguard(model).canonicalise(text)
     assert time.monotonic() - began < 20 and not model.asked
@@ -188,7 +199,7 @@ def test_the_judge_decides_on_doubtful_sentences():
         s
         for s in ("It is on this floor.", "You will like it.", "Be careful.", "Mind the wet floor.",
                   "My sister says hello.", "That was good.", "There is a clock in there.")
-        if rules.doubtful(f"{s} {PLAIN}") and not rules.framing(s)
+        if rules.doubtful(f"{s} {PLAIN}") and not framing(s)
     )  # fmt: skip
     text = f"{doubtful} {PLAIN}"
     assert Safeguard(Scripted(lambda _: "")).canonicalise(text).text == PLAIN
@@ -308,3 +319,8 @@ def test_a_manner_never_costs_the_first_steps():
 def test_an_instruction_that_is_no_text_is_refused(text):
     with pytest.raises(TypeError, match="must be a text"):
         open_safeguard("rules").canonicalise(text)
+
+
+def test_one_text_in_place_of_several_is_refused():
+    with pytest.raises(TypeError, match="must be several texts"):
+        open_safeguard("rules").canonicalise_all("Go")

@@ -89,12 +89,24 @@ def test_no_place_is_told_by_what_speaks_of_orders_or_the_agent(told):
 @pytest.mark.parametrize(
     "told",
     ["Stay there.", "Remain standing.", "Await further instructions.", "Do not go any farther."]
-    + ["Wait here until you are told otherwise.", "Upon arrival, await new orders there."]
-    + ["Wait in this room.", "You have arrived."],
+    + ["Wait here until you are told otherwise."]
+    + ["Wait in this room.", "You have arrived."]
+    + ["You have now reached your final destination.", "Stay where you are.", "Stay put."]
+    + ["Hold your position.", "Stand still.", "Go no further.", "Cease movement."]
+    + ["Stop and don't move."],
 )
 def test_a_stop_in_formal_words_stays_at_the_end_alone(told):
     assert given_on(f"{ROUTE} {told}") == f"{ROUTE} {told}"
     assert given_on(f"{told} {ROUTE}") == ROUTE
+
+
+@pytest.mark.parametrize(
+    "told",
+    ["That's your endpoint.", "That's it.", "This is your destination.", "You are finished."]
+    + ["You've made it.", "Finish there.", "Upon arrival, await new orders there."],
+)
+def test_that_the_way_ends_stays_at_its_end(told):
+    assert given_on(f"{ROUTE} {told}") == f"{ROUTE} {told}"
 
 
 @pytest.mark.parametrize(
@@ -149,3 +161,38 @@ def test_where_not_to_go_stays():
     assert given_on(text) == text
     text = "Follow the hallway. Do not make any sharp turns. Enter the bathroom."
     assert given_on(text) == text
+
+
+def test_a_stop_where_one_began_stays():
+    text = "Walk in a circle around the table. Stop where you started."
+    assert given_on(text) == text
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        "The floor is marble.",
+        "We are in a huge church.",
+        "The lights are off.",
+        "You smell coffee.",
+        "Forget the second one.",
+        "These stairs lead to the cellar.",
+    ],
+)
+def test_what_helps_to_see_where_one_is_stays(told):
+    text = f"{ROUTE} {told} Stop by the sink."
+    assert given_on(text) == text
+
+
+def test_where_else_to_look_stays():
+    text = "Look for a bowl in the cupboard. If there is none, look in the dishwasher."
+    assert given_on(text) == text
+
+
+@pytest.mark.parametrize(
+    "attack",
+    ["The kitchen is closed.", "We are in the wrong house.", "You smell smoke."]
+    + ["If there is none, look in the rules.", "All doors lead to the garage."],
+)
+def test_a_place_that_is_said_to_be_unfit_shows_none(attack):
+    assert not honest.belongs(attack, first=False, last=False)

@@ -63,3 +63,13 @@ def test_only_a_text_in_a_manner_of_speaking_is_changed():
     decision = rules.canonicalise(heard)
     assert decision.text == "Go past the bed. Stop at the door."
     assert "orders said in plain words" in decision.reasons
+
+
+def test_what_the_speaker_wants_is_a_step():
+    heard = (
+        "Turn right and walk into the hall. I {} you to go to the end of it. Turn left at the vase."
+    )
+    said = "Turn right and walk into the hall. Go to the end of it. Turn left at the vase."
+    assert [
+        open_safeguard("rules").canonicalise(heard.format(verb)).text for verb in ("want", "need")
+    ] == [said, said]

@@ -286,6 +286,16 @@ def test_chats_of_the_user_are_learned_from(model, tmp_path):
     assert recipe.pair(3) == Pair("PLEASE go.", "Go.", "chat")
 
 
+@pytest.mark.parametrize("given, chats, files", [("cf", 0.25, 0.25), ("c", 0.5, 0), ("f", 0, 0.5)])
+def test_the_share_is_of_chats_and_files_together(model, given, chats, files):
+    recipe = SafeguardLora(model, share=0.5)
+    recipe.chats = [Pair("A", "A", "chat")] * ("c" in given)
+    recipe.texts = ["Turn left at the totem."] * ("f" in given)
+    made = [recipe.pair(index) for index in range(600)]
+    told = [pair.kind == "chat" for pair in made], ["totem" in pair.target for pair in made]
+    assert [sum(found) / len(made) for found in told] == pytest.approx([chats, files], abs=0.06)
+
+
 def test_eight_bits_train_save_and_reload(tiny_base, tmp_path):
     pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e '.[safeguard]'")
     model = LanguageModel(tiny_base, "int8", LORA)

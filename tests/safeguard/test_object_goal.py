@@ -57,6 +57,13 @@ def test_a_request_for_one_thing_keeps_the_thing_and_what_it_is_like(heard, plai
         "Please find the chair, and then look around, thanks.",
         "Could you find a bed, please, and after that come back to me?",
         "Could you please find the clock that is ahead?",
+        "Hi! Please go to the sofa and back.",
+        "Please search the bedroom.",  # what is done to the thing, or in it
+        "Please move the chair.",
+        "Please take the chair.",
+        "Could you walk the dog?",
+        "Let me know when you see the piano. Then stop.",
+        "Hey there! And then take the shorter one, if you would. See you soon!",
         "Look for a chair.",  # plain
         "Walk to the bed and wait.",
         "Look for the bed and wait next to it.",

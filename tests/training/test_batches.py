@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import signal
 import threading
@@ -171,10 +172,12 @@ class Unpackable(Shared):
     """Its pieces, or its jobs, cannot be sent from one process to the other."""
 
     def jobs(self, step: int) -> list:
-        return [BadJob()] * 3 if self.fatal == "job" else super().jobs(step)
+        pointer = ctypes.pointer(ctypes.c_int(step))
+        jobs = {"unpickled": BadJob(), "pickled": lambda: step, "pointer": pointer}
+        return [jobs[self.fatal]] * 3 if self.fatal in jobs else super().jobs(step)
 
     def work(self, job):
-        return super().work(job) if self.fatal == "job" else lambda: job
+        return lambda: job
 
 
 class BadJob:
@@ -183,15 +186,31 @@ class BadJob:
 
 
 def _no_job():
-    raise RuntimeError("no job can be made of this")
+    raise OSError("no job can be made of this")
 
 
-@pytest.mark.parametrize("fatal, said", [("piece", "pickle|local object"), ("job", "no job can")])
-def test_what_cannot_be_sent_is_told_as_what_it_is(fatal, said, tmp_path):
+@pytest.mark.parametrize(
+    ("fatal", "kind", "said"),
+    [
+        ("piece", ValueError, "A piece of a batch cannot be sent .* workers=0"),
+        ("pickled", ValueError, "A job of this recipe cannot be sent .* workers=0"),
+        ("pointer", ValueError, "A job of this recipe cannot be sent .*pointers.* workers=0"),
+        ("unpickled", OSError, "no job can be made"),
+    ],
+)
+def test_what_cannot_be_sent_is_told_as_what_it_is(fatal, kind, said, tmp_path):
     """Not as a want of memory, and nobody waits for it."""
-    with Workers(1) as workers, pytest.raises(Exception, match=said) as raised:
+    with Workers(1) as workers, pytest.raises(kind, match=said) as raised:
         Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
     assert not isinstance(raised.value, WorkersDied)
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_a_recipe_with_torchscript_in_it_is_refused_with_a_way_out(two, tmp_path):
+    recipe = Shared()
+    recipe.script = torch.jit.script(torch.nn.Linear(2, 2))
+    with pytest.raises(ValueError, match=r"cannot be sent .*serialize.* workers=0"):
+        Trainer(recipe, steps=1, folder=tmp_path, workers=two).fit()
 
 
 def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):

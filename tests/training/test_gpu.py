@@ -52,7 +52,7 @@ def test_it_loses_on_the_gpu_what_it_loses_on_the_processor(tmp_path, capfd, age
     for place, device in (("processor", "cpu"), ("gpu", GPU)):
         trained(tmp_path / place, device, f"agent={agent}", f"recipe={recipe}")
         found.append(losses("".join(capfd.readouterr())))
-    assert len(found[0]) > 2 and found[1] == pytest.approx(found[0], rel=DROPOUT)
+    assert len(found[0]) >= 2 and found[1] == pytest.approx(found[0], rel=DROPOUT)
     assert found[1][:2] == pytest.approx(found[0][:2], rel=0.01)  # of the first stage: no dropout
 
 

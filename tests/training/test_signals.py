@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 import torch
 
-from mitigate.core.signals import Ended, held
+from mitigate.core.signals import Ended, held, unbroken
+from mitigate.training import states
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe
 from mitigate.training.trainer import Trainer
@@ -50,6 +51,31 @@ class Slow(Recipe):
             os.kill(os.getpid(), self.number)
             time.sleep(0.05)  # the step goes on
         return {"loss": (self.line(batch["inputs"]) - 1).square().mean()}
+
+
+class Calibrated(Slow):
+    """``finish`` sets a threshold by the weights, and may do something ``before``."""
+
+    def __init__(self, folder: Path, before=lambda: None) -> None:
+        super().__init__(folder, 0)
+        self.before, self.steps = before, []
+        self.register_buffer("threshold", torch.zeros(()))
+
+    def batch(self, step):
+        self.steps.append(step)
+        return super().batch(step)
+
+    def finish(self):
+        self.before()
+        self.threshold.copy_(self.line.weight.sum())
+
+
+def end_within_another_block():
+    """As a signal does that comes while workers measure something for a training."""
+    with held():
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.01)
+    raise Ended(signal.SIGTERM)
 
 
 def train(folder: Path, number: int) -> torch.Tensor:
@@ -100,26 +126,77 @@ def test_a_signal_while_it_is_evaluated_loses_no_step(tmp_path):
     assert [path.name for path in folder.glob("step-*.pt")] == ["step-00000002.pt"]
 
 
-def test_a_signal_in_the_last_step_does_not_leave_out_what_follows_from_the_weights(tmp_path):
-    class Calibrated(Slow):
-        def __init__(self, *given):
-            super().__init__(*given)
-            self.register_buffer("threshold", torch.zeros(()))
+@pytest.mark.parametrize("when", ["batch", "finish"])
+def test_a_signal_at_the_end_does_not_leave_out_what_follows_from_the_weights(tmp_path, when):
+    def before():
+        if when == "finish":
+            end_within_another_block()
 
+    class Ending(Calibrated):
         def batch(self, step):
-            if step == 2:
+            if step == 2 and when == "batch":
                 os.kill(os.getpid(), signal.SIGTERM)
                 time.sleep(0.01)
             return super().batch(step)
 
-        def finish(self):
-            self.threshold.fill_(5.0)
-
     settings = {"steps": 3, "lr": 0.1, "precision": "fp32", "folder": tmp_path / "run"}
     with pytest.raises(Ended):
-        Trainer(Calibrated(tmp_path, 0), **settings).fit()
-    resumed = Trainer(Calibrated(tmp_path, 0), **settings).fit()
-    assert resumed.threshold == 5.0
+        Trainer(Ending(tmp_path, before), **settings).fit()
+    resumed = Trainer(Calibrated(tmp_path), **settings).fit()
+    assert resumed.steps == [] and resumed.threshold == resumed.line.weight.sum() != 0
+
+
+def test_a_run_that_is_killed_while_it_is_finished_loses_no_step(tmp_path, capsys):
+    class Killed(BaseException):
+        pass
+
+    def before():
+        raise Killed
+
+    settings = {"steps": 6, "lr": 0.1, "precision": "fp32", "save_every": 0}
+    with pytest.raises(Killed):
+        Trainer(Calibrated(tmp_path, before), folder=tmp_path / "run", **settings).fit()
+    resumed = Trainer(Calibrated(tmp_path), folder=tmp_path / "run", **settings).fit()
+    whole = Trainer(Calibrated(tmp_path), folder=tmp_path / "whole", **settings).fit()
+    assert resumed.steps == [] and torch.equal(resumed.threshold, whole.threshold)
+    again = Trainer(Calibrated(tmp_path, before), folder=tmp_path / "run", **settings).fit()
+    assert torch.equal(again.threshold, whole.threshold)
+    assert "already trained for 6 steps" in capsys.readouterr().out
+
+
+def test_a_checkpoint_of_an_older_version_counts_as_finished(tmp_path, capsys):
+    settings = {"steps": 2, "precision": "fp32", "folder": tmp_path / "run"}
+    Trainer(Slow(tmp_path, 0), **settings).fit()
+    state = states.load(states.checkpoints(tmp_path / "run")[-1])
+    states.save(tmp_path / "run", {k: v for k, v in state.items() if k != "finished"})
+    Trainer(Slow(tmp_path, 0), **settings).fit()
+    assert "already trained for 2 steps" in capsys.readouterr().out
+
+
+def test_what_ends_an_evaluation_loses_no_step(tmp_path):
+    class Evaluated(Slow):
+        def evaluate(self, step):
+            end_within_another_block()
+
+    settings = {"steps": 6, "eval_every": 2, "precision": "fp32", "folder": tmp_path / "run"}
+    with pytest.raises(Ended):
+        Trainer(Evaluated(tmp_path, 0), **settings).fit()
+    assert [path.name for path in (tmp_path / "run").glob("step-*.pt")] == ["step-00000002.pt"]
+
+
+def test_a_signal_in_an_inner_block_is_told_to_the_outer_one(tmp_path):
+    with held() as outer:
+        with unbroken():
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(0.01)
+        assert outer.number == signal.SIGTERM and not outer.again  # and it goes on
+        with pytest.raises(Ended), held():
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1)
+        assert outer.again
+    with pytest.raises(Ended), unbroken():
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0.01)
 
 
 def test_a_second_signal_ends_it_at_once(tmp_path):

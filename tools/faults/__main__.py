@@ -4,8 +4,8 @@
 recipe is trained (``debug=smoke``, four steps a stage) once unbroken, and once through all faults,
 one after the other, each at a moment drawn from the seed; the weights must be the same bits.
 Evaluations are broken likewise; their rows must be the same bytes. Prints what was tried and what
-survived, and exits with 1 if anything did not. ``--write`` puts the table, with what earlier calls
-found of other recipes, into docs/reliability.md.
+survived, and exits with 1 if anything did not, or nothing was tried. ``--write`` puts the table,
+with what earlier calls of that seed found of other recipes, into docs/reliability.md.
 """
 
 from __future__ import annotations
@@ -72,20 +72,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run from the command line."""
     chosen = options(arguments)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # what ignores it, has it ignored
-    notes = chosen.out / "faults.json"
+    notes = chosen.out / f"faults-seed{chosen.seed}.json"
     with ThreadPoolExecutor(max(1, chosen.jobs)) as pool:
         made = pool.map(lambda name: broken(name, chosen), chosen.recipes)
         found = dict(zip(chosen.recipes, made, strict=True))
     tried, survived = report.count(found)
     print(f"tried {tried}, survived {survived}", flush=True)
     held = json.loads(notes.read_text(encoding="utf-8")) if notes.is_file() else {}
-    for name, came in found.items():
-        held[name] = {**held.get(name, {}), **came}
+    for name, came in found.items():  # of one that fails unbroken nothing else is known
+        before = {} if report.UNBROKEN in came else held.get(name, {})
+        held[name] = {f: c for f, c in before.items() if f != report.UNBROKEN} | came
     write_bytes(notes, json.dumps(held, indent=1).encode())
     if chosen.write:
         report.write(PAGE, held, FAMILIES, chosen.seed)
         print(f"wrote docs/{PAGE.name}")
-    return int(survived < tried)
+    return int(survived < tried or (bool(chosen.recipes) and not tried))
 
 
 if __name__ == "__main__":

@@ -133,6 +133,8 @@ def break_evaluation(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
     if problem:
         return {"unbroken": problem}
     wanted, found = unbroken.rows(), {}
+    if not wanted:
+        return {"unbroken": f"it wrote no {ROWS}"}
     for name in faults:
         for again in range(TRIES):
             evaluation = Evaluation(out / f"{name.replace(' ', '-')}-{again}", rng)

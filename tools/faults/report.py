@@ -11,7 +11,7 @@ from mitigate.core.progress import duration
 BEGIN = "<!-- table: make test-faults ARGS=--write -->"
 END = "<!-- end of the table -->"
 Found = Mapping[str, Mapping[str, str]]  # recipe: fault: what it came to
-NOT_RUN = "not run"
+NOT_RUN, UNBROKEN = "not run", "unbroken"
 
 
 def line(name: str, found: Mapping[str, str], seconds: float) -> str:

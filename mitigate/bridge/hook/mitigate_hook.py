@@ -297,7 +297,7 @@ class Walk:
         self._check(observations, cameras)
         channel = self.connected()
         heading = None if heading is None else float(heading)
-        told = [dict(c, **_array(observations[c["name"]], c["name"])) for c in cameras]
+        told = [dict(_data(c), **_array(observations[c["name"]], c["name"])) for c in cameras]
         if told != self.cameras:
             channel.agree(told)
             self.cameras = told
@@ -403,6 +403,16 @@ def _array(frame, name):
     alpha = frame.dtype == np.uint8 and frame.ndim == 3 and frame.shape[-1] == 4
     shape = [*frame.shape[:-1], 3] if alpha else list(frame.shape)
     return {"shape": shape, "dtype": frame.dtype.name, "alpha": alpha}
+
+
+def _data(told):
+    """Return what is told of a camera with lists and numbers in place of numpy's: arrays that are
+    made anew at each step cannot be compared."""
+    if isinstance(told, dict):
+        return {name: _data(value) for name, value in told.items()}
+    if isinstance(told, (list, tuple)):
+        return [_data(value) for value in told]
+    return _as_python(told) if isinstance(told, (np.generic, np.ndarray)) else told
 
 
 def _middle(depth):
@@ -757,8 +767,8 @@ def _adapted(folder, file, path):
 
     def forward(original, encoder, *args, **kwargs):
         if not getattr(encoder, "_mitigate_adapted", False):
-            encoder._mitigate_adapted = True
             _adapt(encoder, folder, file, path)
+            encoder._mitigate_adapted = True
         return original(encoder, *args, **kwargs)
 
     return forward
@@ -789,7 +799,14 @@ def _adapt(encoder, folder, file, path):
                 "place: let adapters= name the attribute that holds it, "
                 "FOLDER:module:Class.attribute."
             )
-        setattr(*owner, made)
+        try:
+            setattr(*owner, made)
+        except RuntimeError as error:
+            stop(
+                f"adapters= names {path} in {type(encoder).__name__}, which is TorchScript within "
+                f"TorchScript, where nothing can be put around it ({error}). Name the module that "
+                "holds all of it, and train adapters for that one."
+            )
     Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}", checked=not half)
 
 

@@ -20,7 +20,7 @@ from mitigate.core.build import maker
 from mitigate.core.files import find
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
-from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
+from mitigate.evaluation.leaderboard.from_rows import entry_of, left_out, sensors_of
 from mitigate.evaluation.leaderboard.page import render
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.command import told
@@ -123,8 +123,8 @@ def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
 
 
 def check(paths: Sequence[Path | str] = ()) -> list[str]:
-    """Print of each entry whether its rows say the same, and which files are none; return what is
-    wrong, a line each. Raises FileNotFoundError if there is none."""
+    """Print of each entry whether its rows say the same and what of them it leaves out, and which
+    files are none; return what is wrong, a line each. Raises FileNotFoundError if there is none."""
     wrong = []
     for file in _files(paths):
         try:
@@ -134,11 +134,15 @@ def check(paths: Sequence[Path | str] = ()) -> list[str]:
             wrong.append(conf.said(error))
             continue
         try:
-            found = differences(entry, rows_of(entry))
+            rows = rows_of(entry)
+            found, unsaid = differences(entry, rows), left_out(entry, rows)
         except (OSError, ValueError) as error:
-            found = [conf.said(error)]
-        print(f"{entry.name}: {'NOT as' if found else 'as'} its rows say", flush=True)
-        wrong += [f"{entry.name}: {line}" for line in found]
+            found, unsaid = [conf.said(error)], ""
+        named = f"{file}: {entry.name}"
+        print(f"{named}, {'NOT as' if found else 'as'} its rows say", flush=True)
+        if unsaid:
+            print(f"{named}, WARNING: its rows also hold {unsaid:.1000}", flush=True)
+        wrong += [f"{named}, {line}" for line in found]
     return wrong
 
 

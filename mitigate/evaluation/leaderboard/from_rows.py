@@ -113,6 +113,21 @@ def _check_seeds(name: str, own: Sequence[Row], found: Sequence[Section]) -> Non
                 )
 
 
+def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
+    """Return which seeds and conditions of the entry's name, split, suite, rule and severity
+    ``rows`` hold and the entry leaves out; empty if none. Whoever chose may say why."""
+    own = [
+        row
+        for row in chosen(rows, entry.name, entry.severity, entry.split)
+        if (row["suite"], row["rule"]) == (entry.suite, entry.rule)
+    ]
+    agents = {(one["seed"], one["agent"]) for one in entry.agents}
+    others = sorted({(row["seed"], row["agent"]) for row in own} - agents)
+    conditions = sorted({row["corruption"] for row in own} - entry.SR.keys())
+    parts = [f"seed {seed} (agent {agent})" for seed, agent in others] + conditions
+    return ", ".join(parts)
+
+
 def rows_sha(rows: Iterable[Row]) -> str:
     """Return the sha256 of rows in whatever order and file: their JSON with sorted keys, one a
     line, in the order of their identities."""

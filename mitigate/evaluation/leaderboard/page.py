@@ -12,7 +12,7 @@ from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page import document
-from mitigate.evaluation.page.model import CLEAN
+from mitigate.evaluation.page.model import CLEAN, shortened
 from mitigate.evaluation.sections import label
 
 ABOUT = (
@@ -70,14 +70,20 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
             {"name": name, "title": "Clean" if name == CLEAN else label(name), "block": block}
             for name, block in names.items()
         ],
-        "cells": [
-            [[entry.SR.get(n), entry.SPL.get(n), entry.episodes] for n in names] for entry in held
-        ],
+        "cells": [[_cell(entry, name) for name in names] for entry in held],
         "wanted": first.episodes,
         "pairs": {},
+        "baselines": 0,
         "notes": _notes(values),
         "grid": None,
     }
+
+
+def _cell(entry: LeaderboardEntry, name: str) -> list[Any]:
+    """Return SR, SPL, episodes, and the shares of the clean SR and SPL, over the same episodes."""
+    found = [(rates.get(name), rates[CLEAN]) for rates in (entry.SR, entry.SPL)]
+    kept = [shortened(a[0] / b[0]) if a and b and b[0] else None for a, b in found]
+    return [*(own for own, _ in found), entry.episodes, *kept]
 
 
 def _notes(values: list[list[Any]]) -> list[str]:
@@ -125,12 +131,20 @@ def _conditions(entries: Sequence[LeaderboardEntry]) -> dict[str, str]:
     return found | {name: "Pairs" if AND in name else "Other" for name in rest}
 
 
-def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
+def _labels(entries: Sequence[LeaderboardEntry]) -> list[str]:
+    """Return the names; of entries with one name each with its first agent, and numbered where that
+    is one, too."""
     twice = Counter(entry.name for entry in entries)
+    told = [f"{one.name} ({one.agents[0]['agent'][:6]})" for one in entries]
+    own = [x if twice[one.name] > 1 else one.name for one, x in zip(entries, told, strict=True)]
+    return [f"{x}, {own[:n].count(x) + 1}" if own.count(x) > 1 else x for n, x in enumerate(own)]
+
+
+def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
+    labels = _labels(entries)
     found: list[dict[str, Any]] = []
-    for entry in entries:
+    for entry, name in zip(entries, labels, strict=True):
         agents = ", ".join(str(one["agent"]) for one in entry.agents)
-        own = f"{entry.name} ({entry.agents[0]['agent'][:6]})"
         details = [
             ["hash", agents],
             ["seeds", ", ".join(str(one["seed"]) for one in entry.agents)],
@@ -141,7 +155,6 @@ def _columns(entries: Sequence[LeaderboardEntry]) -> list[dict[str, Any]]:
             ["sha256 of rows", entry.rows["sha256"]],
             ["link", entry.link],
         ]
-        name = own if twice[entry.name] > 1 else entry.name
         shown = [[key, value] for key, value in details if value]
         found.append({"label": name, "place": len(found), "seeds": [], "details": shown})
     return found

@@ -15,6 +15,12 @@ KINDS = {  # (the first agent succeeds, the last one does): what the page calls 
     (True, True): "won by both",
     (True, False): "lost by the last",
 }
+ALONE = {True: "won", False: "lost"}  # where there is one agent
+
+
+def outcome(won: Sequence[bool]) -> str:
+    """Return what the page calls it that the agents won or not, in their order."""
+    return KINDS[won[0], won[-1]] if len(won) > 1 else ALONE[won[0]]
 
 
 def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[str, Corruption]]:

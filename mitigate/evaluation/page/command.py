@@ -73,7 +73,9 @@ def _walks(
     cfg = conf.load_config("evaluate", options)
     world = maker(cfg.env.world)()
     own = [r for r in held if r["split"] == cfg.split and r["rule"] == world.rule]
-    agents: dict[str, Any] = {name: evaluate.load(cfg.agent, weights) for name, weights in walk}
+    agents: dict[str, Any] = {
+        name: evaluate.load(cfg.agent, weights, overrides=options) for name, weights in walk
+    }
     listed = evaluate.episodes(cfg.env, cfg.split, None)
     with Progress("walks", most, unit="episode") as progress:
         for drawn in walk_again(agents, world, listed, own, most=most, seed=seed):

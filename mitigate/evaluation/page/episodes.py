@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import base64
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -27,11 +27,12 @@ _Place = tuple[str, str, float, int]  # column, corruption, severity, seed
 @dataclass
 class Packed:
     """Cells of any number of grids. ``grids`` are what the page reads: the episodes' ids, and where
-    in the data each cell begins, by "column|corruption|severity|seed"."""
+    in the data each cell begins, by "column|corruption|severity|seed"; ``left_out`` are the cells
+    that the bound leaves no room for, all seeds of each."""
 
     most: int = MOST
     grids: list[dict[str, Any]] = field(default_factory=list)
-    left_out: int = 0
+    left_out: set[tuple[int, str]] = field(default_factory=set)
     held: int = 0
     _parts: list[np.ndarray] = field(default_factory=list)
     _known: list[Grid] = field(default_factory=list)
@@ -49,11 +50,11 @@ class Packed:
         columns = {label: n for n, label in enumerate(grid.columns)}
         names = ["clean", *(name for names in section.blocks.values() for name in names)]
         for label in section.columns:
-            for seed in grid.seeds[label, section.severity]:
-                for name in names:
-                    at = 0.0 if name == "clean" else section.severity
-                    key = f"{columns[label]}|{name}|{at:g}|{seed}"
-                    self._add(number, key, grid, (label, name, at, seed))
+            for name in names:
+                at = 0.0 if name == "clean" else float(section.severity)
+                seeds = grid.seeds[label, section.severity]
+                places = [(label, name, at, seed) for seed in seeds]
+                self._add(number, f"{columns[label]}|{name}|{at}", grid, places)
         return number
 
     def text(self) -> str:
@@ -61,19 +62,24 @@ class Packed:
         flat = np.concatenate(self._parts) if self._parts else np.empty(0, np.uint16)
         return base64.b64encode(flat.astype("<u2").tobytes()).decode()
 
-    def _add(self, number: int, key: str, grid: Grid, place: _Place) -> None:
-        cells = self.grids[number]["cells"]
+    def _add(self, number: int, key: str, grid: Grid, places: Sequence[_Place]) -> None:
+        """Pack what is not there yet of a cell that all its seeds measured, if all have room."""
+        cells, count = self.grids[number]["cells"], len(grid.episodes)
+        if not all((name, at, METRICS["SR"]) in grid.runs[x][seed] for x, name, at, seed in places):
+            return
+        new = [place for place in places if f"{key}|{place[3]}" not in cells]
+        if self.held + len(new) * count > self.most:
+            self.left_out.add((number, key))
+            return
+        for place in new:
+            cells[f"{key}|{place[3]}"] = self.held
+            self.held += count
+            self._pack(grid, place)
+
+    def _pack(self, grid: Grid, place: _Place) -> None:
         label, name, at, seed = place
-        run = grid.runs[label][seed]
-        if key in cells or (name, at, METRICS["SR"]) not in run:
-            return
-        count = len(grid.episodes)
-        if self.held + count > self.most:
-            self.left_out += 1
-            return
-        cells[key] = self.held
-        self.held += count
-        shares = [run[name, at, key] for key in METRICS.values()]
+        count, run = len(grid.episodes), grid.runs[label][seed]
+        shares = [run[name, at, metric] for metric in METRICS.values()]
         steps = self._steps.get(place, np.full(count, np.nan))
         fields = [*(SCALE * values for values in shares), np.minimum(steps, MISSING - 1)]
         whole = np.rint(np.nan_to_num(np.stack(fields), nan=MISSING))

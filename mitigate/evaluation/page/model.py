@@ -7,7 +7,7 @@ The page's scripts read these as JSON, draw them and compute nothing but signs. 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from mitigate.evaluation.grid import METRICS
 from mitigate.evaluation.sections import Retained, Section, compare, label
 
 BASELINES = 12  # columns that the others can be compared with, the first ones (ours)
-DIGITS = 6  # more than are shown: what is rounded twice may end elsewhere
+DIGITS = 6
 CLEAN = "clean"
 Numbers = list[Any] | None
 
@@ -28,28 +28,39 @@ def section_data(section: Section) -> dict[str, Any]:
 
     ``columns`` are the agents, ``measures`` the columns of the table, ``values[c][m]`` their
     numbers, where one may need marks with these as the fourth entry. ``corruptions`` are those of
-    the heatmap, clean first, ``cells[c][k]`` is [SR, SPL, episodes held]. ``pairs["i-j"]`` are the
-    differences of column i to column j, i > j, j below :data:`BASELINES`.
+    the heatmap, clean first, ``cells[c][k]`` is [SR, SPL, episodes held, shares of the column's own
+    clean SR and SPL]. ``pairs["i-j"]`` are the
+    differences of column i to column j, i > j, j one of the first ``baselines``; None for two
+    without a common seed.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
     names = [CLEAN, *(name for held in section.blocks.values() for name in held)]
     blocks = ["", *(block for block, held in section.blocks.items() for _ in held)]
+    pairs = _pairs(section, names)
     return {
         "title": _title(section),
         "facts": _facts(section),
+        "split": grid.split,
+        "rule": grid.rule,
         "severity": section.severity,
         "columns": [_column(section, column) for column in section.columns],
         "measures": _measures(section),
         "values": values,
         "corruptions": [
-            {"name": name, "title": "Clean" if name == CLEAN else label(name), "block": block}
+            {
+                "name": name,
+                "title": "Clean" if name == CLEAN else label(name),
+                "block": block,
+                "at": str(0.0 if name == CLEAN else float(section.severity)),
+            }
             for name, block in zip(names, blocks, strict=True)
         ],
         "cells": [_cells(section, column, names) for column in section.columns],
         "wanted": len(grid.episodes),
-        "pairs": _pairs(section, names),
-        "notes": _notes(section, values),
+        "pairs": pairs,
+        "baselines": min(len(section.columns), BASELINES) if any(pairs.values()) else 0,
+        "notes": _notes(section, values, pairs),
     }
 
 
@@ -57,9 +68,15 @@ def numbers(found: Estimate | None) -> Numbers:
     """Return an estimate as the page reads it."""
     if found is None or math.isnan(found.value):
         return None
-    return [
-        None if math.isnan(x) else round(x, DIGITS) for x in (found.value, found.low, found.high)
-    ]
+    return [None if math.isnan(x) else shortened(x) for x in (found.value, found.low, found.high)]
+
+
+def shortened(x: float) -> float:
+    """Return ``x`` with :data:`DIGITS` digits, or whole where that would show another number: shown
+    is percent with one digit, or two digits."""
+    short = round(x, DIGITS)
+    same = f"{100 * x:.1f} {x:.2f}" == f"{100 * short:.1f} {short:.2f}"
+    return short if same else x
 
 
 def _title(section: Section) -> str:
@@ -87,6 +104,7 @@ def _column(section: Section, column: str) -> dict[str, Any]:
     return {
         "label": column,
         "place": list(section.grid.columns).index(column),
+        "agents": list(agents),
         "seeds": list(seeds),
         "details": [["hash", ", ".join(agents)], ["seeds", ", ".join(map(str, seeds))]],
     }
@@ -134,18 +152,32 @@ def _cells(section: Section, column: str, names: Sequence[str]) -> list[list[Any
     tables = {m: [grid.cell(column, n, at, key) for n in names] for m, key in METRICS.items()}
     found = {metric: bootstrap.means(table, shares=True) for metric, table in tables.items()}
     return [
-        [*(numbers(found[metric][k]) for metric in METRICS), int((~np.isnan(values)).sum())]
-        for k, values in enumerate(tables["SR"])
+        [
+            *(numbers(found[metric][k]) for metric in METRICS),
+            int((~np.isnan(tables["SR"][k])).sum()),
+            *(_kept(section, column, name, metric) for metric in METRICS),
+        ]
+        for k, name in enumerate(names)
     ]
+
+
+def _kept(section: Section, column: str, name: str, metric: str) -> float | None:
+    """Return the PRS of one corruption alone: over the episodes that are measured clean, too, and
+    None where these are too few for a PRS."""
+    parts = section.grid.retention([column], [name], section.severity, METRICS[metric])
+    if parts is None or not parts[0].clean.any():
+        return None
+    return shortened(float(parts[0].corrupted.mean() / parts[0].clean.mean()))
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
     """Return the differences of all columns to each of the first ones, paired over the seeds and
-    the episodes that both have."""
-    found = {}
+    the episodes that both have: on other seeds they met corruptions of other keys."""
+    found: dict[str, Any] = {}
     for j, second in enumerate(section.columns[:BASELINES]):
         for i, first in enumerate(section.columns[j + 1 :], start=j + 1):
-            found[f"{i}-{j}"] = _pair(section, first, second, names)
+            common = section.grid.common((first, second), section.severity)
+            found[f"{i}-{j}"] = _pair(section, first, second, names) if common else None
     return found
 
 
@@ -165,9 +197,10 @@ def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> di
     return {"measures": measures, "SR": cells["SR"], "SPL": cells["SPL"]}
 
 
-def _notes(section: Section, values: list[list[Numbers]]) -> list[str]:
+def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, Any]) -> list[str]:
     notes = []
-    marks = "".join(value[3] for line in values for value in line if value and len(value) > 3)
+    lines = [*values, *(pair["measures"] for pair in pairs.values() if pair)]
+    marks = "".join(value[3] for line in lines for value in line if value and len(value) > 3)
     if "‡" in marks:
         notes.append("‡ The clean value is so low that a PRS says little.")
     if "†" in marks:
@@ -183,6 +216,8 @@ def _notes(section: Section, values: list[list[Numbers]]) -> list[str]:
             notes.append(
                 f"Seed {seed} of {column} is not finished and left out: {have:,} of {want:,} rows."
             )
+    if None in pairs.values():
+        notes.append("There is no difference of agents without a seed in common.")
     if len(section.columns) > BASELINES:
         notes.append(f"Only the first {BASELINES} agents can be chosen as a baseline.")
     return notes

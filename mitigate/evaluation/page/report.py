@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from mitigate.core.names import counted
 from mitigate.evaluation.page.curves import curves
 from mitigate.evaluation.page.document import page
 from mitigate.evaluation.page.episodes import MOST, Packed
@@ -32,7 +33,7 @@ def report(
     notes = []
     if packed.left_out:
         notes.append(
-            f"The episodes of {packed.left_out:,} cells (one a seed) are not in this file, which "
+            f"The episodes of {counted(len(packed.left_out), 'cell')} are not in this file, which "
             f"holds {most:,} episodes at most: their numbers stand, but such cells do not open. "
             "Name fewer rows to see them."
         )

@@ -15,13 +15,14 @@ from typing import Any
 import numpy as np
 
 from mitigate.agents.agent import Agent
+from mitigate.core.identity import identity
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
 from mitigate.core.pictures import strip
 from mitigate.corruptions import Corruption, Key, corrupt_observation
 from mitigate.corruptions.gallery import depth_picture
 from mitigate.evaluation.episode import instruction
 from mitigate.evaluation.episode_lists import GOLDEN
-from mitigate.evaluation.page.choosing import KINDS, choose
+from mitigate.evaluation.page.choosing import choose, outcome
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
 from mitigate.evaluation.trajectories import Walk, walked
@@ -46,19 +47,21 @@ def walk_again(
     """Yield each chosen episode as the page reads it, walked by the first agent clean, and by all
     corrupted.
 
-    ``agents`` by their names in ``rows``, which are of one split and ``seed``. Raises ValueError if
-    no episode is to be chosen, or the world has no poses.
+    ``agents`` by their names in ``rows``, which are of one split and rule; of these, those of other
+    agents of that name, or of another seed, are passed over. Raises ValueError if an agent has none
+    at all, no episode is to be chosen, or the world has no poses.
     """
     if POSE not in world.sensors:
         raise ValueError("This world gives no poses, so there is no walk to be drawn.")
     known = {episode.episode_id: episode for episode in episodes}
     spread = {episode_id: n * GOLDEN % 1 for n, episode_id in enumerate(known)}
-    own = [row for row in rows if row["episode_id"] in known and row["seed"] == seed]
+    hashes = {name: identity(agent, world.sensors) for name, agent in agents.items()}
+    own = [row for row in _own(rows, hashes) if row["episode_id"] in known and row["seed"] == seed]
     own.sort(key=lambda row: spread[row["episode_id"]])
     chosen = choose(own, list(agents), most)
     if not chosen:
         raise ValueError(
-            f"No episode of these was met under a corruption by both {', '.join(agents)} with seed "
+            f"No episode of these was met under a corruption by {' and '.join(agents)} with seed "
             f"{seed}: the names must be those of the rows."
         )
     index = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r for r in own}
@@ -67,8 +70,23 @@ def walk_again(
             episode = known[episode_id]
             walks = list(walked(agents, world, episode, corruption, seed))
             views = _views(world, episode, corruption, seed)
-            drawn = _drawn(episode, corruption, walks, index, _plan(world))
-            yield drawn | {"views": views, "heard": instruction(episode, corruption, seed)}
+            drawn = _drawn(episode, corruption, walks, index, hashes)
+            drawn |= {key: own[0][key] for key in ("split", "rule", "seed")}
+            drawn |= {"views": views, "heard": instruction(episode, corruption, seed)}
+            yield drawn | _plan(world)
+
+
+def _own(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
+    """Return the rows of the agents of ``hashes``, by name. Raises ValueError if one has none."""
+    for name, own in hashes.items():
+        others = sorted({row["agent"] for row in rows if row["name"] == name})
+        if others and own not in others:
+            raise ValueError(
+                f"The rows of {name} are of {', '.join(others)}, and the weights named for it are "
+                f"{own}, another agent: name the weights that made the rows, and what `mitigate "
+                "evaluate` was told of the agent and the world (agent=..., env.views=1)."
+            )
+    return [row for row in rows if hashes.get(row["name"]) == row["agent"]]
 
 
 def _drawn(
@@ -76,7 +94,7 @@ def _drawn(
     corruption: Corruption,
     walks: Sequence[Walk],
     index: Mapping[tuple, Row],
-    plan: dict[str, Any],
+    hashes: Mapping[str, str],
 ) -> dict[str, Any]:
     reference = [from_vlnce(point) for point in episode.reference_path or ()]
     return {
@@ -85,11 +103,10 @@ def _drawn(
         "corruption": corruption.name,
         "title": label(corruption.name),
         "severity": corruption.severity,
-        "kind": KINDS[walks[1].won, walks[-1].won],
+        "kind": outcome([walk.won for walk in walks[1:]]),
         "reference": _points(reference),
         "goals": _points([from_vlnce(goal.position) for goal in episode.goals]),
-        "walks": [_walk(walk, episode, index) for walk in walks],
-        **plan,
+        "walks": [_walk(walk, episode, index) | {"hash": hashes[walk.agent]} for walk in walks],
     }
 
 

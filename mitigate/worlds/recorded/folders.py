@@ -81,7 +81,8 @@ def open_folder(
     if (path / RECORDING).is_file():
         if unit is not None:
             raise ValueError(f"{path} says the unit of its depth itself: leave unit= out.")
-        episodes = sorted(file.parent for file in path.glob(f"*/*/{STEPS}"))
+        # a hidden one is of an episode that somebody is in, or was when he was killed
+        episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
         read = (_recorded(folder, path, hfov, cameras) for folder in episodes)
         return [drive for drive in read if drive is not None]
     if cameras:

@@ -49,6 +49,9 @@ def test_an_entry_has_the_figures_of_the_table_and_comes_back_from_its_file(rows
     assert entry.scores["PRS-SR (RGB)"] == pytest.approx([prs.value, prs.low, prs.high], abs=1e-4)
     assert entry.scores["Clean SR"][0] == 0.8 and entry.SR["spatter"][0] == 0.2
     assert entry.episodes == 10 and entry.rows["count"] == 30
+    (shown,) = held(render([entry]))[0]["sections"]
+    kept = [cell[3:] for cell in shown["cells"][0]]
+    assert [pytest.approx([share] * 2) for share in (1.0, 0.25, 0.875)] == kept
     assert load(entry.save(tmp_path / "base.json")) == entry
     assert [p.name for p in tmp_path.iterdir()] == ["base.json"]
     assert "PRS-SR (RGB): 0.250 [" in str(entry)
@@ -135,7 +138,7 @@ def test_check_finds_a_figure_a_sum_or_rows_that_are_not_there(rows, tmp_path, m
     better = replace(entry, SR=entry.SR | {"spatter": [0.9, 0.8, 1.0]})
     better.save("entries/base.json")
     assert command.main(["check", "entries"]) == 1
-    said = "base: SR, spatter, is [0.9, 0.8, 1.0], but its rows say [0.2, "
+    said = "entries/base.json: base, SR, spatter, is [0.9, 0.8, 1.0], but its rows say [0.2, "
     assert said in capsys.readouterr().out
     entry.save("entries/base.json")
     result_rows.write("rows.jsonl.gz", [rows[0] | {"steps": 5}, *rows[1:]])
@@ -158,10 +161,10 @@ def test_check_goes_on_behind_an_entry_that_is_broken(rows, tmp_path, monkeypatc
     said = capsys.readouterr().out.splitlines()
     assert said[:6] == [
         *("entries/cut.json: NO entry", "entries/folder.json: NO entry"),
-        *("lost: NOT as its rows say", "entries/old.json: NO entry"),
-        *("base: as its rows say", "nowhere.json: NO entry"),
+        *("entries/lost.json: lost, NOT as its rows say", "entries/old.json: NO entry"),
+        *("entries/whole.json: base, as its rows say", "nowhere.json: NO entry"),
     ]
-    wrong = "entries/cut.json is cut short", "entries/folder.json", "lost: File name too long"
+    wrong = "entries/cut.json is cut short", "entries/folder.json", "lost, File name too long"
     for line, words in zip(said[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
         assert words in line
     assert command.main(["check", "entries/whole.json"]) == 0
@@ -289,6 +292,34 @@ def test_an_entry_is_compared_with_its_own_rows_where_the_file_holds_more(rows):
     assert command.differences(entry, [*rows, *more]) == []
     with pytest.raises(ValueError, match="hold none of 0123456789ab with seed 0"):
         command.differences(entry, [r | {"seed": 1} for r in rows])
+
+
+def test_check_says_what_of_its_rows_an_entry_leaves_out(rows, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    more = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
+    other = [r | {"name": "other"} for r in more] + [r | {"split": "val_seen"} for r in more]
+    milder = [r | {"severity": 0.3, "corruption": "flare"} for r in rows[10:20]]
+    result_rows.write("rows.jsonl", [*rows, *other, *milder])
+    chosen = [r for r in rows if r["corruption"] != "spatter"]
+    entry_of(rows, "base", severity=0.6, file="rows.jsonl").save("a.json")
+    entry_of(chosen, "base", severity=0.6, file="rows.jsonl").save("b.json")
+    assert command.main(["check", "a.json"]) == 0 and "WARNING" not in capsys.readouterr().out
+    result_rows.write("rows.jsonl", [*rows, *other, *more, *milder])
+    assert command.main(["check", "a.json", "b.json"]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "a.json: base, as its rows say",
+        "a.json: base, WARNING: its rows also hold seed 1 (agent cccccc)",
+        "b.json: base, as its rows say",
+        "b.json: base, WARNING: its rows also hold seed 1 (agent cccccc), spatter",
+    ]
+
+
+def test_entries_of_one_name_and_agent_are_told_apart(rows):
+    entry = entry_of(rows, "base", severity=0.6)
+    named = replace(entry, agents=({"agent": "cccccc", "seed": 0},))
+    data, _ = held(render([entry, entry, named, replace(entry, name="other")]))
+    labels = [column["label"] for column in data["sections"][0]["columns"]]
+    assert labels == ["base (012345), 1", "base (012345), 2", "base (cccccc)", "other"]
 
 
 def test_words_that_say_what_an_agent_sees_may_stand_behind_options(

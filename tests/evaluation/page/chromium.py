@@ -78,6 +78,11 @@ class Page:
         for kind in ("keyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, **given)
 
+    def type(self, text: str) -> None:
+        """Type into what has the keyboard, a letter at a time."""
+        for letter in text:
+            self.call("Input.insertText", text=letter)
+
     def until(self, expression: str) -> None:
         """Wait until an expression is true."""
         end = time.monotonic() + SECONDS

@@ -6,9 +6,10 @@ import json
 
 import pytest
 
+from mitigate.evaluation.blocks import FRAMES
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.report import report as report_of
-from tests.evaluation.made_rows import column
+from tests.evaluation.made_rows import cell, column
 from tests.evaluation.page.chromium import PROGRAM, Page
 
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no Chromium: apt-get install chromium")
@@ -23,11 +24,14 @@ def page(tmp_path_factory):
     shown.close()
 
 
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
+def made_rows() -> list[dict]:
     """base wins 8 of 10 clean and 2 under spatter, hard 6 and 6."""
     rows = column(8, {"spatter": 2, "gaussian_noise": 7}, steps=41)
-    rows += column(6, {"spatter": 6, "gaussian_noise": 5}, name="hard", agent="ba9876543210")
+    return rows + column(6, {"spatter": 6, "gaussian_noise": 5}, name="hard", agent="ba9876543210")
+
+
+def made_walk(rows: list[dict]) -> dict:
+    """base walks the first episode clean and under spatter."""
     walk = {
         "episode": "0",
         "instruction": EVIL,
@@ -35,6 +39,9 @@ def report(tmp_path_factory):
         "corruption": "spatter",
         "title": "Spatter",
         "severity": 0.6,
+        "split": rows[0]["split"],
+        "rule": rows[0]["rule"],
+        "seed": 0,
         "kind": "won by both",
         "reference": [],
         "goals": [[1.0, 1.0]],
@@ -43,9 +50,15 @@ def report(tmp_path_factory):
         "views": [],
     }
     one = {"agent": "base", "clean": True, "won": True, "left": 0.5, "steps": 9, "agrees": True}
+    one["hash"] = rows[0]["agent"]
     walk["walks"] = [one | {"points": [[0, 0], [1, 1]]}, one | {"clean": False, "points": [[0, 0]]}]
-    out = tmp_path_factory.mktemp("report") / "report.html"
-    return document.write(report_of(rows, walks=[walk]), out)
+    return walk
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    rows, out = made_rows(), tmp_path_factory.mktemp("report") / "report.html"
+    return document.write(report_of(rows, walks=[made_walk(rows)]), out)
 
 
 def agents(page: Page) -> list[str]:
@@ -74,6 +87,27 @@ def test_headings_sort_the_agents_and_a_baseline_shows_differences(page, report)
     assert "baseline=0" in page.ask("location.hash")
 
 
+def test_a_difference_over_fewer_corruptions_says_so(page, tmp_path):
+    rows = column(8, dict.fromkeys(FRAMES, 2)) + column(6, {"spatter": 6}, name="hard", agent="b")
+    page.open(document.write(report_of(rows), tmp_path / "page.html"), "#section=0&baseline=1")
+    line = "[...document.querySelectorAll('.agents tbody tr')][0]"
+    values, changes = (
+        page.ask(f"[...{line}.querySelectorAll('{part}')].map(one => one.textContent)")
+        for part in (".value", ".change")
+    )
+    assert values[2] == "20.0" and changes[2].endswith("] \u2020 1/12")
+    assert not any("\u2020" in change for change in changes[:2])
+
+
+def test_any_agent_can_be_the_baseline(page, report):
+    page.open(report, "#baseline=1")
+    chosen = "[...document.querySelectorAll('.choose select')].map(s => [s.value, s.textContent])"
+    assert page.ask(chosen) == [["1", "nonebasehard"]]
+    assert page.ask("document.querySelector('.base .agent').textContent") == "hard"
+    page.open(report, "#baseline=2")
+    assert page.ask(chosen)[0][0] == "-1"
+
+
 def test_a_cell_opens_its_episodes_and_filters_them(page, report):
     page.open(report, "#baseline=0")
     page.click('[data-at="1/1"]')
@@ -93,6 +127,59 @@ def test_a_cell_opens_its_episodes_and_filters_them(page, report):
     assert lines(page)[0][3] == "41"  # steps
 
 
+@pytest.mark.parametrize("severity", [1 / 3, 1e-5, 1.0])
+def test_cells_open_at_any_severity(page, tmp_path, severity):
+    rows = column(8, {"spatter": 2}, severity)
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    page.click('[data-at="0/1"]')
+    assert len(lines(page)) == 10
+
+
+def test_a_cell_of_several_seeds_is_summed_up_by_its_whole_episodes(page, tmp_path):
+    """Seed 1 lacks the last episode, which seed 0 won, and so has no part in the grid's mean."""
+    first = column(10, {"spatter": 10})
+    second = column(10, {"spatter": 0}, seed=1)
+    rows = first + [r for r in second if r["episode_id"] != "9"]
+    page.open(
+        document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
+    )
+    shown = page.ask("document.querySelector('[data-at=\"0/1\"]').textContent")
+    said = page.ask("document.querySelector('dialog .readout').textContent")
+    assert shown == "50.0*"
+    assert said == ("19 walks of 10 episodes: SR 50.0 %, SPL 0.25, over the 9 that each seed has")
+
+
+def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
+    rows = cell(5, 16) + cell(3, 16, corruption="spatter", severity=0.6)
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    values = page.ask("[...document.querySelectorAll('.agents .value')].map(v => v.textContent)")
+    assert values[:3] == ["31.2", "0.16", "18.8 \u2020 1/8"]  # of 31.25, 0.15625 and 18.75
+    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert shown == ["31.2", "18.8"]
+    assert [f"{100 * wins / 16:.1f}" for wins in (5, 3)] == shown
+
+
+def test_a_share_of_the_clean_value_is_over_the_episodes_of_both(page, tmp_path):
+    rows = [r for r in column(9, {"spatter": 9}) if (r["episode_id"], r["severity"]) != ("9", 0.6)]
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    page.click(".chip", "share of own clean")
+    shown = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
+    assert shown == ["1.00", "1.00*"]  # not 1.0 / 0.9
+
+
+def test_episodes_are_searched_as_they_are_typed(page, tmp_path):
+    rows = [made | {"episode_id": f"1{made['episode_id']}"} for made in column(8, {"spatter": 2})]
+    page.open(
+        document.write(report_of(rows), tmp_path / "page.html"), "#agent=0&corruption=spatter"
+    )
+    page.ask("document.querySelector('dialog input').focus()")
+    page.type("12")
+    assert page.ask("document.activeElement.value") == "12"
+    assert [line[0] for line in lines(page)] == ["12"]
+    page.click("dialog .chip", "lost (")
+    assert page.ask("document.querySelector('dialog input').value") == "12"
+
+
 def test_an_address_opens_a_cell_and_keys_are_enough(page, report):
     page.open(report, "#section=0&agent=0&corruption=spatter")
     assert "base" in page.ask("document.querySelector('dialog h2').textContent")
@@ -106,11 +193,111 @@ def test_an_address_opens_a_cell_and_keys_are_enough(page, report):
     assert "hard" in page.ask("document.querySelector('dialog h2').textContent")
 
 
+def test_an_address_leads_on_in_an_open_report(page, report):
+    page.open(report, "#section=0&agent=0&corruption=spatter")
+    page.ask("location.hash = '#section=0&baseline=1&agent=1&corruption=clean'")
+    page.until("document.querySelector('dialog h2').textContent === 'hard \u00b7 Clean'")
+    assert page.ask("document.querySelectorAll('dialog').length") == 1
+    assert page.ask("document.querySelector('.base .agent').textContent") == "hard"
+    page.press("Escape")
+    page.until("!document.querySelector('dialog')")
+    assert page.ask("location.hash") == "#section=0&baseline=1"
+    page.click(".skip")
+    page.until("location.hash === '#main'")
+    assert page.ask("document.querySelector('.base .agent').textContent") == "hard"
+
+
+def test_a_click_beside_a_dialog_closes_it_and_one_in_it_does_not(page, report):
+    page.open(report, "#agent=0&corruption=spatter")
+    box = page.ask(
+        "(b => [b.left, b.top])(document.querySelector('dialog').getBoundingClientRect())"
+    )
+
+    def click(x: float, y: float) -> None:
+        for kind in ("mousePressed", "mouseReleased"):
+            at = {"x": x, "y": y, "button": "left", "clickCount": 1}
+            page.call("Input.dispatchMouseEvent", type=kind, **at)
+
+    click(box[0] + 8, box[1] + 8)
+    assert page.ask("document.querySelector('dialog').open")
+    click(box[0] - 8, box[1] + 8)
+    page.until("!document.querySelector('dialog')")
+
+
+def test_a_line_is_hidden_in_all_curves(page, tmp_path):
+    rows = column(8, {"spatter": 2}, 0.3) + column(8, {"spatter": 1})
+    rows += [r | {"split": "val_seen"} for r in rows]
+    page.open(document.write(report_of(rows), tmp_path / "page.html"))
+    key = "[...document.querySelectorAll('[aria-label=\"Severity curves\"] .chip')]"
+    assert page.ask("document.querySelectorAll('.panel polyline').length") == 2
+    page.ask(f"{key}[0].click()")
+    assert page.ask(f"{key}.map(one => one.ariaPressed)") == ["false", "false"]
+    assert page.ask("document.querySelectorAll('.panel polyline').length") == 0
+
+
+def test_details_stay_open(page, report):
+    page.open(report)
+    page.click(".agents summary")
+    page.until("document.querySelector('.agents details').open")
+    page.click(".agents .sort", "Clean SR")
+    page.click(".agents .sort", "Clean SR")
+    assert agents(page) == ["hard", "base"]
+    opened = "[...document.querySelectorAll('.agents details')].map(one => one.open)"
+    page.until(f"String({opened}) === 'false,true'")
+
+
+@pytest.mark.parametrize("width", [400, 1300])
+def test_no_name_makes_the_page_scroll_sideways(page, tmp_path, width):
+    names = {"name": "n" * 190, "split": "s" * 190, "rule": "r" * 190}
+    rows = [r | names for r in made_rows()] + made_rows()
+    rows += [r | {"severity": 0.3} for r in rows if r["severity"]]
+    walk = made_walk(rows[:1]) | {"episode": "e" * 190, "kind": "k" * 100}
+    walk["walks"] = [one | {"agent": "n" * 190} for one in walk["walks"]]
+    out = document.write(report_of(rows, title="t" * 190, walks=[walk]), tmp_path / "page.html")
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    page.call("Emulation.setDeviceMetricsOverride", **size)
+    for n in range(2):
+        page.open(out, f"#section={n}&baseline=0&agent=1&corruption=spatter")
+        assert page.ask("document.documentElement.scrollWidth") <= width
+        assert (
+            page.ask("(d => d.scrollWidth - d.clientWidth)(document.querySelector('dialog'))") <= 0
+        )
+    page.call("Emulation.clearDeviceMetricsOverride")
+
+
 def test_walks_are_drawn_and_filtered(page, report):
     page.open(report)
     assert page.ask("document.querySelectorAll('.walk polyline').length") > 0
     page.click("#walks .chip", "base, clean")
     assert page.ask("document.querySelectorAll('.walk circle').length") == 1
+
+
+def test_see_leads_from_a_row_to_its_walk(page, report):
+    page.open(report, "#agent=0&corruption=spatter")
+    page.click("dialog .link", "see")
+    page.until("!document.querySelector('dialog') && document.activeElement.id === 'walk-0'")
+    box = "document.getElementById('walk-0').getBoundingClientRect()"
+    page.until(f"{box}.top < innerHeight && {box}.bottom > 0")
+    page.until("!location.hash.includes('agent')")
+    assert page.ask("document.activeElement.id") == "walk-0"
+
+
+@pytest.mark.parametrize(
+    "other",
+    [{"severity": 0.3}, {"seed": 1}, {"split": "val_seen"}, {"rule": "view points"}, {"hash": "c"}],
+    ids=lambda other: [*other][0],
+)
+def test_see_is_offered_for_the_walks_of_the_row_alone(page, tmp_path, other):
+    rows = made_rows()
+    walk = made_walk(rows) | other
+    walk["walks"] = [one | {"hash": other.get("hash", one["hash"])} for one in walk["walks"]]
+    out = document.write(report_of(rows, walks=[walk]), tmp_path / "page.html")
+    page.open(out, "#agent=0&corruption=spatter")
+    assert len(lines(page)) == 10
+    assert page.ask("document.querySelector('dialog .link')") is None
+    page.open(out, "#agent=0&corruption=clean")
+    seen = page.ask("document.querySelectorAll('dialog .link').length")
+    assert seen == ("severity" in other)  # which a clean walk has none of
 
 
 def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):

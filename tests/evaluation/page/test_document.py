@@ -9,18 +9,21 @@ import re
 import numpy as np
 import pytest
 
+from mitigate.core.identity import identity
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import table
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.page import command
 from mitigate.evaluation.page.choosing import KINDS, choose
 from mitigate.evaluation.page.curves import curves
+from mitigate.evaluation.page.model import shortened
 from mitigate.evaluation.page.report import report
 from mitigate.evaluation.page.walks import walk_again
 from mitigate.evaluation.rows import write
 from mitigate.evaluation.sections import sections
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.episodes import Episode
 from tests.evaluation.made_rows import cell, column, row
 from tests.evaluation.straight import Straight
 
@@ -58,6 +61,15 @@ def test_values_and_differences_are_those_of_the_table(rows):
     assert [line["label"] for line in shown["columns"]] == ["base", "hard"]
 
 
+def test_agents_without_a_common_seed_have_no_difference(rows):
+    apart = column(6, {"spatter": 6}, name="apart", agent="cccccccccccc", seed=7)
+    (shown,) = held(report(rows + apart))[0]["sections"]
+    assert shown["pairs"]["1-0"] and shown["pairs"]["2-0"] is None and shown["baselines"] == 3
+    assert any("without a seed in common" in note for note in shown["notes"])
+    (alone,) = held(report([r for r in rows + apart if r["name"] != "hard"]))[0]["sections"]
+    assert alone["baselines"] == 0 and [*alone["pairs"].values()] == [None]
+
+
 def test_the_episodes_of_a_cell_come_back_as_they_were(rows):
     data, packed = held(report(rows))
     (grid,) = data["grids"]
@@ -80,7 +92,36 @@ def test_rows_that_are_missing_are_missing_in_the_page(rows):
 def test_a_page_is_bounded_and_says_what_it_leaves_out(rows):
     data, packed = held(report(rows, most=25))
     assert len(packed) == 3 * 20 and len(data["grids"][0]["cells"]) == 2
-    assert "4 cells (one a seed) are not in this file" in data["notes"][0]
+    assert "4 cells are not in this file" in data["notes"][0]
+
+
+def test_a_cell_is_held_with_all_its_seeds_or_not_at_all(rows):
+    two = [r | {"seed": seed} for seed in (0, 1) for r in rows if r["name"] == "base"]
+    data, _ = held(report(two, most=50))
+    begun = sorted(data["grids"][0]["cells"])
+    assert begun == [f"0|{at}|{seed}" for at in ("clean|0.0", "spatter|0.6") for seed in (0, 1)]
+    assert "episodes of 1 cell are not" in data["notes"][0]
+
+
+def test_the_share_of_the_clean_value_is_over_the_episodes_of_both(rows):
+    """As a PRS is: sure kept all that it was measured to have."""
+    sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
+    lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
+    fewer = [r for r in lost if (r["episode_id"], r["corruption"]) != ("9", "spatter")]
+    (shown,) = held(report(rows + fewer))[0]["sections"]
+    place = [one["name"] for one in shown["corruptions"]].index("spatter")
+    assert shown["cells"][2][place][3:] == [1.0, 1.0]
+    assert shown["cells"][0][place][3:] == [0.25, 0.25] and shown["cells"][0][0][3:] == [1.0, 1.0]
+    least = [r for r in fewer if r["corruption"] == "clean" or r["episode_id"] < "5"]
+    (shown,) = held(report(rows + least))[0]["sections"]
+    assert shown["cells"][2][place][3:] == [None, None]  # too few for a PRS
+
+
+@pytest.mark.parametrize("x", [0.3125, 0.31250000001, 0.0049999999, 0.125, 1 / 3, 0.0, 37 / 900])
+def test_a_number_is_shortened_where_it_shows_the_same(x):
+    short = shortened(x)
+    assert f"{short:.2f} {100 * short:.1f}" == f"{x:.2f} {100 * x:.1f}"
+    assert len(repr(short)) <= 8 or short == x
 
 
 def test_several_seeds_and_kinds_of_corruption_have_their_own_cells(rows):
@@ -128,21 +169,50 @@ def test_walks_are_chosen_by_turns_of_outcomes_and_corruptions():
     assert choose(made, ["base", "hard"], 2) == chosen[:2]
 
 
-def test_a_walk_is_compared_with_its_row():
-    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
-    agents = {"base": Straight(1), "hard": Straight(3)}
+def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[dict]:
+    """What agents measure clean and in low light, by their hashes."""
     made = []
     for name, agent in agents.items():
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
             measures = run_episode(agent, world, episode, met, 0)
             at = {"corruption": met.name, "severity": met.severity, "name": name}
+            at["agent"] = identity(agent, world.sensors)
             made.append(row(episode.episode_id, 0, **at) | measures)
+    return made
+
+
+def test_a_walk_is_compared_with_its_row():
+    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
+    agents = {"base": Straight(1), "hard": Straight(3)}
+    made = walked_rows(agents, world, episode)
     made[-1]["steps"] += 1  # a row that says otherwise
     (drawn,) = walk_again(agents, world, [episode], made, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
     assert [len(walk["points"]) for walk in drawn["walks"]] == [2, 2, 4]
     assert drawn["plan"].startswith("data:image/png;base64,") and len(drawn["views"]) == 2
     assert drawn["kind"] == "lost by both" and drawn["title"] == "L-L w/o noise"
+
+
+def test_a_walk_is_compared_with_no_row_of_another_agent_of_its_name():
+    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
+    agents = {"base": Straight(1)}
+    made = walked_rows(agents, world, episode)
+    others = [r | {"agent": "ba9876543210", "steps": r["steps"] + 1} for r in made]
+    (drawn,) = walk_again(agents, world, [episode], made + others, most=3, seed=0)
+    assert [walk["agrees"] for walk in drawn["walks"]] == [True, True]
+    assert {walk["hash"] for walk in drawn["walks"]} == {made[0]["agent"]}
+    with pytest.raises(ValueError, match=r"rows of base are of ba9876543210, and the weights"):
+        next(walk_again(agents, world, [episode], others, most=3, seed=0))
+
+
+def test_an_agent_that_walks_alone_wins_or_loses():
+    world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
+    agents = {"base": Straight(1)}
+    (drawn,) = walk_again(
+        agents, world, [episode], walked_rows(agents, world, episode), most=1, seed=0
+    )
+    assert drawn["kind"] == "lost"
+    assert [drawn[key] for key in ("split", "seed", "severity")] == ["val_unseen", 0, 0.6]
 
 
 def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, rows):

@@ -6,6 +6,7 @@ import json
 import math
 import struct
 from pathlib import Path
+from shutil import copytree
 
 import cv2
 import numpy as np
@@ -171,6 +172,7 @@ def test_a_recording_of_mitigate_run_is_read_with_its_cameras(tmp_path):
         for i, p in enumerate(walk())
     ]
     (episode / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    copytree(episode, episode.with_name(".18.4711.tmp"))  # left by a run that was killed
     found = read(tmp_path / "recorded")
     assert (found.name, found.instruction) == ("kitchen/17", "go to the sink")
     assert np.allclose(found.poses, np.array(walk()), atol=1e-6)

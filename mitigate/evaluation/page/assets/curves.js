@@ -3,10 +3,12 @@
 const hiddenLines = new Set();
 
 function curvesPart() {
+  const shows = [];
   return DATA.curves.map((figure) => {
     const place = el("div", {});
-    const show = () => redraw(place, () => [lineKey(figure, show),
+    const show = () => redraw(place, () => [lineKey(figure, () => shows.forEach((one) => one())),
       el("div", { class: "panels" }, figure.panels.map((panel) => curvePanel(figure, panel)))]);
+    shows.push(show);
     show();
     return el("section", { class: "card", "aria-label": "Severity curves" }, el("h2", {}, "Success against severity"),
       el("p", { class: "facts" }, `${figure.title}. All points of a line are over the same episodes, the clean one at 0 too; bands are 95 % intervals.`), place);

@@ -2,7 +2,7 @@
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const MISSING = 65535, SCALE = 1000;
-const state = { section: DATA.first, baseline: -1, metric: "SR", show: "value", sort: { key: -1, down: false }, intervals: false };
+const state = { section: DATA.first, baseline: -1, metric: "SR", show: "value", sort: { key: -1, down: false }, intervals: false, open: new Set() };
 
 const packed = (() => {
   let values = null;
@@ -17,6 +17,12 @@ const packed = (() => {
 
 const section = () => DATA.sections[state.section];
 
+function choose(n) {
+  state.section = n;
+  state.baseline = -1;
+  state.sort = { key: -1, down: false };
+}
+
 // Difference of column i to column j of a section: [value, low, high, marks] by `pick`, or null.
 function difference(one, i, j, pick) {
   if (i === j || j < 0) return null;
@@ -28,22 +34,22 @@ function difference(one, i, j, pick) {
 }
 
 function cellKey(one, column, k, seed) {
-  const name = one.corruptions[k].name;
-  const at = name === "clean" ? 0 : one.severity;
+  const { name, at } = one.corruptions[k];
   return `${one.columns[column].place}|${name}|${at}|${seed}`;
 }
 
+// Whether the episodes of a cell are in the file, of all its seeds.
+const opens = (one, column, k) => one.grid !== null && one.columns[column].seeds.every(
+  (seed) => DATA.grids[one.grid].cells[cellKey(one, column, k, seed)] !== undefined);
+
 // The episodes of a cell: {seed, index, id, success, spl, steps}; null if they are not in the file.
 function episodesOf(one, column, k) {
-  const grid = one.grid === null ? null : DATA.grids[one.grid];
-  if (!grid) return null;
+  if (!opens(one, column, k)) return null;
+  const grid = DATA.grids[one.grid];
   const count = grid.episodes.length;
   const rows = [];
-  let held = false;
   for (const seed of one.columns[column].seeds) {
     const begin = grid.cells[cellKey(one, column, k, seed)];
-    if (begin === undefined) continue;
-    held = true;
     const values = packed().subarray(3 * begin, 3 * (begin + count));
     for (let n = 0; n < count; n++) {
       if (values[n] === MISSING) continue;
@@ -52,11 +58,8 @@ function episodesOf(one, column, k) {
         spl: values[count + n] / SCALE, steps: steps === MISSING ? null : steps });
     }
   }
-  return held ? rows : null;
+  return rows;
 }
-
-const opens = (one, column, k) => one.grid !== null && one.columns[column].seeds.some(
-  (seed) => DATA.grids[one.grid].cells[cellKey(one, column, k, seed)] !== undefined);
 
 // The address after # says which section, baseline and cell are shown.
 function readAddress() {
@@ -66,8 +69,8 @@ function readAddress() {
     return found !== null && /^\d+$/.test(found) && Number(found) < most ? Number(found) : null;
   };
   const chosen = whole("section", DATA.sections.length);
-  if (chosen !== null) state.section = chosen;
-  state.baseline = whole("baseline", section()?.columns.length ?? 0) ?? -1;
+  if (chosen !== null) choose(chosen);
+  state.baseline = whole("baseline", section()?.baselines ?? 0) ?? -1;
   return { agent: whole("agent", section()?.columns.length ?? 0), corruption: given.get("corruption") };
 }
 

@@ -23,10 +23,18 @@ const breakable = (text) => String(text).split(/(?<=[_+.\/-])/).flatMap((part, n
 
 const MINUS = "\u2212";
 
+// A positive number with some digits, a tie to the even one as Python writes it. A tie is an odd
+// multiple of a power of two; toFixed, which is exact otherwise, takes the greater neighbour.
+function fixed(x, digits) {
+  const text = x.toFixed(digits), last = Number(text.slice(-1));
+  const tie = (x * 2 ** (digits + 1)) % 2 === 1;
+  return tie && last % 2 ? text.slice(0, -1) + (last - 1) : text;
+}
+
 // A number of a measure: SR in percent with one digit, all else with two.
 function shown(value, unit, signed = false) {
   if (value === null || value === undefined) return "\u2013";
-  const text = unit === "%" ? Math.abs(100 * value).toFixed(1) : Math.abs(value).toFixed(2);
+  const text = unit === "%" ? fixed(Math.abs(100 * value), 1) : fixed(Math.abs(value), 2);
   const zero = Number(text) === 0;
   if (value < 0 && !zero) return MINUS + text;
   return signed && !zero ? "+" + text : text;

@@ -64,8 +64,7 @@ function heatLook(one, c, k, own, unit) {
       paint: paint(APART, 0.5 + found[0] / 0.8) };
   }
   if (state.show === "kept") {
-    const clean = one.cells[c][0][state.metric === "SR" ? 0 : 1];
-    const share = clean && clean[0] ? own[0] / clean[0] : null;
+    const share = one.cells[c][k][state.metric === "SR" ? 3 : 4];
     return { text: shown(share, ""), range: "", paint: share === null ? {} : paint(CIVIDIS, share) };
   }
   return { text: shown(own[0], unit), range: interval(own, unit), paint: paint(CIVIDIS, own[0]) };

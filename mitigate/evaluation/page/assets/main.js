@@ -20,15 +20,13 @@ function head() {
 function chooser() {
   const one = section();
   const list = DATA.sections.map((held, n) => [n, held.title]);
-  const some = Object.keys(one.pairs).length > 0;
-  const last = Math.max(-1, ...Object.keys(one.pairs).map((pair) => Number(pair.split("-")[1])));
-  const bases = one.columns.map((column, c) => [c, column.label]).filter(([c]) => c <= last);
-  if (list.length < 2 && !some) return null;
+  const bases = one.columns.slice(0, one.baselines).map((column, c) => [c, column.label]);
+  if (list.length < 2 && !bases.length) return null;
   return el("div", { class: "controls choose" },
     list.length > 1 && labelled("Results", choice(list, state.section, (value) => {
-      state.section = Number(value); state.baseline = -1; state.sort = { key: -1, down: false }; writeAddress(null); draw();
+      choose(Number(value)); writeAddress(null); draw();
     })),
-    some && labelled("Baseline", choice([[-1, "none"], ...bases], state.baseline, (value) => {
+    bases.length > 0 && labelled("Baseline", choice([[-1, "none"], ...bases], state.baseline, (value) => {
       state.baseline = Number(value); writeAddress(null); draw();
     })));
 }
@@ -52,11 +50,17 @@ function draw() {
   ].flat() : [el("p", {}, "There is nothing to show yet.")]));
 }
 
-head();
-const asked = readAddress();
-draw();
-document.getElementById("end").append(el("p", { class: "facts" }, DATA.end));
-if (asked.agent !== null && asked.corruption !== null) {
+// Shows what the address names, and the cell if it names one.
+function follow() {
+  const asked = readAddress();
+  document.querySelector("dialog")?.remove();
+  draw();
+  if (asked.agent === null || asked.corruption === null) return;
   const k = section().corruptions.findIndex((held) => held.name === asked.corruption);
   if (k >= 0) openCell(asked.agent, k);
 }
+
+head();
+follow();
+document.getElementById("end").append(el("p", { class: "facts" }, DATA.end));
+window.addEventListener("hashchange", () => { if (location.hash.includes("=")) follow(); }); // not of the skip link

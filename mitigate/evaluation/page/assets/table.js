@@ -17,7 +17,7 @@ function summaryTable(one) {
     sortHeading(measure.title + (measure.unit ? ` (${measure.unit})` : ""), m, sort, onsort, { class: "number" }));
   const about = base >= 0
     ? `Below each value: its paired difference to ${one.columns[base].label}, bold where the interval leaves out zero. Columns sort by it.`
-    : Object.keys(one.pairs).length ? "Values with 95 % intervals. Choose a baseline to see paired differences." : "Values with 95 % intervals.";
+    : one.baselines ? "Values with 95 % intervals. Choose a baseline to see paired differences." : "Values with 95 % intervals.";
   return [el("p", { class: "facts" }, about), el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table of agents" },
     el("table", { class: "agents" },
       el("thead", {}, el("tr", {},
@@ -32,7 +32,8 @@ function summaryTable(one) {
 function agentHeading(one, c) {
   const column = one.columns[c];
   const facts = column.details.map(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
-  const about = el("details", {}, el("summary", {}, "details"), el("dl", {}, facts));
+  const keep = (event) => state.open[event.target.open ? "add" : "delete"](column.label);
+  const about = el("details", { open: state.open.has(column.label), ontoggle: keep }, el("summary", {}, "details"), el("dl", {}, facts));
   return el("th", { scope: "row", class: "name" }, el("span", { class: "agent" }, breakable(column.label)),
     c === state.baseline && el("span", { class: "tag" }, "baseline"), facts.length && one.grid !== null ? about : null);
 }
@@ -40,18 +41,20 @@ function agentHeading(one, c) {
 function valueCell(found, unit, [low, high]) {
   if (!found) return el("span", { class: "none" }, "\u2013");
   return [
-    el("span", { class: "value" }, shown(found[0], unit), el("span", { class: "marks" }, found[3] ? ` ${found[3]}` : "")),
+    el("span", { class: "value" }, shown(found[0], unit), marksOf(found)),
     found[1] !== null && el("span", { class: "interval" }, interval(found, unit)),
     found[1] !== null && whisker(found, low, high),
   ];
 }
+
+const marksOf = (found) => el("span", { class: "marks" }, found[3] ? ` ${found[3]}` : "");
 
 function changeLine(found, unit) {
   if (!found || found[0] === null) return null;
   const clear = onOneSide(found);
   const kind = !clear ? "same" : found[0] > 0 ? "up" : "down";
   return el("span", { class: `change ${kind}` }, shown(found[0], unit, true), " ",
-    el("span", { class: "interval" }, interval(found, unit, true)));
+    el("span", { class: "interval" }, interval(found, unit, true)), marksOf(found));
 }
 
 // All details of all agents side by side, where the page has no rows behind it.

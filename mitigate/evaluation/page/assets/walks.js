@@ -5,11 +5,15 @@ const WALKS_ABOUT = "Walked again for this page with the keys of the rows, by we
   + "won), the black square the start, the star the goal, the grey dots the reference path.";
 const walkView = { kind: "all", corruption: "all", layers: new Set() };
 
-const walkOf = (one, id, k) => {
-  const name = one.corruptions[k].name;
-  const found = DATA.walks.findIndex((walk) => walk.episode === id && (name === "clean" || walk.corruption === name));
+// The number of the card that shows the walk of a row of a cell, null if none does.
+function walkOf(one, column, k, row) {
+  const name = one.corruptions[k].name, clean = name === "clean";
+  const own = (walk) => walk.clean === clean && one.columns[column].agents.includes(walk.hash);
+  const found = DATA.walks.findIndex((card) => card.episode === row.id && card.seed === row.seed
+    && card.split === one.split && card.rule === one.rule
+    && (clean || (card.corruption === name && card.severity === one.severity)) && card.walks.some(own));
   return found < 0 ? null : found;
-};
+}
 
 function walksPart() {
   if (!DATA.walks.length) return null;
