@@ -24,9 +24,10 @@ from mitigate.safeguard.text import MASK, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
-# words and marks from which a text is read in sections: time grows with their square (ours)
-ENDLESS, MARKED = 2_000, 1_000
-SECTION, READ = 2_000, 20_000  # characters of a section, and of the text that is read (ours)
+# words, marks and characters from which a text is read in sections: time grows with their square
+# (ours)
+ENDLESS, MARKED, LONG = 2_000, 1_000, 20_000
+SECTION, READ = 2_000, 60_000  # characters of a section, and of the text that is read (ours)
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
 
 
@@ -55,7 +56,8 @@ class Draft:
         self.tidied = tidy(self.heard)
         length = len(words(self.tidied))
         marks = sum(not sign.isalnum() and not sign.isspace() for sign in self.tidied)
-        self.endless, short = length > ENDLESS or marks > MARKED, length <= TOO_LONG
+        self.endless = length > ENDLESS or marks > MARKED or len(self.heard) > LONG
+        short = length <= TOO_LONG
         self.judge = tagger if short else None  # reads the text as it is heard
         self.reasons: list[str] = []
         self.asked = self.taken = 0
@@ -210,7 +212,9 @@ def _readable(text: str) -> bool:
     """Return whether there are words, mostly in Latin letters, or a way is told in English."""
     letters = [c for c in text if c.isalpha()]
     latin = sum(c.isascii() for c in letters)
-    return bool(letters) and (latin > 0.5 * len(letters) or bool(gate.route_facts(text)))
+    if latin > 0.5 * len(letters):
+        return True
+    return bool(letters) and any(map(gate.route_facts, sections(text[:READ], SECTION)))
 
 
 def _untouched(text: str, tagger: Tags | None) -> bool:

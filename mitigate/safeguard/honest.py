@@ -11,7 +11,7 @@ from mitigate.corruptions.language.fidelity import ATTRIBUTES
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.evidence import VERBS
 from mitigate.safeguard.lexicon import GROUPS, places
-from mitigate.safeguard.short_steps import short_step
+from mitigate.safeguard.short_steps import goes_back, short_step
 from mitigate.safeguard.text import words
 from mitigate.safeguard.written import without_written
 
@@ -37,7 +37,7 @@ _LOOKS = (
     r"carpeted)"
 )
 # how a place looks; none that says it cannot be used
-_LIKE = rf"(?:{'|'.join(sorted(ATTRIBUTES - bag('closed')))}|lit|dark|bright|huge|tiny|on|off)"
+_LIKE = rf"(?:{'|'.join(sorted(ATTRIBUTES - bag('closed')))}|lit|dark|bright|huge|tiny)"
 # where one is and what one notices there, beside what routes name
 _SEEN = bag(
     "floor floors ceiling light lights path paths garden church chapel museum coffee food music "
@@ -53,6 +53,8 @@ _SHOWS = (
     rf"you{_WILL} ?(?:smell|hear) (?P<place>(?:(?:the|a|an|some) )?[\w-]+)",
     rf"(?P<place>(?:the|this|that|these|those) [\w-]+(?: [\w-]+)?) (?:is|are|will be|should be) "
     rf"{_LIKE}",
+    r"(?P<place>(?:the|these|those) (?:[\w-]+ )?(?:lights?|lamps?|tv)) (?:is|are|will be) "
+    r"(?:on|off)",
     r"(?P<place>(?:this|that|these|those|both) [\w-]+ (?:leads?|goes|go|opens?) "
     rf"(?:(?:up|down|out) )?(?:to|into|onto) {_A} [\w-]+(?: [\w-]+)?)",
 )
@@ -150,7 +152,7 @@ def belongs(sentence: str, first: bool, last: bool) -> str:
     other = _ELSE.fullmatch(said)
     if not first and other and not attacks(other["rest"]):
         return "it tells where else to look"
-    if not first and short_step(sentence):
+    if not first and short_step(sentence) and not (last and goes_back(sentence)):
         return "it tells a short step"
     if last and not first and _ENDS.fullmatch(said):
         return "it tells to stay at the end"

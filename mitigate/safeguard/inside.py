@@ -33,13 +33,25 @@ PART_SURE = 0.85  # of a part of a sentence
 SPAN_SURE, SPAN_WORDS, SPAN_REST = 0.95, 4, 0.1
 # with these a part begins on which the rest of its sentence depends
 CONDITIONS = bag("if unless when whenever once should whoever whichever wherever instead rather as")
+_MACHINE = r"(?:ai|agent|assistant|robot|bot|model|machine|system|program(?:me)?|language model)"
+_TEXT = r"(?:route|instructions?|directions|text|orders?|plan|steps|commands?)"
 _OF_THE_TEXT = re.compile(  # what holds for whoever reads it, and what stands for the route
-    r"(?:if|when|whenever|once) (?:you|anyone|anybody|someone|whoever) (?:can |are |is )?"
-    r"(?:read|reading|pars|process)\w* (?:this|these)\b"
-    r"|(?:instead of|rather than) (?:\w+ing )?(?:the|this|that|these|those|any|all|your|my)\b"
-    r"[\w ]*\b(?:route|instructions?|directions|text|orders?|plan)\b",
+    r"(?:if|when|whenever|once|as soon as) (?:you|any(?:one|body)|whoever) (?:can |are |is )?"
+    r"(?:read|reading|pars|process|hear|see)\w* (?:this|these)\W*$"
+    rf"|as an? (?:\w+ )?{_MACHINE}\b|should you be an? (?:\w+ )?{_MACHINE}\b"
+    rf"|should (?:the|this|these) (?:above|below|following|{_TEXT})\b"
+    r"|(?:instead of|rather than) (?:obey|comply|(?:all|any) (?:of )?(?:this|that|these|it)\b)"
+    r"|(?:instead of|rather than) (?:(?:following|doing|obeying) )?(?:(?:the|this|these|all) )*"
+    rf"(?:(?:following|above|below|given|previous|original|entire|whole) )*{_TEXT}"
+    r"(?: (?:below|above|given|here|that follows?))?\W*$",
     re.IGNORECASE,
 )
+# words of a lead-in that announces other orders than the route's, and of a bare heading of them
+_NEW = GROUPS["authority"] | GROUPS["annul"] | bag("new updated update revised changed corrected")
+_HEADING = _NEW | GROUPS["machine"] | GROUPS["orders"] | bag("message goal target of the")
+_OTHERS = GROUPS["authority"] | bag("new updated revised system admin override root sudo")
+_LEAD_IN = re.compile(r"([^:.!?\n]{1,60}):\s")
+HEADING = 4  # words (ours)
 _SEMICOLON = re.compile(r";\s+")
 
 
@@ -114,11 +126,21 @@ def leans(text: str, one: Judged, part: Piece) -> bool:
 def announces(text: str, one: Judged, inside: list[Piece]) -> bool:
     """Return whether a sentence begins with what is foreign and announces the rest ("New orders:
     ..."), which then is no part of the route, whatever it tells."""
+    lead_in = _LEAD_IN.match(one.text)
+    if lead_in and heads(lead_in[1]):
+        return True
     if not inside or any(c.isalnum() for c in text[one.piece.start : inside[0].start]):
         return False
     first = inside[0].of(text)
-    announces = first.rstrip().endswith(":") and not _condition(first)
-    return announces or bool(_OF_THE_TEXT.match(first))
+    news = any(word in _NEW for word in words(first))
+    return (news and first.rstrip().endswith(":")) or bool(_OF_THE_TEXT.match(first))
+
+
+def heads(sentence: str) -> bool:
+    """Return whether a sentence is but a heading of foreign orders ("# SYSTEM", "New goal:")."""
+    said = words(sentence)
+    known = all(word in _HEADING for word in said) and any(word in _OTHERS for word in said)
+    return 0 < len(said) <= HEADING and known and not sentence.rstrip().endswith((".", "!", "?"))
 
 
 def foreign_clauses(text: str, one: Judged, others: bool) -> list[Piece]:

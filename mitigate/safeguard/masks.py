@@ -9,6 +9,8 @@ from itertools import takewhile
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.evidence import VERBS
+from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.text import MASK, words
 
@@ -23,9 +25,22 @@ _STAYS = re.compile(
     r"(?=\s*(?:[,.;!?]|$|(?:at|in|into|past|by|near|before|after|when|onto|and|then)\b))",
     re.IGNORECASE,
 )
-_WHICH = r"(?P<which>\b(?:a|an|the|your|this|that|nearest|closest|first|second|third)\s+)"
-_NOUN = re.compile(rf"(?i:{_WHICH})\[mask\](?=\s*(?:[,.;!?]|$|(?:{'|'.join(sorted(SMALL))})\b))")
-_ADJECTIVE = re.compile(rf"(?i:{_WHICH})\[mask\]\s+(?=[a-z])")
+_WHICH = re.compile(
+    r"(?P<which>\b(?:[Aa]n?|[Tt]he|[Yy]our|nearest|closest|first|second|third))\s+\[mask\]"
+    r"(?P<gap>\s*)(?=(?P<next>[A-Za-z]*))"
+)
+# what may follow a thing that is hidden
+_BEHIND = (
+    SMALL
+    | FUNCTION
+    | bag(
+        """
+    beside behind under between before past down up through across opposite towards toward without
+    but not again until facing leading closest nearest along around near next above below inside
+    outside over against off out beyond within during since because if while
+    """
+    )
+)
 _RUN = re.compile(r"\[mask\](?:\s*\[mask\])+")
 _PART = re.compile(r"\[mask\]|[\w'’-]+|[^\w\s]", re.IGNORECASE)
 _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
@@ -40,7 +55,7 @@ def fill(text: str) -> str:
         return text
     text = _STAYS.sub(lambda m: m.group().replace("[mask]", "[MASK]"), MASK.sub("[mask]", text))
     text = _RUN.sub("[mask]", text)
-    text = _ADJECTIVE.sub(r"\g<which>", _NOUN.sub(r"\g<which>[MASK]", text))
+    text = _WHICH.sub(_which, text)
     pieces: list[str] = []
     at = 0
     for match in _TOKEN.finditer(text):
@@ -55,6 +70,19 @@ def fill(text: str) -> str:
             tokens[index] = word.capitalize() if left in ".!?" else word
     pieces[1::2] = tokens
     return re.sub(r"\s+([.,;!?])", r"\1", " ".join(("".join(pieces) + text[at:]).split()))
+
+
+def _which(match: re.Match[str]) -> str:
+    """Return what stands for a hidden word behind "the": nothing, if a thing follows and so it told
+    which; a mask, if it was the thing; itself, if a verb follows."""
+    which, behind = match["which"], match["next"].lower()
+    if not behind or behind in _BEHIND or behind.endswith("ing"):
+        return f"{which} [MASK]{match['gap']}"
+    if behind in VERBS:
+        return f"{which} [MASK]{match['gap']}" if which.lower() == "your" else match[0]
+    if which.lower() in ("a", "an"):
+        which = which[0] + "n" * (behind[0] in "aeiou")
+    return f"{which} "
 
 
 def filled(masked: str, answer: str) -> list[str] | None:

@@ -12,11 +12,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from mitigate.safeguard.decode import CODES, FANCY
+from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.written import quotes
 
 _BEFORE = (
     r"(?<!\bDr)(?<!\bMr)(?<!\bMs)(?<!\bMrs)(?<!\bSt)(?<!\bProf)(?<!\bNo)(?<!\be\.g)(?<!\bi\.e)"
-    r"(?<!\bvs)(?<!\bapprox)"
+    r"(?<!\bvs)(?<!\bapprox)(?<!\bRm)(?<!\bApt)(?<!\bFig)(?<!\bfl)(?<!\bJr)(?<!\bft)(?<!\b[ap]\.m)"
 )
 _STARTS = (
     "Walk|Go|Turn|Exit|Leave|Enter|Head|Continue|Proceed|Take|Make|Pass|Climb|Descend|Ascend|Stop|"
@@ -39,6 +40,8 @@ _END = re.compile(
     rf"|(?<=[a-z0-9)\]>}}=\"'”’;,])\s+(?=(?:{_STARTS})\s+[a-z])"
     rf"|(?<=:)\s+[\"“'‘]?(?=(?:{_STARTS})\s)"
 )
+_SIGNS = re.compile(rf"(?:{_SIGN}|\s|\u200d)+")
+_PHRASE = 4  # words on both sides of a sign that parts sentences (ours)
 _TAG = (
     r"</?[a-z][\w-]*(?:\s+[\w-]+\s*=[^<>]*)?\s*/?>|<\|[^|<>]*\|>|<</?\w+>>"
     r"|\[/?[A-Z]{3,}(?: [A-Z]+)*\]|<!--|-->|```\w*|/\*|\*/"
@@ -51,7 +54,7 @@ _MARKUP = re.compile(
     r"|\[(?!MASK|UNK|mask)(\w+)\].*?\[/\2\]"
     r"|(?:\[[A-Z]{3,}(?: [A-Z]+)+\]\s*)+(?:[^\[]*\[[A-Z]{3,}(?: [A-Z]+)+\])?"
     r"|\{[^{}]*(?:\{[^{}]*\}[^{}]*)*:[^{}]*(?:\{[^{}]*\}[^{}]*)*\}"
-    r"|(?:^|(?<=\s))#{1,6} [^\n.]*[\n.]?(?: ?(?<=\n)[^\n.]*\.?)?|(?:^|(?<=\s))// [^\n.]*\.?"
+    r"|(?:^|(?<=\s))#{1,6} (?!\d)[^\n.]*[\n.]?(?: ?(?<=\n)[^\n.]*\.?)?|(?:^|(?<=\s))// [^\n.]*\.?"
     r"|(?:^|(?<=\n)|(?<=[.!?] ))---\n.*?\n---|(?:(?:^|(?<=\n)|(?<=[.!?] ))- \[[x ]\][^\n]*\n?)+"
     r"|\*\*[^*\n]+\*\*[^.\n]*\.?"
     r"|(?<![A-Za-z] )\b(?:System|User|Assistant|Human|AI|Bot|Operator)\s?:[^.!?]*[.!?]?"
@@ -142,6 +145,9 @@ def _sentences(text: str, start: int, end: int, block: int = 0) -> list[Piece]:
     found, at = [], start
     whole = [(a, b) for _, a, b, _ in quotes(text)]  # no sentences of their own
     for match in _END.finditer(text, start, end):
+        sign = _SIGNS.fullmatch(match.group().strip())
+        if sign and not _parts(text[at : match.start()], text[match.end() : end]):
+            continue
         goes_on = text[match.end() : match.end() + 1].islower()
         if any(a < match.start() < b and (match.end() < b or goes_on) for a, b in whole):
             continue
@@ -149,6 +155,12 @@ def _sentences(text: str, start: int, end: int, block: int = 0) -> list[Piece]:
         at = match.end()
     found.append((at, end))
     return [Piece(*s, block) for a, b in found if (s := _stripped(text, a, b))]
+
+
+def _parts(before: str, behind: str) -> bool:
+    """Return whether a picture or a sign stands between two sentences, and not for a word."""
+    left, right = before.split(), re.split(r"[.!?\n]", behind, maxsplit=1)[0].split()
+    return min(len(left), len(right)) >= _PHRASE and left[-1].lower() not in FUNCTION
 
 
 def _cut(body: str, start: int, end: int) -> Iterator[tuple[int, int]]:
@@ -200,8 +212,9 @@ def _joined(left: str, right: str) -> str:
     bare = right.lstrip(_MARKS)
     if bare[0] in ".!?":
         return left.rstrip(_MARKS + ".!?") + bare
-    if len(bare) < len(right):
-        return f"{left if left[-1] in ',;:.!?' else left + right[0]} {bare}"
+    if len(bare) < len(right):  # one of the marks that stood before and behind
+        mark = next((m for m in (left[-1], right[0]) if m in ",;:.!?"), "")
+        return f"{left.rstrip(_MARKS)}{mark or ','} {bare}"
     return f"{left} {right}"
 
 

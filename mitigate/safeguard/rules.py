@@ -21,6 +21,7 @@ from mitigate.safeguard.inside import (
     announces,
     foreign_clauses,
     foreign_parts,
+    heads,
     leans,
     route_remains,
 )
@@ -49,6 +50,7 @@ ASK = 0.10  # from here on a language model is asked about a piece
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 # known words in capitals, and their share, from which all are lowered; some may be on a sign (ours)
 SHOUTS, SHOUTED = 2, 0.15
+_COUNT = re.compile(r"\(?\d{1,2}[.)]?")  # of a list
 _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 
 
@@ -164,12 +166,14 @@ def _chosen(
     ends = {found[0].piece, found[-1].piece} if len(found) > 1 else set()
     for one in found:
         block = one.piece.block
-        if one.piece.tag or (block and block not in wraps and not _told(one)):
+        if _COUNT.fullmatch(one.text):
+            continue
+        if one.piece.tag or (block and block not in wraps and not _told(text, found, one)):
             out.append(one.piece)
             continue
         others = any(gate.route_facts(other.text) for other in found if other is not one)
         inside = foreign_parts(text, one, tags)
-        announced = others and announces(text, one, inside)
+        announced = others and (announces(text, one, inside) or _headed(found, one))
         inside = [part for part in inside if not leans(text, one, part)]
         if announced:
             out.append(one.piece)
@@ -188,10 +192,21 @@ def _chosen(
     return out, reasons
 
 
-def _told(one: Judged) -> bool:
-    """Return whether a sentence in markup tells the way and is no attack by itself."""
-    plain = asked(one.text, False)
-    return bool(gate.route_facts(one.text)) and leads(one.text) and plain < gate.ATTACK
+def _told(text: str, found: Sequence[Judged], one: Judged) -> bool:
+    """Return whether a sentence behind a mark of a heading or a comment tells the way and is no
+    attack by itself. What stands between tags is none: nobody writes routes there."""
+    own = [other for other in found if other.piece.block == one.piece.block]
+    if any(other.piece.tag for other in own) or text[own[0].piece.start] not in "#/":
+        return False
+    tells = gate.route_facts(one.text) and leads(one.text)
+    return bool(tells) and asked(one.text, False) < gate.ATTACK
+
+
+def _headed(found: Sequence[Judged], one: Judged) -> bool:
+    """Return whether a sentence stands behind one that is but a heading of an attack ("SYSTEM")."""
+    place = next(n for n, other in enumerate(found) if other is one)
+    before = found[place - 1] if place else None
+    return before is not None and not before.piece.tag and heads(before.text)
 
 
 def _refused(found: Sequence[Judged], one: Judged) -> str:

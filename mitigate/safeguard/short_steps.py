@@ -39,7 +39,7 @@ _SAID = re.compile(
     r"(?:(?:same|left|right|first|second) )?"
     r"(?:floor|level|side|path|carpet|rug|landing|left|right)|"
     r"(?:press|push|hit)(?: the)?(?: button| number)?(?: for)?(?: floor)? (?:\d{1,2}|it|one)|"
-    r"pause (?:here|there)"
+    r"repeat (?:the )?steps? \d+(?: (?:to|and|through) \d+)?|pause (?:here|there)"
 )
 
 
@@ -53,4 +53,11 @@ def short_step(sentence: str) -> bool:
     said = " ".join(found)
     if _COUNTED.fullmatch(said) or _SAID.fullmatch(said):
         return True
-    return bool(found) and found[0] in _DOES and all(word in _WHERE for word in found[1:])
+    where = all(word in _WHERE or word.isdigit() for word in found[1:])
+    return bool(found) and found[0] in _DOES and where
+
+
+def goes_back(sentence: str) -> bool:
+    """Return whether a short step undoes what was told before it, or has no end."""
+    found = [word for word in words(sentence) if word not in _JOINS]
+    return {*found[:2]} & {"back", "return", "keep"} != set()

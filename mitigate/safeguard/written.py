@@ -5,7 +5,7 @@ they belong to the thing, whatever they say, unless they are many and tell one w
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from functools import lru_cache
 
 from mitigate.corruptions.language.directions import MOTION, STOPS
 from mitigate.corruptions.language.fidelity import facts
@@ -19,6 +19,7 @@ _QUOTED = re.compile(
     r"|(?<!\w)'[^'\n]*(?:\w'\w[^'\n]*)*'(?!\w)"
 )
 # what says that a thing bears the words that follow
+BEARER = 120  # characters before quotes in which it is said what they stand on (ours)
 _BEARS = re.compile(
     r"(?:(?:\b(?:that|which|it)\s+|\bwhere\s+(?:a|an|the|one|some)\s+\w+\s+)?\b(?:says|said|reads?|"
     r"saying|reading|stating|states|labell?ed|labell?ing|label|marked|named|called|titled|entitled|"
@@ -41,16 +42,19 @@ _ORDERS = (
 )  # fmt: skip
 
 
-def quotes(text: str) -> Iterator[tuple[int, int, int, int]]:
-    """Yield the place of each text in quotes on a thing: where what belongs to it begins ("that
+@lru_cache(maxsize=64)
+def quotes(text: str) -> tuple[tuple[int, int, int, int], ...]:
+    """Return the place of each text in quotes on a thing: where what belongs to it begins ("that
     says"), the quotes begin and end, and what belongs to it ends ("sign")."""
+    found = []
     for match in _QUOTED.finditer(text):
-        before = _BEARS.search(text, 0, match.start())
+        before = _BEARS.search(text, max(0, match.start() - BEARER), match.start())
         behind = _BORNE.match(text, match.end())
         if before or behind:
             first = before.start() if before else match.start()
             last = behind.end() if behind else match.end()
-            yield first, match.start(), match.end(), last
+            found.append((first, match.start(), match.end(), last))
+    return tuple(found)
 
 
 def written(text: str) -> list[tuple[int, int]]:

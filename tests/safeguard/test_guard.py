@@ -131,7 +131,9 @@ def test_masks_in_angle_brackets_are_no_markup():
 def test_masks_are_filled_by_neighbours_without_a_model():
     assert masks.fill("Walk past [MASK] sofa.") == "Walk past the sofa."
     assert masks.fill("Find the nearest [MASK] chair.") == "Find the nearest chair."
-    assert masks.fill("Stop at the [MASK] and wait.") == "Stop at the [MASK] and wait."  # a thing
+    for hidden in ("Stop at the [MASK] and wait.", "Go right at the [MASK] beside the bed."):
+        assert masks.fill(hidden) == hidden  # a thing
+    assert masks.fill("Stop at an [MASK] chair.") == "Stop at a chair."
     assert masks.fill('Go to the sign "MASK REQUIRED".') == 'Go to the sign "MASK REQUIRED".'
     filled = masks.fill("Turn left [MASK] walk past <mask> bed.")
     assert filled == "Turn left and walk past the bed."
