@@ -9,7 +9,7 @@ from itertools import takewhile
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.evidence import VERBS
+from mitigate.safeguard.evidence import LANDMARKS, VERBS
 from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.text import MASK, words
@@ -29,6 +29,7 @@ _WHICH = re.compile(
     r"(?P<which>\b(?:[Aa]n?|[Tt]he|[Yy]our|nearest|closest|first|second|third))\s+\[mask\]"
     r"(?P<gap>\s*)(?=(?P<next>[A-Za-z]*))"
 )
+_ROOMS = bag("dining living sitting waiting landing ceiling building opening railing painting")
 # what may follow a thing that is hidden
 _BEHIND = (
     SMALL
@@ -76,7 +77,8 @@ def _which(match: re.Match[str]) -> str:
     """Return what stands for a hidden word behind "the": nothing, if a thing follows and so it told
     which; a mask, if it was the thing; itself, if a verb follows."""
     which, behind = match["which"], match["next"].lower()
-    if not behind or behind in _BEHIND or behind.endswith("ing"):
+    doing = behind.endswith("ing") and behind not in LANDMARKS | _ROOMS
+    if not behind or behind in _BEHIND or doing:
         return f"{which} [MASK]{match['gap']}"
     if behind in VERBS:
         return f"{which} [MASK]{match['gap']}" if which.lower() == "your" else match[0]
