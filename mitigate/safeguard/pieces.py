@@ -70,6 +70,7 @@ _ENCLOSED = re.compile(
     r"\([^()]*\)|\[[^\[\]]*\]|\"[^\"]*\"|“[^”]*”|«[^»]*»|(?<!\w)'[^'\n]*(?:\w'\w[^'\n]*)*'(?!\w)"
     r"|[^\x00-\u024f\u2000-\u206f]{2,}(?:\s*[^\x00-\u024f\u2000-\u206f]+)*"
 )
+SENTENCES = 100  # of a section (ours)
 _MARKS = " ,;:–—-"  # that join what stands beside them
 _CUT = re.compile(r"(?<=[:;,])\s+|\s+[-–—]+\s+|\s+(?=(?:but|although|unless|which|or rather)\s)")
 
@@ -235,13 +236,13 @@ def _even(text: str, opening: str, closing: str) -> bool:
 
 
 def sections(text: str, longest: int) -> list[str]:
-    """Return ``text`` in consecutive parts of at most ``longest`` characters, cut behind the last
-    end of a sentence or, failing that, space of each."""
+    """Return ``text`` in consecutive parts of at most ``longest`` characters and ``SENTENCES``
+    sentences, cut behind the last end of a sentence or, failing that, space of each."""
     found, at = [], 0
     while at < len(text):
         part = text[at : at + longest]
-        if at + longest < len(text):
-            ends = [m.end() for m in re.finditer(r"[.!?\n]\s+", part)]
+        ends = [m.end() for m in re.finditer(r"[.!?]\s+|\n\s*", part)][:SENTENCES]
+        if at + longest < len(text) or len(ends) == SENTENCES:
             space = part.rfind(" ") + 1
             part = part[: (ends[-1] if ends else 0) or space or longest]
         found.append(part)
