@@ -61,7 +61,8 @@ class Draft:
         self.judge = tagger if short else None  # reads the text as it is heard
         self.reasons: list[str] = []
         self.asked = self.taken = 0
-        self.plain = not _readable(self.tidied) or (
+        self.readable = _readable(self.tidied)
+        self.plain = not self.readable or (
             not self.endless
             and _untouched(self.heard, self.judge)
             and not self._spoken()
@@ -83,7 +84,7 @@ class Draft:
         self.passages: list[Said] = []
         if self.plain:
             self.repaired, self.same = self.heard, True
-            self.reasons = [] if _readable(self.tidied) else ["nothing readable in English"]
+            self.reasons = [] if self.readable else ["nothing readable in English"]
             return
         if self.endless:
             self._repair_sections()

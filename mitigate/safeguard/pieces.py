@@ -208,9 +208,9 @@ def _joined(left: str, right: str) -> str:
     """Return what stood before and behind a piece that went, with one mark between them."""
     if not left:
         return right.lstrip(".,;:!?- ")
-    if not right.lstrip(_MARKS):
-        return left.rstrip(_MARKS) + right.lstrip(_MARKS) if left[-1] in _MARKS else left
     bare = right.lstrip(_MARKS)
+    if not bare:
+        return left.rstrip(_MARKS)
     if bare[0] in ".!?":
         return left.rstrip(_MARKS + ".!?") + bare
     if len(bare) < len(right):  # one of the marks that stood before and behind
