@@ -28,8 +28,9 @@ from mitigate.core import conf, precision, seeding
 from mitigate.core.build import build, build_agent
 from mitigate.core.workers import cores
 from mitigate.training import train  # noqa: F401 (train registers config types)
-from mitigate.training.batches import Batches, Workers
+from mitigate.training.batches import Batches
 from mitigate.training.recipe import Recipe, accumulate
+from mitigate.training.workers import Workers
 
 RECIPES = ("da_per_episode", "ts_distill", "conv_adapter", "stacked", "base", "safeguard_lora")
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}

@@ -21,8 +21,7 @@ from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality, names
 from mitigate.training import states
 from mitigate.training.parts import POLICY, policy_parts
-from mitigate.training.stages import IDENTITY, named
-from mitigate.training.trainer import differences
+from mitigate.training.stages import IDENTITY, named, plain
 
 OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
 
@@ -63,6 +62,24 @@ def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
     if parts == POLICY and encoders and not policy_parts(agent):
         return f"nothing but encoders is learned in {kind}"
     return None
+
+
+def tell_of_schedule(cfg: DictConfig) -> None:
+    """Say so if there is a ``schedule`` of corruptions, and no stage draws any of it."""
+    mode = OmegaConf.select(cfg, "schedule.mode")
+    if mode in (None, "clean") or _holds(plain(cfg.stages), cfg.schedule._target_):
+        return
+    say(
+        f"the schedule (mode {mode}) has no effect: recipe={cfg.name} draws no corruptions in "
+        f"{', '.join(cfg.stages)}. One that trains under corruptions is recipe=da_per_episode"
+    )
+
+
+def _holds(node: Any, target: str) -> bool:
+    """Whether a config is built of the class ``target`` somewhere in ``node``."""
+    if isinstance(node, dict):
+        return node.get("_target_") == target or _holds([*node.values()], target)
+    return isinstance(node, list) and any(_holds(part, target) for part in node)
 
 
 def draw_what_is_read(cfg: DictConfig, agent: nn.Module) -> None:
@@ -162,7 +179,7 @@ def _check_same(file: Path, now: dict[str, Any]) -> None:
         held = json.loads(file.read_text(encoding="utf-8"))
     except ValueError:  # damaged: the checkpoints have it, too
         return
-    different = differences({key: held.get(key) for key in now}, now)
+    different = states.differences({key: held.get(key) for key in now}, now)
     if different:
         raise ValueError(
             f"{file.parent} holds a run with other settings ({'; '.join(different[:6])}). Use the "

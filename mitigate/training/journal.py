@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections import defaultdict
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
@@ -34,6 +35,8 @@ class Journal:
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
         self._measured = start, time.process_time()
+        self._told: dict[str, list[float]] = defaultdict(list)  # one need not be in every batch
+        self._since = start, time.monotonic()
 
     def __enter__(self) -> Self:
         self._progress.__enter__()
@@ -48,9 +51,21 @@ class Journal:
         self._progress.__exit__(kind, error, trace)
         self._writer.close()
 
-    def advance(self) -> None:
-        """Count one step."""
+    def advance(self, values: dict[str, float]) -> None:
+        """Count one step, and keep its ``values`` for :meth:`means`."""
+        for name, value in values.items():
+            self._told[name].append(value)
         self._progress.advance()
+
+    def means(self, step: int, **values: float) -> None:
+        """Log, after ``step`` updates, the means of what was kept since the last time, ``values``,
+        and how many steps were taken in a second."""
+        means = {name: sum(told) / len(told) for name, told in self._told.items()}
+        before, then = self._since
+        pace = (self._progress.done - before) / max(1e-9, time.monotonic() - then)
+        self.scalars(step, {**means, **values, "steps_per_s": pace})
+        self._told.clear()
+        self._since = self._progress.done, time.monotonic()
 
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
         """Log ``values`` after ``step`` updates and, with ``line``, show them."""

@@ -14,9 +14,9 @@ from mitigate.core import checkpoint, seeding
 from mitigate.core.build import build
 from mitigate.core.files import atomic_text
 from mitigate.training import states
-from mitigate.training.batches import Workers
 from mitigate.training.ranks import Ranks
 from mitigate.training.trainer import Trainer
+from mitigate.training.workers import Workers
 
 IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
 NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains

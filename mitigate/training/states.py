@@ -6,6 +6,7 @@ its sha256 (``core/checksums.py``), which is compared before the file is read.
 
 from __future__ import annotations
 
+import json
 import re
 import zipfile
 from pathlib import Path
@@ -104,6 +105,25 @@ def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
             "these; to train from the start, delete the folder. Then run the same command again."
         )
     return None
+
+
+def differences(old: Any, new: Any, path: str = "") -> list[str]:
+    """Return one ``key: old -> new`` for each leaf in which two JSON-able configs differ."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        names = [*old, *(name for name in new if name not in old)]
+        return [
+            line
+            for name in names
+            for line in differences(old.get(name), new.get(name), f"{path}.{name}".lstrip("."))
+        ]
+    return [] if old == new else [f"{path}: {old} -> {new}"]
+
+
+def as_json(config: dict[str, Any]) -> dict[str, Any]:
+    """``config`` as JSON gives it back: a checkpoint is read without running code, and so holds
+    plain data alone."""
+    held: dict[str, Any] = json.loads(json.dumps(config))
+    return held
 
 
 def _zip_problem(path: Path) -> str:

@@ -38,10 +38,10 @@ from mitigate.evaluation.evaluate import (
     load,
 )
 from mitigate.training import fitting, limits
-from mitigate.training.batches import MOST, Workers
 from mitigate.training.estimate import REPORT, has_base, plan
 from mitigate.training.ranks import Ranks
 from mitigate.training.stages import plain, train_stage, trainer_settings
+from mitigate.training.workers import MOST, Workers
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
 MOST_ROLLOUTS, MOST_WORKERS = 100_000, 256  # (ours)
@@ -126,6 +126,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     node = cfg.agent if cfg.init_parts else begun
     agent = build_agent(node, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
     OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
+    fitting.tell_of_schedule(cfg)
     fitting.leave_out(cfg, agent)
     fitting.draw_what_is_read(cfg, agent)
     fitting.check(cfg, agent, folder)

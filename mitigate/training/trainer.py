@@ -7,10 +7,8 @@ step, so neither logging, nor evaluation, nor a kill and a resume changes the we
 
 from __future__ import annotations
 
-import json
 import math
 import time
-from collections import defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,20 +16,18 @@ from typing import Any
 
 import torch
 from torch import Tensor
-from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate.core import checkpoint, seeding
 from mitigate.core.memory import give_back
 from mitigate.core.precision import choose, computing, device_of, to_device
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, Held, held
-from mitigate.training import limits, states
-from mitigate.training.batches import Batches, Workers
+from mitigate.training import limits, optimization, states
+from mitigate.training.batches import Batches
 from mitigate.training.journal import Journal
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe, accumulate
-
-SCHEDULES = ("cosine", "constant", "linear")
+from mitigate.training.workers import Workers
 
 
 class LossNotFinite(ValueError):
@@ -47,7 +43,9 @@ class Trainer:
         folder: holds ``step-*.pt`` and TensorBoard files; a checkpoint there is resumed.
         lr, weight_decay: AdamW's, for groups that name none.
         warmup: updates over which the learning rate rises from 0.
-        schedule: learning rate after warm-up: one of ``SCHEDULES``, ending at 0 unless constant.
+        schedule: learning rate after warm-up, one of ``optimization.SCHEDULES``; it ends at 0
+            unless constant.
+            unless constant.
         grad_clip: largest global gradient norm; 0 turns clipping off.
         log_every, save_every, eval_every, figure_every: in updates; 0 means never (a checkpoint is
             always written at the end).
@@ -95,7 +93,7 @@ class Trainer:
         name: str | None = None,
         config: dict[str, Any] | None = None,
     ) -> None:
-        _check("trainer.schedule", schedule, SCHEDULES)
+        optimization.check(schedule)
         limits.check({k: v for k, v in locals().items() if k in limits.LIMITS})
         self.folder, self.steps, self.seed, self.keep = Path(folder), steps, seed, keep
         self.log_every, self.save_every, self.grad_clip = log_every, save_every, grad_clip
@@ -105,7 +103,7 @@ class Trainer:
         self.workers, self.ranks, self.lag = workers, ranks or Ranks(), lag
         self.recipe = recipe.to(self.device)
         self.name = name or type(recipe).__name__
-        self.config = _plain(config or {}) | {
+        self.config = states.as_json(config or {}) | {
             "trainer": {
                 "steps": steps,
                 "lr": lr,
@@ -118,9 +116,9 @@ class Trainer:
                 **({"lag": lag, "save_every": save_every} if lag else {}),
             },
         }
-        groups = _trainable(recipe.parameter_groups(), self.name)
-        self.optimizer = torch.optim.AdamW(groups, lr=lr, weight_decay=weight_decay)
-        self.scheduler = LambdaLR(self.optimizer, lambda n: _rate(n, steps, warmup, schedule))
+        groups = recipe.parameter_groups()
+        self.optimizer = optimization.adamw(groups, self.name, lr, weight_decay)
+        self.scheduler = optimization.scheduler(self.optimizer, steps, warmup, schedule)
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
         self._saved, self._finished = 0, False  # steps in a checkpoint; whether it needs no more
 
@@ -151,8 +149,6 @@ class Trainer:
 
     def _train(self, start: int, journal: Journal, ending: Held) -> None:
         """Take the steps from ``start`` on; the last one is saved as not finished."""
-        told: dict[str, list[float]] = defaultdict(list)  # a figure need not be in every batch
-        counted, since = 0, time.monotonic()
         batches = Batches(
             self.recipe,
             self.workers,
@@ -167,16 +163,9 @@ class Trainer:
             done = step + 1
             with self._kept(step, ending):
                 batch, waited = self._batch(step, batches)
-            for name, value in {**self._step(step, batch), "batch_s": waited}.items():
-                told[name].append(value)
-            counted += 1
-            journal.advance()
+            journal.advance({**self._step(step, batch), "batch_s": waited})
             if self._due(self.log_every, done):
-                means = {name: sum(values) / len(values) for name, values in told.items()}
-                pace = counted / max(1e-9, time.monotonic() - since)
-                journal.scalars(done, {**means, "lr": self._lr(), "steps_per_s": pace})
-                told.clear()
-                counted, since = 0, time.monotonic()
+                journal.means(done, lr=self._lr())
             with self._kept(done, ending):
                 if done < self.steps:
                     self._look(done, journal, ending)
@@ -316,7 +305,7 @@ class Trainer:
             return 0
         path, state = found
         self._keep_precision(state["config"])
-        different = differences(_plain(state["config"]), self.config)
+        different = states.differences(states.as_json(state["config"]), self.config)
         if different:
             raise ValueError(
                 f"{self.folder} holds a run with other settings ({'; '.join(different[:6])}). "
@@ -335,48 +324,3 @@ class Trainer:
         self._saved = int(state["step"])  # older versions saved the last one when it was finished
         self._finished = self._saved >= self.steps and bool(state.get("finished", True))
         return self._saved
-
-
-def differences(old: Any, new: Any, path: str = "") -> list[str]:
-    """Return one ``key: old -> new`` for each leaf in which two JSON-able configs differ."""
-    if isinstance(old, dict) and isinstance(new, dict):
-        names = [*old, *(name for name in new if name not in old)]
-        return [
-            line
-            for name in names
-            for line in differences(old.get(name), new.get(name), f"{path}.{name}".lstrip("."))
-        ]
-    return [] if old == new else [f"{path}: {old} -> {new}"]
-
-
-def _plain(config: dict[str, Any]) -> dict[str, Any]:
-    """``config`` as JSON gives it back: a checkpoint is read without running code, and so holds
-    plain data alone."""
-    held: dict[str, Any] = json.loads(json.dumps(config))
-    return held
-
-
-def _check(name: str, value: str, allowed: tuple[str, ...]) -> None:
-    if value not in allowed:
-        raise ValueError(f"{name}={value} is unknown; choose one of {', '.join(allowed)}.")
-
-
-def _trainable(groups: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
-    """Drop frozen parameters and empty groups."""
-    kept = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
-    kept = [group for group in kept if group["params"]]
-    if not kept:
-        raise ValueError(
-            f"{name} has nothing to train: every parameter is frozen. Unfreeze a part of the agent."
-        )
-    return kept
-
-
-def _rate(step: int, steps: int, warmup: int, schedule: str) -> float:
-    """Return the factor on the learning rate of update ``step`` (from 0)."""
-    if step < warmup:
-        return (step + 1) / (warmup + 1)
-    if schedule == "constant":
-        return 1.0
-    share = min(1.0, (step - warmup) / max(1, steps - warmup))
-    return 1.0 - share if schedule == "linear" else 0.5 * (1.0 + math.cos(math.pi * share))

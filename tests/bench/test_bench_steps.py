@@ -23,7 +23,7 @@ def make(folder: Path, costs: dict[str, tuple[float, ...]]) -> Path:
             Journal(folder / stage, total=len(seconds)) as journal,
         ):
             for step in range(1, len(seconds) + 1):
-                journal.advance()
+                journal.advance({})
                 journal.scalars(step, {"loss": 1.0})
     return folder
 

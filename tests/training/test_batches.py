@@ -15,9 +15,10 @@ import torch
 from mitigate.core import checkpoint, seeding
 from mitigate.core.seeding import torch_generator
 from mitigate.core.workers import WorkersDied
-from mitigate.training import batches, states
-from mitigate.training.batches import Batches, Workers
+from mitigate.training import states, workers
+from mitigate.training.batches import Batches
 from mitigate.training.trainer import Trainer
+from mitigate.training.workers import Workers
 from tests.deaths import die_in_a_message
 from tests.tiny import TinyRecipe
 
@@ -222,13 +223,13 @@ def test_a_recipe_that_cannot_be_sent_is_refused_with_a_way_out(two, tmp_path):
 
 
 def test_a_worker_that_stands_still_is_reported_until_it_goes_on(tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(batches, "STUCK", 0.2)
-    with Workers(1) as workers:
-        wanted = trained(tmp_path / "whole", workers)
-        process = workers._all[0].process.pid
+    monkeypatch.setattr(workers, "STUCK", 0.2)
+    with Workers(1) as pool:
+        wanted = trained(tmp_path / "whole", pool)
+        process = pool._all[0].process.pid
         os.kill(process, signal.SIGSTOP)
         going_on = threading.Timer(0.7, os.kill, (process, signal.SIGCONT))
         going_on.start()
-        assert trained(tmp_path / "stopped", workers) == wanted
+        assert trained(tmp_path / "stopped", pool) == wanted
         going_on.join()
     assert f"worker 0 ({process}) says nothing for" in capsys.readouterr().out

@@ -62,6 +62,24 @@ def test_a_recipe_names_what_the_agent_lacks_and_what_to_do(recipe):
     assert not TinyRecipe.misfit(TinyAgent())
 
 
+@pytest.mark.parametrize("recipe", ["dagger", "base", "safeguard_tagger"])
+def test_a_schedule_that_no_stage_draws_from_is_told(recipe, capsys):
+    fitting.tell_of_schedule(conf.load_config("train", [f"recipe={recipe}"]))
+    assert not capsys.readouterr().out
+    cfg = conf.load_config("train", [f"recipe={recipe}", "schedule=per_episode"])
+    fitting.tell_of_schedule(cfg)
+    assert f"has no effect: recipe={recipe} draws no corruptions" in capsys.readouterr().out
+
+
+def test_a_recipe_of_ones_own_may_hold_the_schedule_where_it_likes(capsys):
+    draws = {"_target_": "a.Schedule", "mode": "per_frame"}
+    cfg = OmegaConf.create(
+        {"name": "own", "schedule": draws, "stages": {"one": {"recipe": {"parts": [draws]}}}}
+    )
+    fitting.tell_of_schedule(cfg)
+    assert not capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     "options",
     [

@@ -15,7 +15,8 @@ import torch
 from mitigate.core import seeding
 from mitigate.core.precision import to_device
 from mitigate.training import states
-from mitigate.training.trainer import LossNotFinite, Trainer, differences
+from mitigate.training.states import differences
+from mitigate.training.trainer import LossNotFinite, Trainer
 from tests.core.test_checksums import FLIPS, flipped
 from tests.tiny import TinyRecipe
 

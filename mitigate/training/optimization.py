@@ -1,0 +1,49 @@
+"""AdamW over what a recipe trains, and the course of its learning rate."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from torch.optim import AdamW
+from torch.optim.lr_scheduler import LambdaLR
+
+SCHEDULES = ("cosine", "constant", "linear")
+
+
+def check(schedule: str) -> None:
+    """Raise ValueError unless ``schedule`` is one of ``SCHEDULES``."""
+    if schedule not in SCHEDULES:
+        known = ", ".join(SCHEDULES)
+        raise ValueError(f"trainer.schedule={schedule} is unknown; choose one of {known}.")
+
+
+def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: float) -> AdamW:
+    """An optimizer of what is not frozen in ``groups``; ``lr`` and ``weight_decay`` are for groups
+    that name none.
+
+    Raises ValueError, with the stage's ``name``, if all is frozen.
+    """
+    kept = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
+    kept = [group for group in kept if group["params"]]
+    if not kept:
+        raise ValueError(
+            f"{name} has nothing to train: every parameter is frozen. Unfreeze a part of the agent."
+        )
+    return AdamW(kept, lr=lr, weight_decay=weight_decay)
+
+
+def scheduler(optimizer: AdamW, steps: int, warmup: int, schedule: str) -> LambdaLR:
+    """The learning rate rises from 0 over ``warmup`` updates, then follows ``schedule``, which
+    ends at 0 after ``steps`` unless it is constant."""
+    return LambdaLR(optimizer, lambda step: _rate(step, steps, warmup, schedule))
+
+
+def _rate(step: int, steps: int, warmup: int, schedule: str) -> float:
+    """Return the factor on the learning rate of update ``step`` (from 0)."""
+    if step < warmup:
+        return (step + 1) / (warmup + 1)
+    if schedule == "constant":
+        return 1.0
+    share = min(1.0, (step - warmup) / max(1, steps - warmup))
+    return 1.0 - share if schedule == "linear" else 0.5 * (1.0 + math.cos(math.pi * share))
