@@ -20,23 +20,19 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from mitigate.agents import attachment
+from mitigate.agents.attachment import NAME, adapted, adapters_of
 from mitigate.agents.conv import ConvAdapter
 from mitigate.agents.gate import FrameGate
 from mitigate.agents.ring import RingAdapter
-from mitigate.agents.sites import MAP, Run, Site, channels_of, first, inputs_of, listed, look, named
+from mitigate.agents.sites import MAP, Run, Site, channels_of, inputs_of, listed, look, named
 from mitigate.agents.tokens import TokenAdapter
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
-NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module gets
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
-_HOOK = "_adapter_hook"
-_STATISTICS = "_statistics_before_adapters"
-
-
-ADAPTERS = (ConvAdapter, RingAdapter, TokenAdapter, FrameGate)
 
 
 def insert_adapters(
@@ -79,7 +75,7 @@ def insert_adapters(
     cannot be told or that has a child called "adapter", a gate that nothing follows, or a model
     that has adapters; the model is then as it was.
     """
-    _refuse_adapted(model)
+    attachment.refuse_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
     gated = named(model, listed("gates", gates))
     if not target_modules + ring:
@@ -96,8 +92,8 @@ def insert_adapters(
             made[name] = RingAdapter(channels_of(name, module), ring_reduction, kernel, views, hfov)
         elif name in plain:
             made[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
-    _check_gates(made)
-    _attach_all(model, made)
+    attachment.check_gates(made)
+    attachment.attach_all(model, made)
     return list(made)
 
 
@@ -121,25 +117,10 @@ def _plain(
     return TokenAdapter(site.channels, reduction, site.batch, gate, middle)
 
 
-def adapted(model: nn.Module) -> list[str]:
-    """Names of the modules of ``model`` that have an adapter."""
-    return [n for n, m in model.named_modules() if isinstance(getattr(m, NAME, None), ADAPTERS)]
-
-
-def adapters_of(model: nn.Module) -> list[nn.Module]:
-    """The adapters and gates themselves, in the model's order."""
-    return [getattr(model.get_submodule(name), NAME) for name in adapted(model)]
-
-
 def remove_adapters(model: nn.Module) -> None:
     """Take all adapters out; the backbone computes what it did before they came in. It stays
     frozen: ``model.requires_grad_(True)`` lets it train again."""
-    for name in adapted(model):
-        module = model.get_submodule(name)
-        if hasattr(module, _HOOK):
-            getattr(module, _HOOK).remove()
-            delattr(module, _HOOK)
-        delattr(module, NAME)
+    attachment.detach_all(model)
 
 
 def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
@@ -160,8 +141,7 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     names, folder = adapted(model), Path(folder)
     if not names:
         raise ValueError("There are no adapters to save: call insert_adapters(model, ...) first.")
-    held = getattr(model, _STATISTICS, {})
-    if any(not value.equal(held.get(name, value)) for name, value in _statistics(model).items()):
+    if attachment.moved_statistics(model):
         warnings.warn(
             "The backbone's running statistics (BatchNorm) have changed since the adapters were "
             "inserted, so these adapters fit this backbone only: save it, too. To keep them, train "
@@ -189,7 +169,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     another backbone (or this one in another dtype), or for modules that ``model`` does not have.
     """
     folder = Path(folder)
-    _refuse_adapted(model)
+    attachment.refuse_adapted(model)
     for file in (folder / WEIGHTS, folder / SETTINGS):
         if not file.is_file():
             raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
@@ -222,7 +202,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         cause = " ".join(str(error).split())[:300]
         raise ValueError(f"The adapters in {folder} are damaged ({cause}).") from error
     checkpoint.check_finite(nn.ModuleList(made.values()), f"The adapters in {folder}")
-    _attach_all(model, made)
+    attachment.attach_all(model, made)
     return list(shapes)
 
 
@@ -248,91 +228,6 @@ def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> nn.Module:
 def backbone_sha(model: nn.Module) -> str:
     """``checkpoint.weights_sha`` of everything but the adapters."""
     return checkpoint.weights_sha(model, leave_out=checkpoint.ADAPTER)
-
-
-def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
-    """Forward hook: the adapter of ``module`` on its output, or on the first item of it."""
-    adapter = getattr(module, NAME)
-    if isinstance(output, (tuple, list)):
-        rest = (adapter(first(output)), *output[1:])
-        return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
-    return adapter(output)
-
-
-def _look(module: nn.Module, inputs: Any) -> None:
-    """Forward pre-hook: the gate of ``module`` on what goes into it."""
-    getattr(module, NAME).look(inputs[0])
-
-
-def _refuse_adapted(model: nn.Module) -> None:
-    if adapted(model):
-        raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
-
-
-def _attach_all(model: nn.Module, made: dict[str, nn.Module]) -> None:
-    """Freeze ``model`` and attach ``made``, all or none."""
-    taken = [name for name in made if hasattr(model.get_submodule(name), NAME)]
-    if taken:
-        raise ValueError(
-            f"{', '.join(taken)} has something called {NAME!r} of its own, the name that an "
-            "adapter takes. Choose other target modules."
-        )
-    model.requires_grad_(False)
-    like = next(model.parameters(), torch.zeros(()))
-    for name, adapter in made.items():
-        _attach(model.get_submodule(name), adapter, like)
-    _follow(made)
-    setattr(model, _STATISTICS, _statistics(model))
-
-
-def _check_gates(made: dict[str, nn.Module]) -> None:
-    """Raise ValueError for a gate that would open and close for nothing."""
-    used = set(_gates_of(made).values())
-    idle = [name for name, m in made.items() if isinstance(m, FrameGate) and name not in used]
-    if idle:
-        raise ValueError(
-            f"The gate at {idle[0]} has no adapter of maps behind it to open for (those of tokens "
-            "take none). Leave it out of gates, or choose other target modules."
-        )
-
-
-def _follow(made: dict[str, nn.Module]) -> None:
-    """Tell each adapter of the gate in front of it."""
-    for name, gate in _gates_of(made).items():
-        made[name].gates = [made[gate]]  # type: ignore[assignment]
-
-
-def _gates_of(made: dict[str, nn.Module]) -> dict[str, str]:
-    """By adapter, the gate in front of it: the one in the same encoder."""
-    corrects = [n for n, m in made.items() if isinstance(m, (ConvAdapter, RingAdapter))]
-    held: dict[str, tuple[str, str]] = {}  # by adapter: the module around both, and the gate
-    for name, gate in made.items():
-        if not isinstance(gate, FrameGate):
-            continue
-        around, behind = name, list[str]()
-        while around and not behind:
-            around = around.rpartition(".")[0]
-            behind = [n for n in corrects if not around or n.startswith(f"{around}.")]
-        for n in behind:
-            if n not in held or len(around) > len(held[n][0]):
-                held[n] = (around, name)
-    return {name: gate for name, (_, gate) in held.items()}
-
-
-def _statistics(model: nn.Module) -> dict[str, Tensor]:
-    """Copies of the running means and variances of the backbone's normalisations."""
-    found = {n: b for n, b in model.named_buffers() if n.rpartition(".")[2].startswith("running_")}
-    return {name: torch.clone(buffer).float().cpu() for name, buffer in found.items()}
-
-
-def _attach(module: nn.Module, adapter: nn.Module, usual: Tensor) -> None:
-    """``usual``: whose device and dtype it gets where ``module`` has no weights."""
-    like = next(module.parameters(), usual)
-    module.add_module(NAME, adapter.to(like.device, like.dtype))
-    if isinstance(adapter, FrameGate):
-        setattr(module, _HOOK, module.register_forward_pre_hook(_look))
-    elif type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
-        setattr(module, _HOOK, module.register_forward_hook(_adapt))
 
 
 def _key(name: str) -> str:
