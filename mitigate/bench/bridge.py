@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.bench.timing import machine
-from mitigate.bridge.connection import Condition
+from mitigate.bridge.condition import Condition
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.server import Listener
 from mitigate.bridge.words import Words

@@ -54,7 +54,7 @@ def evaluation(folder: Path) -> None:
 
 def bridge(folder: Path) -> None:
     """Serve and ask, a server for each condition."""
-    from mitigate.bridge.connection import Condition
+    from mitigate.bridge.condition import Condition
     from mitigate.bridge.hook import mitigate_hook
     from mitigate.bridge.server import Listener
     from mitigate.bridge.words import Words

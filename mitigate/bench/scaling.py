@@ -60,7 +60,7 @@ def training(processes: int, steps: int, folder: Path) -> float:
 
 def recording(processes: int, episodes: int, folder: Path) -> float:
     """Calls a second of so many environments beside each other, one server, all on disk."""
-    from mitigate.bridge.connection import Condition
+    from mitigate.bridge.condition import Condition
     from mitigate.bridge.recording import Recorder
     from mitigate.bridge.server import Listener
     from mitigate.bridge.words import Words

@@ -13,7 +13,8 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from mitigate.bridge import results, verdict
-from mitigate.bridge.connection import EVENTS, Condition
+from mitigate.bridge.condition import Condition
+from mitigate.bridge.events import EVENTS
 from mitigate.bridge.identity import files_of
 from mitigate.bridge.recording import delete_left, is_whole
 from mitigate.bridge.results import Told, without_path

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from omegaconf import DictConfig
 
 from mitigate.bridge.cell import Cell
-from mitigate.bridge.connection import Condition
+from mitigate.bridge.condition import Condition
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.identity import adapters_of, label_of, place_of, settings_of
 from mitigate.bridge.recording import Recorder

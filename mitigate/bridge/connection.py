@@ -1,74 +1,35 @@
 """One connection of the server: an environment of the user's command, and what it is answered.
 
-What happens is appended to a file of the condition's folder, which the command line reads.
+What happens is noted as an event (``events.py``).
 """
 
 from __future__ import annotations
 
-import fcntl
 import hmac
-import json
-import mmap
 import os
-import secrets
 import socket
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.bridge.cameras import CHANNELS, Rig
+from mitigate.bridge.condition import Condition
 from mitigate.bridge.episodes import begun, ended
+from mitigate.bridge.events import EVENTS, note
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
-from mitigate.bridge.words import Words
+from mitigate.bridge.shared_memory import SharedMemory
 from mitigate.core.names import short, unknown
-from mitigate.corruptions import Corruption, Key
 
 if TYPE_CHECKING:
-    from mitigate.restoration.restorer import Restorer
+    pass
 
-EVENTS = "events.jsonl"
 # of messages, behind "hello"
 KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted", "stopped")
-
-
-@dataclass
-class Condition:
-    """What a command meets: the corruption, its seed, and how it is applied.
-
-    repeat: number of this run of the same condition; part of the keys where it is not 0. missing:
-    metres that a hole reads. turn: where a growing yaw turns. restorer: goes over all frames
-    behind the corruption. observers: told of every episode
-    and frame, before its corruption (``recording.py``).
-    """
-
-    corruption: Corruption
-    seed: int
-    words: Words
-    repeat: int = 0
-    missing: float = 0.0
-    turn: str = "left"
-    keep: Callable[[list[str], int], list[int]] | None = None
-    restorer: Restorer | None = None
-    observers: list[Any] = field(default_factory=list)
-
-    def key(self, scene: str, episode: str, frame: int) -> Key:
-        """Names the draw: seed, scene file and episode id, number of the call."""
-        name = f"{scene.rpartition('/')[2]}/{episode}" + (f"#{self.repeat}" if self.repeat else "")
-        return Key(self.seed, name, frame)
-
-
-def note(folder: Path, **event: Any) -> None:
-    """Add a line to the events in ``folder``; processes may do so side by side."""
-    line = json.dumps({"time": round(time.time(), 3), "pid": os.getpid(), **event}) + "\n"
-    with open(folder / EVENTS, "a", encoding="utf-8") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
-        file.write(line)
 
 
 def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
@@ -102,10 +63,8 @@ class Connection:
         self, channel: socket.socket, condition: Condition, folder: Path, token: str, memory: Path
     ) -> None:
         self.channel, self.condition, self.folder = channel, condition, folder
-        self.token, self.shared = token, memory
+        self.token, self.shared = token, SharedMemory(memory)
         self.rig: Rig | None = None
-        self.memory: mmap.mmap | None = None
-        self.file: Path | None = None
         self.offsets: dict[str, int] = {}
         self.scene = self.episode = ""
         self.open = self.loop = self.chosen = False
@@ -180,7 +139,6 @@ class Connection:
 
     def on_spec(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """The cameras of the frames to come: answer where to write them."""
-        self._drop_memory()
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn)
         wanted = (
@@ -194,25 +152,7 @@ class Connection:
             note(self.folder, event="spec", cameras=message["cameras"])
         if not size:
             return {"offsets": {}}
-        self.file = self.shared / secrets.token_hex(8)
-        descriptor = os.open(self.file, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
-        try:
-            os.posix_fallocate(descriptor, 0, size)
-            self.memory = mmap.mmap(descriptor, size)
-        except OSError as error:
-            raise ValueError(
-                f"there is no room for {size >> 10} KiB of frames in {self.file.parent.parent} "
-                f"({error.strerror}): free some, or enlarge it (docker: --shm-size=1g)."
-            ) from error
-        finally:
-            os.close(descriptor)
-        return {"file": str(self.file), "size": size, "offsets": self.offsets}
-
-    def _drop_memory(self) -> None:
-        """The memory lasts as long as it is mapped; its name need not."""
-        if self.file is not None:
-            self.file.unlink(missing_ok=True)
-            self.file = None
+        return {**self.shared.make(size), "offsets": self.offsets}
 
     def on_episode(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """An episode begins: answer with its words as the agent is to hear them."""
@@ -247,7 +187,7 @@ class Connection:
 
     def on_frame(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """The frames of a call lie in memory: corrupt them there, answer which were."""
-        self._drop_memory()
+        self.shared.forget()
         if self.rig is None:
             raise ValueError("a frame came before its cameras were described.")
         for camera in self.rig.cameras:
@@ -257,17 +197,17 @@ class Connection:
         self.kinds |= {camera.kind for camera in self.rig.cameras}
         began = time.perf_counter()
         for observer in self.condition.observers:
-            observer.frame(message, self.rig, self.memory, self.offsets)
+            observer.frame(message, self.rig, self.shared.map, self.offsets)
         heading = message.get("heading")
         changed = self.rig.corrupt(
-            self.memory,
+            self.shared.map,
             self.offsets,
             self.condition.corruption,
             self.condition.key(self.scene, self.episode, int(message["call"])),
             None if heading is None else float(heading),
         )
         if self.condition.restorer is not None:
-            changed += self.rig.restore(self.memory, self.offsets, self.condition.restorer)
+            changed += self.rig.restore(self.shared.map, self.offsets, self.condition.restorer)
         self.worked += time.perf_counter() - began
         self.calls += 1
         return {"changed": list(dict.fromkeys(changed))}

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.bridge.connection import EVENTS
 from mitigate.bridge.episodes import MEASURES, name_of
+from mitigate.bridge.events import EVENTS
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 from mitigate.evaluation.metrics import RULES, Rule, path_length, spl

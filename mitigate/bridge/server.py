@@ -19,7 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.bridge.connection import Condition, Connection
+from mitigate.bridge.condition import Condition
+from mitigate.bridge.connection import Connection
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.core.signals import raise_ended
 from mitigate.corruptions import Corruption

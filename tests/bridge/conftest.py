@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mitigate.bridge.connection import Condition
+from mitigate.bridge.condition import Condition
 from mitigate.bridge.results import read
 from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener

@@ -15,7 +15,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mitigate.bridge.connection import EVENTS, Connection
+from mitigate.bridge.connection import Connection
+from mitigate.bridge.events import EVENTS
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import (
     HEADER,
