@@ -15,8 +15,7 @@ from mitigate.bridge.results import OWN
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import report, rows
 from mitigate.evaluation.metrics import RULES
-
-ROWS = "rows.jsonl"
+from mitigate.evaluation.rows import ROWS
 
 
 def write_report(made: Sequence[Cell], out: Path) -> None:

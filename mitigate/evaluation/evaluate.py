@@ -18,22 +18,20 @@ from hydra.core.hydra_config import HydraConfig
 from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf, seeding
-from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
+from mitigate.evaluation import list_hash
 from mitigate.evaluation.columns import changed, column_of, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
+from mitigate.evaluation.rows import ROWS
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # registers the kinds of conf/launcher
 
 if TYPE_CHECKING:  # nothing slow is imported before run() has checked the options
     from torch import nn
 
-ROWS = "rows.jsonl"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
-LIST = "episodes-{split}.sha256"  # of the file that the episodes of a split came from
-OLD_LIST = "episodes.sha256"  # the same by an older version: a line a file, of whichever splits
 MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
 
 
@@ -118,24 +116,20 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     met = conditions(names, cfg.severity, cfg.severity_depth)
     from mitigate.core import build
     from mitigate.evaluation.evaluator import evaluate
-    from mitigate.restoration.choices import label as restoring
     from mitigate.restoration.restorer import restorer_of
-    from mitigate.safeguard.choices import label
+    from mitigate.safeguard import choices
     from mitigate.safeguard.guard import open_safeguard
 
-    node = build.settings_of(cfg.agent, cfg.checkpoint, overrides)
-    agent = build.build_agent(node, weights=cfg.checkpoint, seed=cfg.seed).eval()
+    agent = load(cfg.agent, cfg.checkpoint, cfg.seed, overrides)
     check_walks(agent)
-    front, world = label(cfg.safeguard), build.maker(cfg.env.world)
+    world, name = build.maker(cfg.env.world), _column(cfg, overrides)
     sensors = world().sensors
     restorer = restorer_of(cfg.restore, sensors)
-    before = [part for part in (front, cfg.restore and restoring(cfg.restore)) if part]
-    before = [part for part in before if part != "none"]
-    name = "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
     check_sensors(met, sensors, cfg.env.name)
-    out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{cfg.severity:g}")
+    choices.check(cfg.safeguard)
+    out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{_severities(cfg)}")
     with FolderLock(out):
-        _check_list(out, cfg.split, cfg.env.episodes[cfg.split])
+        list_hash.keep(out, cfg.split, cfg.env.episodes[cfg.split])
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
@@ -143,7 +137,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             flush=True,
         )
         warn_of_tasks(agent, chosen, name, cfg.env.split)
-        evaluate(
+        rows = evaluate(
             agent,
             world,
             chosen,
@@ -157,8 +151,27 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             safeguard=safeguard,
             restorer=restorer,
         )
-        write_table([out / ROWS], out)
+        write_table([out / ROWS], out, rows)
     return out
+
+
+def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
+    """The table's column: the weights, what options change of the agent, and what stands before
+    it."""
+    from mitigate.restoration import choices as restorers
+    from mitigate.safeguard import choices as safeguards
+
+    front = safeguards.label(cfg.safeguard)
+    before = [] if front == "none" else [front]
+    if cfg.restore and restorers.label(cfg.restore) != "none":
+        before.append(restorers.label(cfg.restore))
+    return "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
+
+
+def _severities(cfg: DictConfig) -> str:
+    """The severities, as part of a folder's name."""
+    depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
+    return f"{cfg.severity:g}{depth}"
 
 
 def _check(cfg: DictConfig) -> None:
@@ -192,36 +205,6 @@ def check_walks(agent: Any) -> None:
         )
 
 
-def _check_list(folder: Path, split: str, source: str) -> None:
-    """Keep the hash of a split's episode file beside the rows, as ``sha256sum`` writes it; raise
-    ValueError if it was another: a row names its episode by id alone, so another list's rows would
-    count as done."""
-    note, found = folder / LIST.format(split=split), sha256(find(source))
-    held = _held(folder, split, source)
-    if held and found not in held:
-        raise ValueError(
-            f"{folder} holds rows of another list of {split} than {source} is now. Name another "
-            "folder (out=..., of a training folder=...), or delete this one."
-        )
-    with atomic_text(note) as file:
-        file.write(f"{found}  {source}\n")
-
-
-def _held(folder: Path, split: str, source: str) -> list[str]:
-    """The hashes of the lists that the rows of ``split`` in ``folder`` may be of, none if it is not
-    known; an older version kept those of all splits in one file, by their paths."""
-    note, old = folder / LIST.format(split=split), folder / OLD_LIST
-    if note.is_file():
-        return note.read_text(encoding="utf-8").split()[:1]
-    from mitigate.evaluation.rows import read
-
-    written = (folder / ROWS).is_file() and any(r["split"] == split for r in read(folder / ROWS))
-    if not written or not old.is_file():
-        return []
-    lines = [line.partition("  ") for line in old.read_text(encoding="utf-8").splitlines()]
-    return [d for d, _, name in lines if name == source] or [d for d, _, _ in lines]
-
-
 def load(node: DictConfig, weights: str, seed: int = 0, overrides: Sequence[str] = ()) -> nn.Module:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
     by ``node``; what ``overrides`` say of the agent counts more. Raises
@@ -249,7 +232,7 @@ def report_before_after(
     suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
     agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
     agents = {name: agent for name, agent in agents.items() if agent is not None}
-    _check_list(folder, quick.split, cfg.env.episodes[quick.split])
+    list_hash.keep(folder, quick.split, cfg.env.episodes[quick.split])
     world, rows = build.maker(cfg.env.world), []
     for name, agent in agents.items():
         rows += evaluate(
@@ -268,12 +251,19 @@ def report_before_after(
     print("\n".join(f"wrote {path}" for path in written), flush=True)
 
 
-def write_table(rows: list[Path], out: Path) -> None:
-    """Join row files into ``out/table.md`` and pictures, and print the table."""
-    from mitigate.evaluation import table
+def write_table(files: list[Path], out: Path, asked: list[dict[str, Any]] | None = None) -> None:
+    """Join row files into ``out/table.md`` and pictures, and print the table: of the rows that were
+    ``asked`` for alone, if there are others beside them."""
+    from mitigate.evaluation import report, rows, table
+    from mitigate.evaluation.sections import sections
 
-    written = table.run(rows, out)
-    print(written[0].read_text(encoding="utf-8"))
+    written = table.run(files, out)
+    others = 0 if asked is None else len(rows.gather(files)) - len(asked)
+    if asked is None or others <= 0:
+        print(written[0].read_text(encoding="utf-8"))
+    else:
+        print(report.markdown(sections(asked)))
+        print(f"{out} holds {counted(others, 'other row')} besides: {written[0]} is of all.")
     print("\n".join(f"wrote {path}" for path in written), flush=True)
 
 

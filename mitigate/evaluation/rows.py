@@ -21,6 +21,7 @@ from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
 
 Row = dict[str, Any]
+ROWS = "rows.jsonl"  # in the folder of an evaluation
 IDENTITY: dict[str, Any] = {
     "agent": str,  # first 12 characters of the weights' sha256
     "name": str,  # "base", "da_per_episode" ...: the column of a table

@@ -11,7 +11,7 @@ from omegaconf import DictConfig, ListConfig
 from mitigate.core import build, conf
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.evaluation.evaluate import ROWS
+from mitigate.evaluation.rows import ROWS
 from mitigate.safeguard import choices
 from mitigate.scale import programs
 

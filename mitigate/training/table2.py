@@ -24,8 +24,8 @@ from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import Progress
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.evaluation.evaluate import ROWS, load
-from mitigate.evaluation.rows import Row, read
+from mitigate.evaluation.evaluate import load
+from mitigate.evaluation.rows import ROWS, Row, read
 from mitigate.scale import launcher, programs
 from mitigate.training.cells import Cell, cells, check, listed
 

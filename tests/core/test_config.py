@@ -167,7 +167,7 @@ def test_an_evaluation_takes_the_agents_settings_of_the_command_line(monkeypatch
         met[name] = agent
 
     monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", meet)
-    monkeypatch.setattr(evaluate, "write_table", lambda rows, out: None)
+    monkeypatch.setattr(evaluate, "write_table", lambda *_: None)
     for options in (
         [],
         ["agent.blind=[rgb]", "agent.planner={fusion: {rate: 4, cap: 3}}", "env.size=32"],
@@ -188,7 +188,7 @@ def test_options_of_the_agent_and_its_views_are_in_the_name():
 
 def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
     monkeypatch.setattr("mitigate.evaluation.evaluator.evaluate", lambda *a, **k: None)
-    monkeypatch.setattr(evaluate, "write_table", lambda rows, out: None)
+    monkeypatch.setattr(evaluate, "write_table", lambda *_: None)
     mine = tmp_path / "mine.json.gz"
     cfg = conf.load_config(
         "evaluate", [f"+env.episodes.mine={mine}", "split=mine", f"out={tmp_path}"]

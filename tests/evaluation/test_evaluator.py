@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.core.files import sha256
 from mitigate.core.observation import DEPTH, POSE, RGB, STOP, Observation
 from mitigate.corruptions import (
     CLEAN,
@@ -22,13 +21,11 @@ from mitigate.corruptions import (
 from mitigate.evaluation import controls, evaluator, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
 from mitigate.evaluation.episode import instruction, run_episode
-from mitigate.evaluation.evaluate import _check_list
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
-from tests.evaluation.made_rows import cell
 from tests.evaluation.straight import Straight
 
 CONDITIONS = [CLEAN, *(Corruption(name, 0.6) for name in NAMES)]
@@ -144,35 +141,6 @@ def test_an_interrupted_evaluation_runs_what_is_missing_and_no_more(
     assert run(tmp_path) == rows
     assert ran == [(row["episode_id"], row["corruption"]) for row in rows[20:]]
     assert run(tmp_path) == rows and len(ran) == len(rows) - 20
-
-
-def test_another_list_of_a_split_is_refused_and_another_split_is_not(tmp_path):
-    for name in ("a", "b"):
-        (tmp_path / f"{name}.json").write_text(name)
-    _check_list(tmp_path, "mine", str(tmp_path / "a.json"))
-    _check_list(tmp_path, "mine", str(tmp_path / "a.json"))
-    _check_list(tmp_path, "theirs", str(tmp_path / "b.json"))
-    with pytest.raises(ValueError, match="rows of another list of mine"):
-        _check_list(tmp_path, "mine", str(tmp_path / "b.json"))
-
-
-def test_the_note_of_an_older_version_counts_where_there_is_no_newer_one(tmp_path):
-    a, b = tmp_path / "a.json", tmp_path / "b.json"
-    for listed in (a, b):
-        listed.write_text(listed.name)
-    rows.write(tmp_path / "rows.jsonl", cell(1, 1, split="mine"))
-    old = tmp_path / "episodes.sha256"
-    for known, source in (
-        (f"{sha256(a)}  of/mine.json\n", b),  # another path
-        (f"{sha256(b)}  of/theirs.json\n{sha256(b)}  {a}\n", a),  # another file there
-    ):
-        old.write_text(known)
-        with pytest.raises(ValueError, match="rows of another list of mine"):
-            _check_list(tmp_path, "mine", str(source))
-    _check_list(tmp_path, "another", str(a))  # of which there are no rows
-    old.write_text(f"{sha256(b)}  of/theirs.json\n{sha256(a)}  of/mine.json\n")
-    _check_list(tmp_path, "mine", str(a))
-    assert (tmp_path / "episodes-mine.sha256").is_file()
 
 
 def test_a_result_does_not_depend_on_what_ran_before(finished, tmp_path):

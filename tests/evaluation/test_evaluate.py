@@ -1,0 +1,39 @@
+"""The command that evaluates an agent, around the walks themselves."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.core import conf
+from mitigate.evaluation import evaluate, rows
+from tests.evaluation.made_rows import cell
+
+
+def test_the_table_printed_is_of_what_was_asked_for_and_the_file_of_all(tmp_path, capsys):
+    """Three episodes lie there; two of them are asked for."""
+
+    all_rows = cell(2, 3)
+    rows.write(tmp_path / "rows.jsonl", all_rows)
+    evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows[:2])
+    told = capsys.readouterr().out
+    assert "N = 2 episodes" in told and "N = 3" not in told
+    assert f"{tmp_path} holds 1 other row besides: {tmp_path / 'table.md'} is of all." in told
+    assert "N = 3 episodes" in (tmp_path / "table.md").read_text()
+    evaluate.write_table([tmp_path / "rows.jsonl"], tmp_path, all_rows)
+    told = capsys.readouterr().out
+    assert "N = 3 episodes" in told and "besides" not in told
+
+
+def test_a_safeguard_that_does_not_exist_leaves_no_folder(tmp_path):
+    cfg = conf.load_config("evaluate", ["safeguard=rule", f"runs={tmp_path}"])
+    with pytest.raises(ValueError, match="no safeguard 'rule'"):
+        evaluate.run(cfg)
+    assert not list(tmp_path.iterdir())
+
+
+def test_another_severity_of_depth_is_another_folder():
+    folders = {
+        evaluate._severities(conf.load_config("evaluate", options))
+        for options in ([], ["severity_depth=0.9"], ["severity_depth=0.6"])
+    }
+    assert folders == {"0.6", "0.6-d0.9", "0.6-d0.6"}
