@@ -36,6 +36,11 @@ COMMANDS = {
         "success of an agent, clean and under every corruption",
         "checkpoint=checkpoints/base split=val_seen",
     ),
+    "controls": Command(
+        "mitigate.evaluation.controls",
+        "walk the shortest-path oracle and a random walker, which frame every result",
+        "split=val_seen episodes=40",
+    ),
     "table": Command(
         "mitigate.evaluation.table",
         "join result rows of any number of runs into one table with pictures",

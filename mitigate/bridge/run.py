@@ -275,6 +275,15 @@ def main() -> None:
     signal.signal(signal.SIGHUP, raise_ended)  # of a terminal: as Ctrl-C; SIGTERM is conf's
     options = ["check=true" if option == "--check" else option for option in options]
     sys.argv[1:] = options
-    conf.main(
-        hydra_main, "run", lambda: check_arguments(options), ["--", *command] if command else ()
-    )
+    conf.main(hydra_main, "run", lambda: _check_line(options), ["--", *command] if command else ())
+
+
+def _check_line(options: Sequence[str]) -> None:
+    """Raise ValueError for a safeguard's address that is none, and for a command without ``--``."""
+    check_arguments(options)
+    words = [option for option in options if "=" not in option and option[:1] not in ("-", "~")]
+    if words:
+        raise ValueError(
+            f"{words[0]} is no option, which is written key=value. If it begins the command to "
+            "run, put -- before it: mitigate run corruption=spatter -- python agent.py"
+        )

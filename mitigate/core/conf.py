@@ -26,6 +26,7 @@ from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
+from mitigate.core.options import check_dashes, config_folder, notices
 from mitigate.core.signals import raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
@@ -79,9 +80,9 @@ def main(
     try:
         if check is not None:
             check()
-        for key in replaced(primary, sys.argv[1:]):
-            told = f"{key} is there already, and +{key}= replaces it."
-            print(f"{told} To add one, give it another name.", file=sys.stderr)
+        check_dashes(sys.argv[1:])
+        for told in notices(primary, sys.argv[1:]):
+            print(told, file=sys.stderr)
         with _without_hydras_line():
             program()
     except (HydraException, OmegaConfBaseException) as error:
@@ -237,13 +238,6 @@ def _chosen(primary: str) -> dict[str, str | None]:
     return {name: chosen for name, chosen in found.items() if "/" not in name}
 
 
-def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
-    """A command line's words without "=" (paths), and Hydra's options."""
-    words = list(arguments)
-    options = [word for word in words if "=" in word or word.startswith("-")]
-    return [word for word in words if word not in options], options
-
-
 def composed(primary: str, options: Sequence[str] = (), further: Path | None = None) -> DictConfig:
     """:func:`load_config`, which raises ValueError, in one paragraph, for what is wrong."""
     try:
@@ -253,31 +247,10 @@ def composed(primary: str, options: Sequence[str] = (), further: Path | None = N
         raise ValueError(explain(error, primary, [*options, *own])) from error
 
 
-def replaced(primary: str, options: Sequence[str]) -> list[str]:
-    """The keys that ``options`` add (``+columns.mine=...``) though the config has them: Hydra puts
-    the new value in their place without a word."""
-    added = [option for option in options if re.match(r"\+[^+]", option)]
-    if not added:
-        return []
-    others = [o for o in options if o not in added and re.match(r"[^-].*=|~", o)]
-    try:
-        cfg = load_config(primary, others, _further(options))
-        keys = [option[1:].partition("=")[0] for option in added]
-        return [key for key in keys if OmegaConf.select(cfg, key) is not None]
-    except (HydraException, OmegaConfBaseException):  # which the program itself explains
-        return []
-
-
 def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
     """The config with what ``options`` choose of its groups (``agent=recurrent``), and no more."""
     groups = [o for o in options if o.partition("=")[0] in _chosen(primary)]
-    return load_config(primary, groups, _further(options))
-
-
-def _further(options: Sequence[str]) -> Path | None:
-    """The user's own folder of configs, if ``options`` name one."""
-    found = _first(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
-    return Path(found) if found else None
+    return load_config(primary, groups, config_folder(options))
 
 
 def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:

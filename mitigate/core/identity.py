@@ -7,8 +7,10 @@ changed, other words, or views of another size is another agent to every table a
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import PurePath
 from typing import Any
@@ -27,18 +29,32 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
     It covers the weights (names, types, shapes, values), also those of networks that an agent which
     is none itself holds as attributes, the agent's class and ``settings`` (a mapping, or a method
     that returns one: vocabulary and all else that is no weight), what each sensor gives, and what
-    stands in front of the agent (``front``: the safeguard that repairs its instructions).
+    stands in front of the agent (``front``: the safeguard that repairs its instructions). Of an
+    agent without ``settings`` it covers the code of its class as well, where that is in a file.
     """
     settings = getattr(agent, "settings", dict)
+    code = {} if hasattr(agent, "settings") else {"code": _code(type(agent))}
     held = {
         "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
         "weights": _weights(agent),
         "settings": settings() if callable(settings) else settings,
         "sensors": {name: asdict(sensor) for name, sensor in sorted(sensors.items())},
         "front": front,
+        **code,
     }
     text = json.dumps(held, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
+
+
+def _code(kind: type) -> list[str]:
+    """The source of a class and of those that it builds on, but torch's and Python's own."""
+    found = []
+    for each in kind.__mro__:
+        if each.__module__.partition(".")[0] in ("builtins", "abc", "typing", "torch"):
+            continue
+        with suppress(OSError, TypeError):  # typed in, or made while it ran
+            found.append(inspect.getsource(each))
+    return found
 
 
 def _weights(agent: Any) -> str | dict[str, str]:

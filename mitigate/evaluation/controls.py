@@ -1,30 +1,36 @@
-"""Controls that frame every result: the shortest-path oracle and a random walker.
+"""Walk the shortest-path oracle and a random walker: ``mitigate controls split=val_unseen``.
 
-``python -m mitigate.evaluation.controls --split val_unseen --out runs/controls.jsonl`` runs both on
-the episodes of a world, clean. The oracle shows that episodes can be solved with the low-level
-actions; the random walker shows what chance gives.
+They frame every result: the oracle shows that a world's episodes can be solved with the low-level
+actions, the random walker what chance gives. Both walk clean, on the episodes of split=, episodes=
+and env=, as of mitigate evaluate; out= names the file of the rows (runs/controls.jsonl). The same
+command again only walks what is missing.
 """
 
 from __future__ import annotations
 
-import argparse
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from omegaconf import DictConfig
 
 from mitigate.agents.agent import Agent
 from mitigate.core import conf
 from mitigate.core.build import maker
+from mitigate.core.names import counted
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
+from mitigate.core.options import check_dashes
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
 from mitigate.evaluation import rows
+from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.worlds.world import World, expert_of
 
+OUT = "runs/controls.jsonl"
 _STOP_SHARE = 0.01  # of random actions; about 100 actions an episode
 
 
@@ -53,45 +59,56 @@ class RandomAgent:
         return int(self.rng.choice([FORWARD, FORWARD, LEFT, RIGHT]))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--env", default="apartments", help="a config of conf/env")
-    parser.add_argument("--split", default="val_unseen", choices=["val_seen", "val_unseen"])
-    parser.add_argument("--task", default="vln", choices=["vln", "ogn"])
-    parser.add_argument("--episodes", type=int, default=300)
-    parser.add_argument("--out", type=Path, default=Path("runs/controls.jsonl"))
-    args = parser.parse_args()
-    if args.episodes < 1:
-        parser.error(f"--episodes {args.episodes} is none: give 1 or more.")
-    env = conf.load_config("evaluate", [f"env={args.env}"]).env
-    split = args.split if args.task == "vln" else f"{args.split}_{args.task}"
-    world, chosen = maker(env.world)(), episodes(env, split, args.episodes)
+def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
+    """Walk both on the episodes that ``cfg``, an evaluation's, names; return their rows, which are
+    in ``out`` too. Those that it has count."""
+    world, chosen = maker(cfg.env.world)(), episodes(cfg.env, cfg.split, cfg.episodes)
     controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": RandomAgent()}
+    held = {rows.identity(row): row for row in rows.read(out)} if out.exists() else {}
+    found = []
     for name, agent in controls.items():
         label = {
             "agent": name,
             "name": name,
             "corruption": "clean",
             "severity": 0.0,
-            "split": split,
+            "split": cfg.split,
             "seed": 0,
             "suite": SUITE_VERSION,
             "rule": world.rule,
         }
-        found = []
-        with Progress(name, len(chosen), unit="episode") as progress:
-            for episode in chosen:
-                measures = run_episode(agent, world, episode, CLEAN, 0)
-                found.append(label | {"episode_id": episode.episode_id} | measures)
+        jobs = [(episode, {**label, "episode_id": episode.episode_id}) for episode in chosen]
+        todo = [job for job in jobs if rows.identity(job[1]) not in held]
+        with Progress(name, len(jobs), unit="episode", start=len(jobs) - len(todo)) as progress:
+            for episode, own in todo:
+                row = own | run_episode(agent, world, episode, CLEAN, 0)
+                held[rows.identity(row)] = row
+                rows.append(out, [row])
                 progress.advance()
-        rows.append(args.out, found)
+        found += [held[rows.identity(own)] for _, own in jobs]
+    return found
+
+
+def main() -> int:
+    """Run from the command line; return the exit status (2 for a bad input)."""
+    if {"-h", "--help"} & {*sys.argv[1:]}:
+        print(__doc__)
+        return 0
+    given = [option for option in sys.argv[1:] if not option.startswith("out=")]
+    out = Path([OUT, *(o[4:] for o in sys.argv[1:] if o.startswith("out="))][-1])
+    try:
+        check_dashes(given)
+        cfg = conf.composed("evaluate", given)
+        found = run(cfg, out)
+    except (OSError, ValueError) as error:
+        print(f"controls: {conf.said(error)}", file=sys.stderr)
+        return 2
+    for name in dict.fromkeys(row["name"] for row in found):
+        own = [row for row in found if row["name"] == name]
+        success, spl = (share([float(row[key]) for row in own]) for key in ("success", "spl"))
         print(
-            f"{name}: SR {np.mean([r['success'] for r in found]):.3f}  "
-            f"SPL {np.mean([r['spl'] for r in found]):.3f}  N {len(found)}"
+            f"{name}: SR {100 * success.value:.1f} [{100 * success.low:.1f}, "
+            f"{100 * success.high:.1f}] %, SPL {spl.value:.2f}, {counted(len(own), 'episode')}"
         )
-
-
-if __name__ == "__main__":
-    main()
+    print(f"rows in {out}")
+    return 0

@@ -312,22 +312,6 @@ def test_help_says_what_every_option_and_group_means(primary):
             assert f"{group}: " in shown and ", " in shown.partition(f"{group}: ")[2]
 
 
-@pytest.mark.parametrize(
-    ("primary", "options", "keys"),
-    [
-        ("table1", ["+columns.recurrent_ts=[agent=recurrent]"], ["columns.recurrent_ts"]),
-        ("table1", ["+columns.mine=[agent=recurrent]", "jobs=1"], []),
-        ("table1", ["columns.recurrent=[agent=recurrent]"], []),
-        ("table1", ["~columns.recurrent", "+columns.recurrent=[agent=recurrent]"], []),
-        ("evaluate", ["+env.episodes.val_seen=mine.json"], ["env.episodes.val_seen"]),
-        ("evaluate", ["++split=val_seen"], []),
-        ("evaluate", ["+severity=1", "sevrity=2"], []),  # is refused anyway
-    ],
-)
-def test_an_option_that_is_added_in_the_place_of_another_is_told(primary, options, keys):
-    assert conf.replaced(primary, options) == keys
-
-
 def test_what_is_replaced_is_said_once_on_standard_error(monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["mitigate table1", "+columns.recurrent=[agent=recurrent]"])
     conf.main(lambda: None, "table1")

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import copy
+import importlib
+import linecache
+import sys
 
 import torch
 
@@ -36,3 +39,27 @@ def test_equal_agents_have_one_identity_and_every_difference_another():
     ]
     assert identity(plain, views) == identity(agent(), views)
     assert len({identity(plain, views), *others}) == 1 + len(others)
+
+
+PLAIN = """
+class Plain:
+    def reset(self, instruction):
+        self.steps = 0
+
+    def act(self, observation):
+        return 0
+"""
+
+
+def test_an_agent_without_settings_is_another_one_when_its_code_is(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    found = []
+    for number, source in enumerate((PLAIN, PLAIN.replace("steps = 0", "steps = 1"), PLAIN)):
+        (tmp_path / "plain_agent.py").write_text(source + "#" * number)  # of other lengths
+        sys.modules.pop("plain_agent", None)
+        importlib.invalidate_caches()
+        linecache.clearcache()
+        found.append(identity(importlib.import_module("plain_agent").Plain(), {}))
+    sys.modules.pop("plain_agent")
+    first, edited, again = found
+    assert first == again != edited

@@ -18,8 +18,7 @@ from mitigate.corruptions import (
     corrupt_instruction,
     inject_system_prompt,
 )
-from mitigate.evaluation import controls, evaluator, rows
-from mitigate.evaluation.controls import OracleAgent, RandomAgent
+from mitigate.evaluation import evaluator
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.restoration.restorer import Restorer
@@ -256,31 +255,6 @@ def test_instruction_rows_are_rows_like_others_and_white_box_is_left_out_with_a_
         ("black_box", 0.5),
     ] * 2
     assert all(rows[0].keys() == row.keys() for row in rows)
-
-
-def test_the_random_control_repeats_itself_and_rarely_succeeds():
-    world, episodes = ApartmentsWorld(SIZE), load_episodes("val_unseen")[::30]
-    rows = [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
-    assert rows == [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
-    oracle = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
-    assert sum(r["success"] for r in rows) <= 3 < 10 == sum(r["success"] for r in oracle)
-
-
-@pytest.mark.parametrize(("task", "split"), [("vln", "val_seen"), ("ogn", "val_seen_ogn")])
-def test_rows_of_controls_belong_to_the_tasks_own_split(task, split, monkeypatch, tmp_path):
-    monkeypatch.setattr(controls, "run_episode", lambda *given: {"success": 1, "spl": 1.0})
-    given = ["--split", "val_seen", "--task", task, "--episodes", "1", "--out"]
-    monkeypatch.setattr("sys.argv", ["controls", *given, str(tmp_path / "rows.jsonl")])
-    controls.main()
-    assert {row["split"] for row in rows.read(tmp_path / "rows.jsonl")} == {split}
-
-
-@pytest.mark.parametrize("count", ["0", "-5"])
-def test_controls_need_an_episode(count, monkeypatch, capsys):
-    monkeypatch.setattr("sys.argv", ["controls", "--episodes", count])
-    with pytest.raises(SystemExit):
-        controls.main()
-    assert f"--episodes {count} is none: give 1 or more" in capsys.readouterr().err
 
 
 def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):

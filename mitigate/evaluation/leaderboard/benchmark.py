@@ -31,6 +31,7 @@ from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
+from mitigate.evaluation.rows import ROWS
 from mitigate.scale.launcher import count
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
@@ -86,7 +87,7 @@ def benchmark(
     check_episodes("listed" if listed is not None else split, chosen)
     _check_world(made, met)
     _tell(agent, made, chosen, len(met), workers)
-    file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / evaluation.ROWS
+    file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     with FolderLock(file.parent):
         _tell_reused(agent, file)
@@ -136,9 +137,9 @@ def _tell_reused(agent: Any, file: Path) -> None:
     """Print that rows of before count, where they may be of an agent that was changed since."""
     if file.exists() and not hasattr(agent, "settings"):
         print(
-            f"benchmark: rows in {file} count, unless they are of another class or other weights: "
-            f"a {type(agent).__name__} has no settings() that says more. If it was changed, give "
-            "it some, or name another folder (out=...).",
+            f"benchmark: rows in {file} count, unless they are of another class, of other code in "
+            f"it, or of other weights: a {type(agent).__name__} has no settings() that says more. "
+            "If anything else was changed, give it some, or name another folder (out=...).",
             flush=True,
         )
 

@@ -1,0 +1,72 @@
+"""Options of a command line that Hydra would refuse in words of its own, or take without a word."""
+
+from __future__ import annotations
+
+import difflib
+import re
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from hydra._internal.utils import get_args_parser
+from hydra.errors import HydraException
+from omegaconf import OmegaConf
+from omegaconf.errors import OmegaConfBaseException
+
+
+def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
+    """A command line's words without "=" (paths), and Hydra's options."""
+    words = list(arguments)
+    options = [word for word in words if "=" in word or word.startswith("-")]
+    return [word for word in words if word not in options], options
+
+
+def config_folder(options: Sequence[str]) -> Path | None:
+    """The user's own folder of configs, if ``options`` name one."""
+    found = re.search(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
+    return Path(found[1]) if found else None
+
+
+def check_dashes(options: Sequence[str]) -> None:
+    """Raise ValueError for ``--severity 0.6``, as other programs have it."""
+    known = {flag for action in get_args_parser()._actions for flag in action.option_strings}
+    for at, word in enumerate(options):
+        flag, equals, value = word.partition("=")
+        if not re.match(r"--\w", flag) or flag in known:
+            continue
+        behind = options[at + 1] if at + 1 < len(options) and not equals else value
+        shown = behind if behind and not behind.startswith("-") and "=" not in behind else "VALUE"
+        key = flag[2:].replace("-", "_")
+        raise ValueError(f"{flag} is no option: options are written {key}={shown}, without dashes.")
+
+
+def notices(primary: str, options: Sequence[str]) -> list[str]:
+    """What is to be said of the entries that ``options`` add to ``conf/<primary>.yaml``
+    (``+columns.mine=...``): Hydra puts the new value in the place of one that is there, and adds
+    one that no program reads, without a word."""
+    from mitigate.core.conf import CONF, load_config
+
+    added = [option[1:].partition("=")[0] for option in options if re.match(r"\+[^+]", option)]
+    if not added:
+        return []
+    others = [o for o in options if re.match(r"[^-+].*=|~", o)]
+    try:
+        cfg = load_config(primary, others, config_folder(options))
+    except (HydraException, OmegaConfBaseException):  # which the program itself explains
+        return []
+    folders = [folder for folder in (CONF, config_folder(options)) if folder is not None]
+    return [
+        told
+        for key in added
+        if not any((folder / key.partition("@")[0]).is_dir() for folder in folders)
+        and (told := _notice(key, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)]))
+    ]
+
+
+def _notice(key: str, there: bool, names: list[str]) -> str:
+    if there:
+        return f"{key} is there already, and +{key}= replaces it. To add one, give it another name."
+    if "." in key:
+        return ""
+    near = difflib.get_close_matches(key, names, n=1)
+    hint = f" Did you mean {near[0]}=...?" if near else ""
+    return f"+{key}= adds an option that only configs of your own can use.{hint}"

@@ -1,0 +1,56 @@
+"""Options that Hydra would refuse in words of its own, or take without a word."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.core import options
+
+REPLACES = "{0} is there already, and +{0}= replaces it."
+
+
+@pytest.mark.parametrize(
+    ("primary", "given", "keys"),
+    [
+        ("table1", ["+columns.recurrent_ts=[agent=recurrent]"], ["columns.recurrent_ts"]),
+        ("table1", ["+columns.mine=[agent=recurrent]", "jobs=1"], []),
+        ("table1", ["columns.recurrent=[agent=recurrent]"], []),
+        ("table1", ["~columns.recurrent", "+columns.recurrent=[agent=recurrent]"], []),
+        ("evaluate", ["+env.episodes.val_seen=mine.json"], ["env.episodes.val_seen"]),
+        ("evaluate", ["++split=val_seen"], []),
+        ("evaluate", ["+severity=1", "sevrity=2"], []),  # is refused anyway
+    ],
+)
+def test_an_option_that_is_added_in_the_place_of_another_is_told(primary, given, keys):
+    told = options.notices(primary, given)
+    assert [text.partition(" To add one")[0] for text in told] == [REPLACES.format(k) for k in keys]
+
+
+def test_an_added_option_that_no_program_reads_is_told_with_what_was_meant():
+    (told,) = options.notices("evaluate", ["+episode=9", "++seed=3", "split=val_seen"])
+    assert told.startswith("+episode= adds an option that only configs of your own can use.")
+    assert told.endswith("Did you mean episodes=...?")
+
+
+def test_an_added_file_of_a_group_is_no_such_option(tmp_path):
+    (tmp_path / "mine").mkdir()
+    given = [f"--config-dir={tmp_path}", "+experiment=frozen", "+mine=one"]
+    assert not options.notices("train", given)
+
+
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        (["--out", "x"], "out=x"),
+        (["--out=x", "seed=1"], "out=x"),
+        (["split=val_seen", "--cell-size", "--severity", "0.6"], "cell_size=VALUE"),
+        (["--severity", "seed=1"], "severity=VALUE"),
+    ],
+)
+def test_dashes_are_answered_with_how_the_option_is_written(line, shown):
+    with pytest.raises(ValueError, match=f"options are written {shown}, without dashes"):
+        options.check_dashes(line)
+
+
+def test_hydras_own_flags_and_values_with_dashes_pass():
+    options.check_dashes(["--multirun", "--config-dir=mine", "-m", "--cfg", "job", "name=--x"])

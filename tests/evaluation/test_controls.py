@@ -1,0 +1,64 @@
+"""The oracle and the random walker that frame every result."""
+
+from __future__ import annotations
+
+import pytest
+
+from mitigate.corruptions import CLEAN
+from mitigate.evaluation import controls, rows
+from mitigate.evaluation.controls import OracleAgent, RandomAgent
+from mitigate.evaluation.episode import run_episode
+from mitigate.worlds.apartments.tasks import load_episodes
+from mitigate.worlds.apartments.world import ApartmentsWorld
+
+SIZE = 16
+
+
+def test_the_random_control_repeats_itself_and_rarely_succeeds():
+    world, episodes = ApartmentsWorld(SIZE), load_episodes("val_unseen")[::30]
+    rows = [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
+    assert rows == [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
+    oracle = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
+    assert sum(r["success"] for r in rows) <= 3 < 10 == sum(r["success"] for r in oracle)
+
+
+@pytest.fixture
+def walked(monkeypatch):
+    """The ids of the episodes that were walked, each of them a success."""
+    ids: list[str] = []
+
+    def walk(agent, world, episode, *others):
+        ids.append(episode.episode_id)
+        return {"success": 1, "spl": 1.0}
+
+    monkeypatch.setattr(controls, "run_episode", walk)
+    return ids
+
+
+def called(monkeypatch, *given):
+    monkeypatch.setattr("sys.argv", ["controls", *given])
+    return controls.main()
+
+
+def test_the_same_command_only_walks_what_is_missing(monkeypatch, tmp_path, walked, capsys):
+    given = ["split=val_seen_ogn", f"out={tmp_path}/rows.jsonl"]
+    assert called(monkeypatch, *given, "episodes=1") == 0
+    assert called(monkeypatch, *given, "episodes=2") == 0
+    assert len(walked) == 4 and len(set(walked)) == 2
+    found = rows.read(tmp_path / "rows.jsonl")
+    assert len(found) == 4 and {row["split"] for row in found} == {"val_seen_ogn"}
+    assert "oracle: SR 100.0 [34.2, 100.0] %, SPL 1.00, 2 episodes" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("episodes=0", "episodes=0 is none: give 1 or more"),
+        ("split=val_sen", "Did you mean val_seen?"),
+        ("env=corridor", "There is no env 'corridor'"),
+        ("--split", "options are written split=VALUE"),
+    ],
+)
+def test_a_wrong_option_is_named(monkeypatch, tmp_path, capsys, option, words):
+    assert called(monkeypatch, option, f"out={tmp_path}/rows.jsonl") == 2
+    assert words in capsys.readouterr().err and not list(tmp_path.iterdir())
