@@ -74,7 +74,7 @@ def _heading(section: Section) -> str:
         f"{markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Agents: {agents}.\n"
         f"SR in %. PRS = mean over the block's corruptions of SR (SPL) / the same agent's clean "
         f"SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over episodes, {RESAMPLES:,} "
-        f"resamples."
+        f"resamples; where all or none succeed, Wilson's."
     )
 
 

@@ -66,10 +66,10 @@ class LeaderboardEntry:
         return Path(path)
 
     def __str__(self) -> str:
-        """A line for each score."""
+        """A line for each score, success rates in %."""
         walked = f"{counted(self.episodes, 'episode')} of {self.split}"
         head = f"{self.name}: {walked}, severity {self.severity:g}"
-        lines = (f"  {title}: {_words(found)}" for title, found in self.scores.items())
+        lines = (f"  {title}: {_words(title, found)}" for title, found in self.scores.items())
         return "\n".join([f"{head} ({self.rule})", *lines])
 
 
@@ -103,11 +103,15 @@ def _check(held: Any, path: Path | str) -> None:
             raise ValueError(f"{path}: {name} {wrong}. {_AGAIN}")
 
 
-def _words(found: Numbers) -> str:
+def _words(title: str, found: Numbers) -> str:
     if found is None:
         return "undefined"
-    low, high = ("–" if bound is None else f"{bound:.3f}" for bound in found[1:])
-    return f"{found[0]:.3f} [{low}, {high}]"
+    percent = title.endswith(" SR")
+    value, low, high = (
+        "–" if number is None else f"{100 * number:.1f}" if percent else f"{number:.2f}"
+        for number in found
+    )
+    return f"{value} [{low}, {high}]" + " %" * percent
 
 
 def _short_lines(text: str) -> str:

@@ -54,7 +54,7 @@ def test_an_entry_has_the_figures_of_the_table_and_comes_back_from_its_file(rows
     assert [pytest.approx([share] * 2) for share in (1.0, 0.25, 0.875)] == kept
     assert load(entry.save(tmp_path / "base.json")) == entry
     assert [p.name for p in tmp_path.iterdir()] == ["base.json"]
-    assert "PRS-SR (RGB): 0.250 [" in str(entry)
+    assert "PRS-SR (RGB): 0.25 [" in str(entry) and "Clean SR: 80.0 [50.0, 100.0] %" in str(entry)
 
 
 def test_the_sum_of_rows_knows_no_order_but_every_value(rows):
