@@ -15,9 +15,9 @@ from torch.nn.functional import binary_cross_entropy_with_logits, cross_entropy
 
 from mitigate.core.names import unknown
 from mitigate.core.seeding import generator
-from mitigate.safeguard import trials
-from mitigate.safeguard.attacked import draw_attacked
-from mitigate.safeguard.lessons import draw_lesson
+from mitigate.safeguard.learning import trials
+from mitigate.safeguard.learning.attacked import draw_attacked
+from mitigate.safeguard.learning.lessons import draw_lesson
 from mitigate.safeguard.metrics import token_f1
 from mitigate.safeguard.reader import Reader
 from mitigate.safeguard.report import voices

@@ -19,9 +19,10 @@ from typing import Any
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.fidelity import facts
-from mitigate.safeguard import gate, trials
+from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.guard import open_safeguard
-from mitigate.safeguard.trials import Told
+from mitigate.safeguard.learning import trials
+from mitigate.safeguard.learning.trials import Told
 
 GONE, LOST = 1 / 3, 1 / 2  # an attack is gone below, a sentence lost from this share of word pairs
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")

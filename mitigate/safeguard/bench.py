@@ -44,7 +44,7 @@ COLUMNS = {
 def measure(kind: str, base: str) -> dict[str, float]:
     """Return the figures of one kind, measured in this process."""
     from mitigate.recipes.safeguard_lora import SafeguardLora
-    from mitigate.safeguard.model import LanguageModel
+    from mitigate.safeguard.language_models.model import LanguageModel
     from mitigate.training.recipe import accumulate
 
     precision, autocast, ours = KINDS[kind]

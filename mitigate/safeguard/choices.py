@@ -9,8 +9,8 @@ from pathlib import Path
 
 from mitigate.core.files import find, sha256
 from mitigate.core.names import unknown
-from mitigate.safeguard import weights
 from mitigate.safeguard.addresses import check_choice
+from mitigate.safeguard.foreign import weights
 
 CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
     "http://host/v1@model")  # fmt: skip
@@ -83,7 +83,7 @@ def identity(choice: str) -> str:
 
 def _holds_one(folder: str) -> bool:
     """Whether a folder holds weights, or the config of an adapter that lacks them."""
-    from mitigate.safeguard.adapter_folder import CONFIG
+    from mitigate.safeguard.language_models.adapter_folder import CONFIG
 
     return _weights(folder) is not None or (Path(folder) / CONFIG).is_file()
 
@@ -91,7 +91,7 @@ def _holds_one(folder: str) -> bool:
 def _weights(folder: str | Path) -> Path | None:
     """The weights of a folder of a network or an adapter; None for what is no such folder."""
     from mitigate.core.checkpoint import WEIGHTS
-    from mitigate.safeguard.adapter_folder import ADAPTER as ADAPTER_FILE
+    from mitigate.safeguard.language_models.adapter_folder import ADAPTER as ADAPTER_FILE
 
     files = [Path(folder) / name for name in (ADAPTER_FILE, WEIGHTS)]
     return next((file for file in files if file.is_file()), None)

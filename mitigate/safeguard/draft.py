@@ -6,12 +6,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from mitigate.safeguard import gate, masks, rules
-from mitigate.safeguard.formatting import unformatted
-from mitigate.safeguard.manners import plainer, restyled
-from mitigate.safeguard.object_goal import object_goal
-from mitigate.safeguard.pieces import sections
-from mitigate.safeguard.plainly_said import (
+from mitigate.safeguard import rules
+from mitigate.safeguard.fidelity import gate
+from mitigate.safeguard.fidelity.refusals import refusal
+from mitigate.safeguard.foreign import masks
+from mitigate.safeguard.foreign.formatting import unformatted
+from mitigate.safeguard.foreign.pieces import sections
+from mitigate.safeguard.plain.manners import plainer, restyled
+from mitigate.safeguard.plain.object_goal import object_goal
+from mitigate.safeguard.plain.plainly_said import (
     Said,
     Tags,
     is_speech,
@@ -19,7 +22,6 @@ from mitigate.safeguard.plainly_said import (
     plainly_said,
     together,
 )
-from mitigate.safeguard.refusals import refusal
 from mitigate.safeguard.text import MASK, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)

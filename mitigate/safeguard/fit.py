@@ -27,11 +27,13 @@ import numpy as np
 from mitigate.core.files import atomic_text
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.landmarks import CANONICAL
-from mitigate.safeguard import front, gate, judgement, routes, trials, weights
-from mitigate.safeguard.data import draw_pair, vary
-from mitigate.safeguard.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
+from mitigate.safeguard.fidelity import gate
+from mitigate.safeguard.foreign import front, judgement, weights
+from mitigate.safeguard.foreign.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
+from mitigate.safeguard.foreign.pieces import parts, sentence_pieces
+from mitigate.safeguard.learning import routes, trials
+from mitigate.safeguard.learning.data import draw_pair, vary
 from mitigate.safeguard.lexicon import GROUPS
-from mitigate.safeguard.pieces import parts, sentence_pieces
 from mitigate.safeguard.text import words
 
 PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8

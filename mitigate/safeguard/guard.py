@@ -20,7 +20,7 @@ from mitigate.core.names import unknown
 from mitigate.safeguard.addresses import check_choice
 from mitigate.safeguard.choices import ADAPTER, CHOICES, TAGGERS, VERSION, identity
 from mitigate.safeguard.draft import Decision, Draft
-from mitigate.safeguard.plainly_said import Tags
+from mitigate.safeguard.plain.plainly_said import Tags
 
 CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
@@ -140,11 +140,11 @@ def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
         folder = find(TAGGERS[choice]) if choice in TAGGERS else choice
         return Safeguard(tagger=open_tags(folder), log=log)
     if choice.lower().startswith(("http://", "https://")):
-        from mitigate.safeguard.endpoint import ChatEndpoint
+        from mitigate.safeguard.language_models.endpoint import ChatEndpoint
 
         url, _, model = choice.rpartition("@")
         return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
-    from mitigate.safeguard.model import LanguageModel, open_adapter
+    from mitigate.safeguard.language_models.model import LanguageModel, open_adapter
 
     if choice == "prompted":
         return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)

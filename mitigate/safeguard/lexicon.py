@@ -154,8 +154,8 @@ OTHERS = bag(
 @lru_cache(maxsize=1)
 def known_words() -> frozenset[str]:
     """Return the English words that this package knows."""
-    from mitigate.safeguard import routes
-    from mitigate.safeguard.weights import WORDS
+    from mitigate.safeguard.foreign.weights import WORDS
+    from mitigate.safeguard.learning import routes
 
     text = " ".join((routes.OPEN, routes.MIDDLE, routes.CLOSE, *routes.ASIDES, *routes.ROOMS,
         *routes.THINGS, *routes.LOOKS, *routes.STAIRS, *routes.DOORS, *routes.PLACES))  # fmt: skip
@@ -176,7 +176,7 @@ def known_words() -> frozenset[str]:
 @lru_cache(maxsize=1)
 def places() -> frozenset[str]:
     """Return the words for rooms and things that routes name, one and many."""
-    from mitigate.safeguard import routes
+    from mitigate.safeguard.learning import routes
 
     told = {phrase.split()[-1] for phrase in (*routes.ROOMS, *routes.THINGS, *routes.STAIRS)}
     named = {word for name in CANONICAL.items() for word in name}

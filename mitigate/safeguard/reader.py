@@ -20,10 +20,11 @@ from mitigate.core.checkpoint import WEIGHTS, load_tensors, load_weights
 from mitigate.core.precision import to_device
 from mitigate.core.public_weights import borrow
 from mitigate.corruptions.language.tagger import Token
-from mitigate.safeguard import edits, minilm
 from mitigate.safeguard.choices import not_in
-from mitigate.safeguard.plain_words import PHRASES
-from mitigate.safeguard.plainly_said import Tagged
+from mitigate.safeguard.language_models import minilm
+from mitigate.safeguard.plain import edits
+from mitigate.safeguard.plain.plain_words import PHRASES
+from mitigate.safeguard.plain.plainly_said import Tagged
 from mitigate.safeguard.tagger import (
     FLAGS,
     Encoded,

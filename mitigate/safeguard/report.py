@@ -23,11 +23,11 @@ from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.safeguard.addresses import check_choice
-from mitigate.safeguard.data import read_texts
 from mitigate.safeguard.draft import PASSAGE
 from mitigate.safeguard.guard import Rewriter, Safeguard, open_safeguard
+from mitigate.safeguard.learning.data import read_texts
+from mitigate.safeguard.learning.spoken import SPLITS, VALIDATION, spoken
 from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
-from mitigate.safeguard.spoken import SPLITS, VALIDATION, spoken
 from mitigate.safeguard.text import passages, sentences
 from mitigate.worlds.episodes import read_episodes
 

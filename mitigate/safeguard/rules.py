@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard import gate
-from mitigate.safeguard.courtesy import framing
-from mitigate.safeguard.front import in_front
-from mitigate.safeguard.harmless import harmless
-from mitigate.safeguard.honest import attacks, belongs
-from mitigate.safeguard.inside import (
+from mitigate.safeguard.fidelity import gate
+from mitigate.safeguard.foreign.courtesy import framing
+from mitigate.safeguard.foreign.front import in_front
+from mitigate.safeguard.foreign.harmless import harmless
+from mitigate.safeguard.foreign.honest import attacks, belongs
+from mitigate.safeguard.foreign.inside import (
     announces,
     foreign_clauses,
     foreign_parts,
@@ -25,7 +25,7 @@ from mitigate.safeguard.inside import (
     leans,
     route_remains,
 )
-from mitigate.safeguard.judgement import (
+from mitigate.safeguard.foreign.judgement import (
     PLAIN,
     SURE,
     Judged,
@@ -34,12 +34,12 @@ from mitigate.safeguard.judgement import (
     leads,
     wrapped,
 )
+from mitigate.safeguard.foreign.pieces import Piece, without
+from mitigate.safeguard.foreign.weights import STYLE
 from mitigate.safeguard.lexicon import known_words
-from mitigate.safeguard.manners import asks_for_way, unasked
-from mitigate.safeguard.pieces import Piece, without
-from mitigate.safeguard.plainly_said import Tags, judging
+from mitigate.safeguard.plain.manners import asks_for_way, unasked
+from mitigate.safeguard.plain.plainly_said import Tags, judging
 from mitigate.safeguard.text import words
-from mitigate.safeguard.weights import STYLE
 
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)

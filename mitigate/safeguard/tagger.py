@@ -24,14 +24,21 @@ from mitigate.core.precision import to_device
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, COLOURS
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.tagger import Token
-from mitigate.safeguard import edits
-from mitigate.safeguard.edits import DROP, KEEP, PLAIN, Edit
-from mitigate.safeguard.evidence import LANDMARKS, VERBS
+from mitigate.safeguard.fidelity.ways import RELATION
+from mitigate.safeguard.foreign.evidence import LANDMARKS, VERBS
+from mitigate.safeguard.language_models.word_vectors import (
+    SCALE,
+    SIZE,
+    SMOLLM2,
+    VECTORS,
+    word_key,
+    word_vectors,
+)
 from mitigate.safeguard.lexicon import FUNCTION, GROUPS
-from mitigate.safeguard.plain_words import PHRASES, plain_form
-from mitigate.safeguard.plainly_said import SPEECH, Tagged
-from mitigate.safeguard.ways import RELATION
-from mitigate.safeguard.word_vectors import SCALE, SIZE, SMOLLM2, VECTORS, word_key, word_vectors
+from mitigate.safeguard.plain import edits
+from mitigate.safeguard.plain.edits import DROP, KEEP, PLAIN, Edit
+from mitigate.safeguard.plain.plain_words import PHRASES, plain_form
+from mitigate.safeguard.plain.plainly_said import SPEECH, Tagged
 
 PIECES = 8192  # hashed pieces of words; 0 is none
 LONGEST_WORD = 14  # pieces of a word that are read

@@ -22,7 +22,7 @@ from mitigate.agents import adapters
 from mitigate.core import checkpoint
 from mitigate.encoders import folder as encoder_folder
 from mitigate.encoders import loading, plain_adapters
-from mitigate.safeguard import adapter_folder
+from mitigate.safeguard.language_models import adapter_folder
 from mitigate.shipping import hardened
 from mitigate.training import states
 from tests.bad_input.named import refused

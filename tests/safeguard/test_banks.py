@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from mitigate.safeguard import banks, trials
+from mitigate.safeguard import banks
+from mitigate.safeguard.learning import trials
 
 ROUTE = "Walk past the sofa, turn left and stop by the lamp. Wait there."
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard.chatty_words import chatty, in_plain_words
 from mitigate.safeguard.guard import open_safeguard
-from mitigate.safeguard.manners import plainer, restyled
+from mitigate.safeguard.plain.chatty_words import chatty, in_plain_words
+from mitigate.safeguard.plain.manners import plainer, restyled
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,11 @@ import pytest
 from mitigate.core.files import find
 from mitigate.corruptions.instruction import Key, corrupt_instruction
 from mitigate.corruptions.suite import INSTRUCTION
-from mitigate.safeguard import adapter_folder, choices, weights
+from mitigate.safeguard import choices
 from mitigate.safeguard.choices import VERSION, identity, label
+from mitigate.safeguard.foreign import weights
 from mitigate.safeguard.guard import open_safeguard
+from mitigate.safeguard.language_models import adapter_folder
 
 SAID = "42c1ff6b2ef1"  # hash of what the rules of VERSION make of the texts below
 TEXTS = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mitigate.corruptions.language.phrases import VOICES
-from mitigate.safeguard.courtesy import framing
+from mitigate.safeguard.foreign.courtesy import framing
 from mitigate.safeguard.guard import Safeguard
 
 ROUTE = "Walk past the sofa and turn left at the door. Stop by the table."

@@ -11,8 +11,8 @@ import pytest
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
-from mitigate.safeguard import data, routes
-from mitigate.safeguard.data import KINDS, Pair, draw_pair, read_chats
+from mitigate.safeguard.learning import data, routes
+from mitigate.safeguard.learning.data import KINDS, Pair, draw_pair, read_chats
 from mitigate.worlds.apartments.instructions import TEMPLATES
 from mitigate.worlds.episodes import read_episodes
 

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.fidelity import COLOURS, facts
 from mitigate.corruptions.language.landmarks import normal
-from mitigate.safeguard.edits import DROP, KEEP, PLAIN, Edit, edited, taught, tokens
-from mitigate.safeguard.plain_words import PHRASES, plain_form
-from mitigate.safeguard.routes import draw_route
-from mitigate.safeguard.spoken import spoken
+from mitigate.safeguard.learning.routes import draw_route
+from mitigate.safeguard.learning.spoken import spoken
+from mitigate.safeguard.plain.edits import DROP, KEEP, PLAIN, Edit, edited, taught, tokens
+from mitigate.safeguard.plain.plain_words import PHRASES, plain_form
 
 ROUTES = st.integers(0, 10_000).map(lambda n: draw_route(generator(n, "edits")))
 SAID = st.sampled_from([text.said for text in spoken("validation")])

@@ -13,9 +13,9 @@ import pytest
 
 from mitigate.evaluation import evaluate
 from mitigate.safeguard.addresses import check_arguments, check_choice
-from mitigate.safeguard.endpoint import ChatEndpoint
 from mitigate.safeguard.guard import Safeguard, open_safeguard
-from mitigate.safeguard.posting import LARGEST
+from mitigate.safeguard.language_models.endpoint import ChatEndpoint
+from mitigate.safeguard.language_models.posting import LARGEST
 
 
 class Server(ThreadingHTTPServer):

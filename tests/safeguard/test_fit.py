@@ -2,7 +2,8 @@
 
 import json
 
-from mitigate.safeguard import fit, weights
+from mitigate.safeguard import fit
+from mitigate.safeguard.foreign import weights
 
 
 def test_only_write_replaces_the_weights(tmp_path, monkeypatch, capsys):

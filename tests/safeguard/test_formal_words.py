@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard.formal_words import FORMAL, formal, in_plain_words
 from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.plain.formal_words import FORMAL, formal, in_plain_words
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard import gate
 from mitigate.safeguard.banks import rewrites
+from mitigate.safeguard.fidelity import gate
 
 HEARD = "Walk towards the window and take a slight left before the sofa."
 

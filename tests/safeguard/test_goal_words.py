@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard import gate
-from mitigate.safeguard.goal_words import told_of_goal
+from mitigate.safeguard.fidelity import gate
+from mitigate.safeguard.fidelity.goal_words import told_of_goal
 from mitigate.safeguard.guard import open_safeguard
 
 

@@ -13,13 +13,14 @@ from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.prefixes import prefixes
-from mitigate.safeguard import masks, rules
-from mitigate.safeguard.courtesy import framing
-from mitigate.safeguard.data import draw_pair
+from mitigate.safeguard import rules
+from mitigate.safeguard.fidelity.refusals import refusal
+from mitigate.safeguard.foreign import masks
+from mitigate.safeguard.foreign.courtesy import framing
 from mitigate.safeguard.guard import Safeguard, open_safeguard
-from mitigate.safeguard.plainly_said import Said
-from mitigate.safeguard.refusals import refusal
-from mitigate.safeguard.routes import draw_route
+from mitigate.safeguard.learning.data import draw_pair
+from mitigate.safeguard.learning.routes import draw_route
+from mitigate.safeguard.plain.plainly_said import Said
 from mitigate.safeguard.rules import style_marks
 from mitigate.safeguard.text import MASK, sentences
 from tests.r2r_ce import FOLDER, needs_r2r_ce
@@ -271,7 +272,7 @@ def test_a_sentence_that_tells_the_way_stays_whatever_stands_beside_it():
 
 @needs_r2r_ce
 def test_real_instructions_pass():
-    from mitigate.safeguard.data import read_texts
+    from mitigate.safeguard.learning.data import read_texts
 
     texts = read_texts([FOLDER / "val_seen.json.gz"])[:500]
     changed = [d for d in Safeguard().canonicalise_all(texts) if check(d.original, d.text)]

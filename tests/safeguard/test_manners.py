@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mitigate.safeguard.guard import open_safeguard
-from mitigate.safeguard.manners import plainer
+from mitigate.safeguard.plain.manners import plainer
 
 
 @pytest.mark.parametrize(

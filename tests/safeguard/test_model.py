@@ -13,8 +13,13 @@ import torch
 
 from mitigate.core import checkpoint
 from mitigate.recipes.safeguard_lora import SafeguardLora
-from mitigate.safeguard.data import Pair
-from mitigate.safeguard.model import LanguageModel, collate, encode_pair, open_adapter
+from mitigate.safeguard.language_models.model import (
+    LanguageModel,
+    collate,
+    encode_pair,
+    open_adapter,
+)
+from mitigate.safeguard.learning.data import Pair
 from mitigate.training import states
 from mitigate.training.recipe import accumulate
 from mitigate.training.trainer import Trainer
@@ -207,7 +212,9 @@ def test_prompts_that_begin_with_nothing_in_common_are_rewritten_too(model):
 
 @pytest.mark.parametrize("end", ["</s>", "<s>", None])
 def test_an_answer_ends_at_its_end_mark_or_where_another_turn_begins(model, monkeypatch, end):
-    monkeypatch.setattr("mitigate.safeguard.model.TURNS", ("<s>", "<|no such token|>"))
+    monkeypatch.setattr(
+        "mitigate.safeguard.language_models.model.TURNS", ("<s>", "<|no such token|>")
+    )
     said = model.tokenizer.encode("turn left")
     mark = [] if end is None else [model.tokenizer.convert_tokens_to_ids(end)]
 

@@ -13,11 +13,14 @@ from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.style import MANNERS
-from mitigate.safeguard import gate, judgement, rules, trials
-from mitigate.safeguard.formal_words import in_plain_words
+from mitigate.safeguard import rules
+from mitigate.safeguard.fidelity import gate
+from mitigate.safeguard.foreign import judgement
 from mitigate.safeguard.guard import Safeguard
-from mitigate.safeguard.manners import plainer
-from mitigate.safeguard.routes import draw_route
+from mitigate.safeguard.learning import trials
+from mitigate.safeguard.learning.routes import draw_route
+from mitigate.safeguard.plain.formal_words import in_plain_words
+from mitigate.safeguard.plain.manners import plainer
 from mitigate.worlds.apartments.furniture import CATEGORIES
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
@@ -133,7 +136,7 @@ def test_styled_texts_of_the_tuning_voices_keep_their_parts():
 
 @needs_r2r_ce
 def test_real_instructions_are_not_changed_in_meaning():
-    from mitigate.safeguard.data import read_texts
+    from mitigate.safeguard.learning.data import read_texts
 
     for name in ("train.json.gz", "val_seen.json.gz"):
         texts = read_texts([FOLDER / name])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mitigate.safeguard.guard import open_safeguard
-from mitigate.safeguard.object_goal import object_goal
+from mitigate.safeguard.plain.object_goal import object_goal
 
 
 @pytest.mark.parametrize(

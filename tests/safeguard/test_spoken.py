@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mitigate.safeguard import spoken
+from mitigate.safeguard.learning import spoken
 from mitigate.safeguard.report import voices
 
 

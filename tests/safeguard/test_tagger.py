@@ -8,13 +8,13 @@ import torch
 from mitigate.core.files import find
 from mitigate.core.seeding import generator
 from mitigate.safeguard.choices import TAGGERS, label
-from mitigate.safeguard.edits import KEEP, Edit, tokens
 from mitigate.safeguard.guard import Safeguard, open_safeguard
-from mitigate.safeguard.lessons import draw_lesson
+from mitigate.safeguard.learning.lessons import draw_lesson
+from mitigate.safeguard.learning.routes import draw_route
 from mitigate.safeguard.metrics import token_f1
-from mitigate.safeguard.plainly_said import Tagged, is_speech, led, plainly_said, together
+from mitigate.safeguard.plain.edits import KEEP, Edit, tokens
+from mitigate.safeguard.plain.plainly_said import Tagged, is_speech, led, plainly_said, together
 from mitigate.safeguard.report import voices
-from mitigate.safeguard.routes import draw_route
 from mitigate.safeguard.tagger import Tagger, open_tagger
 
 SPEECH = (

@@ -10,9 +10,9 @@ import re
 
 import pytest
 
-from mitigate.safeguard import speech_words
-from mitigate.safeguard.edits import DROP, KEEP, NUMBER, Edit, edited, tokens
-from mitigate.safeguard.taken_back import taken_back
+from mitigate.safeguard.plain import speech_words
+from mitigate.safeguard.plain.edits import DROP, KEEP, NUMBER, Edit, edited, tokens
+from mitigate.safeguard.plain.taken_back import taken_back
 
 
 def given(marked: str, drop: float = 0.99) -> str:
