@@ -1,7 +1,7 @@
 """Milliseconds that a restorer costs for each frame, on one core.
 
-    python -m mitigate.restoration.bench checkpoints/restorer
-    ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2 python -m mitigate.restoration.bench
+    python -m mitigate.bench.restoration checkpoints/restorer
+    ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2 python -m mitigate.bench.restoration
 
 A frame that the gate takes for clean costs the judgement alone; one that it does not, the whole
 network. Both are the fastest of many calls (``mitigate/bench/timing.py``).
@@ -61,7 +61,7 @@ def table(found: dict[tuple[str, str], tuple[float, float]]) -> str:
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Command line: see the module's first lines."""
-    parser = argparse.ArgumentParser(prog="mitigate.restoration.bench", description=__doc__)
+    parser = argparse.ArgumentParser(prog="mitigate.bench.restoration", description=__doc__)
     parser.add_argument("folder", nargs="?", default=FOLDER, help=f"default {FOLDER}")
     parser.add_argument("--seconds", type=float, default=1.0, help="of each clock (default 1)")
     options = parser.parse_args(arguments)

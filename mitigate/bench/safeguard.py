@@ -1,4 +1,4 @@
-"""Memory and speed of the safeguard's language model: ``python -m mitigate.safeguard.bench``.
+"""Memory and speed of the safeguard's language model: ``python -m mitigate.bench.safeguard``.
 
 Each precision runs in a process of its own: resident memory once loaded, tokens a second of
 training (the recipe's own steps; prompts and completions counted, padding not), seconds to write 60
@@ -116,7 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     print(f"{torch.get_num_threads()} threads\n\n| weights | {' | '.join(COLUMNS.values())} |")
     print(f"| --- |{' ---: |' * len(COLUMNS)}")
     for kind in options.kinds:
-        command = [sys.executable, "-m", "mitigate.safeguard.bench", "--one", kind]
+        command = [sys.executable, "-m", "mitigate.bench.safeguard", "--one", kind]
         done = subprocess.run([*command, "--base", options.base], capture_output=True, text=True)
         if done.returncode:
             print(f"| {kind} | {done.stderr.strip().splitlines()[-1][:120]} |", flush=True)
