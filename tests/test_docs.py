@@ -41,3 +41,15 @@ def test_the_recipe_menus_list_every_recipe():
     for page in (ROOT / "README.md", ROOT / "recipes/README.md"):
         text = page.read_text(encoding="utf-8")
         assert all(f"| `{name}` |" in text for name in names)
+
+
+def test_the_lines_in_the_readme_run_as_they_are(monkeypatch):
+    """Those about adapters are run in ``tests/agents/test_adapters.py``."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = [b for b in re.findall(r"```python\n(.*?)```", readme, re.S) if "my-adapt" not in b]
+    monkeypatch.chdir(ROOT)
+    held: dict[str, object] = {}
+    for block in blocks:
+        exec(block, held)
+    assert held["action"] in (0, 1, 2, 3) and held["corrupted"].shape == (480, 640, 3)
+    assert len(blocks) == 2

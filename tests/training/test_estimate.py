@@ -13,7 +13,7 @@ from mitigate.evaluation.evaluate import CostConfig
 from mitigate.training import estimate, fitting
 
 # Minutes of trainings on 2 cores capped to AVX2, with the evaluation and without the set-up of the
-# environment (README.md, "Two commands").
+# environment (recipes/README.md, "How long they take").
 TIMED = [
     ("da_per_episode", "topological", 8.5),
     ("conv_adapter", "topological", 8.5),
