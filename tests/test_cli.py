@@ -13,6 +13,12 @@ from mitigate import cli
 ROOT = Path(__file__).parent.parent
 
 
+@pytest.fixture(autouse=True)
+def own_command_line(monkeypatch):
+    """A command sets ``sys.argv``; it is put back."""
+    monkeypatch.setattr(sys, "argv", [*sys.argv])
+
+
 def test_help_lists_every_command_with_an_example(capsys):
     with pytest.raises(SystemExit) as ended:
         cli.main(["--help"])

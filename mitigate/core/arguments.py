@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from pathlib import Path
 
 from mitigate.core.names import unknown
 
@@ -44,3 +45,10 @@ def paths_and_options(
             "written ./a=b.)"
         )
     return found, options
+
+
+def check_paths(paths: Sequence[object], options: str) -> None:
+    """Raise ValueError for ``out=x`` among the paths of a command whose ``options`` have dashes."""
+    for path in map(str, paths):
+        if path.partition("=")[0].isidentifier() and "=" in path and not Path(path).exists():
+            raise ValueError(f"There is no file {path}. Options are written {options} here.")

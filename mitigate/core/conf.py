@@ -11,10 +11,12 @@ import re
 import shlex
 import signal
 import sys
+import textwrap
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr
 from importlib import import_module
+from itertools import takewhile
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -196,7 +198,19 @@ def load_config(
 
 def help_text(about: str, primary: str) -> str:
     """What ``--help`` prints: ``about``, and :func:`options_text`."""
-    return f"{about}\nOptions, with what they are if nothing is said:\n\n{options_text(primary)}"
+    options = f"Options, with what they are if nothing is said:\n\n{options_text(primary)}"
+    return f"{about}\n{options}" + (f"\n\n{_recipes()}" if primary == "train" else "")
+
+
+def _recipes() -> str:
+    """A line for each recipe: the first sentence of its file."""
+    lines = ["Recipes (recipes/README.md):", ""]
+    for file in sorted((CONF / "recipe").glob("*.yaml")):
+        text = file.read_text(encoding="utf-8").removeprefix(WHOLE).strip()
+        comment = takewhile(lambda line: line.startswith("#"), text.splitlines())
+        told = re.split(r"\. |: make |\.$", " ".join(line[1:].strip() for line in comment))[0]
+        lines += textwrap.wrap(f"  {file.stem:17s} {told}", 100, subsequent_indent=" " * 20)
+    return "\n".join(lines)
 
 
 def options_text(primary: str) -> str:

@@ -1,6 +1,6 @@
 """Corrupt the instructions of a VLN-CE episode file of any size, R2R-CE, RxR-CE or our own:
 
-``python -m mitigate.corrupt_episodes IN OUT family=black_box severity=0.5 [seed=0] [split=test]
+``mitigate corrupt_episodes IN OUT family=black_box severity=0.5 [seed=0] [split=test]
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``
 
 Families (docs/instructions.md): friendly, novice, professional, formal, capitalize, mask, black_box

@@ -1,4 +1,4 @@
-"""Corrupt a folder of frames: python -m mitigate.corrupt IN OUT corruption=... severity=...
+"""Corrupt a folder of frames: mitigate corrupt IN OUT corruption=... severity=...
 
   IN          folder of frames, with any folders inside and links to folders: 8-bit RGB as PNG or
               JPEG; depth as 16-bit PNG, or as NPY float metres, [H, W], [H, W, 1] or with views
@@ -23,7 +23,7 @@ The same command goes on where it stopped. OUT/corrupt.json holds settings, coun
 left out with the reason; files of other kinds are left alone, and counted by suffix. Exit status:
 0 done, 1 done but bad files were left out, 2 not done.
 
-Example: python -m mitigate.corrupt recorded/ corrupted/ corruption=spatter severity=0.5
+Example: mitigate corrupt recorded/ corrupted/ corruption=spatter severity=0.5
 """
 
 from __future__ import annotations

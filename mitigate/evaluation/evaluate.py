@@ -1,4 +1,4 @@
-"""Evaluate an agent: ``python -m mitigate.evaluate checkpoint=checkpoints/base split=val_seen``.
+"""Evaluate an agent: ``mitigate evaluate checkpoint=checkpoints/base split=val_seen``.
 
 Writes one JSON line an episode and condition to ``rows.jsonl`` in the output folder; the same
 command again only fills what is missing.
@@ -32,6 +32,7 @@ if TYPE_CHECKING:  # nothing slow is imported before run() has checked the optio
     from torch import nn
 
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
+OF_TRAININGS = ("finetune.", "cost.")  # options that a kind of agent has for its trainings
 MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
 
 
@@ -110,7 +111,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     Raises ValueError for an unknown split or condition, weights that are not named, and what is no
     agent or is shown too little, FileNotFoundError for missing weights.
     """
-    _check(cfg)
+    _check(cfg, overrides)
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     met = conditions(names, cfg.severity, cfg.severity_depth)
@@ -174,8 +175,11 @@ def _severities(cfg: DictConfig) -> str:
     return f"{cfg.severity:g}{depth}"
 
 
-def _check(cfg: DictConfig) -> None:
+def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
     """Raise ValueError for settings that are well typed but make no sense."""
+    idle = [option for option in overrides if option.lstrip("+").startswith(OF_TRAININGS)]
+    if idle:
+        raise ValueError(f"{idle[0]} is for trainings: an evaluation changes no weights.")
     check_choice(cfg.safeguard)
     seeding.check(cfg.seed)
     if cfg.checkpoint is None:

@@ -1,4 +1,4 @@
-"""Join result rows into one table: ``python -m mitigate.table RUNS... [--out DIR]``.
+"""Join result rows into one table: ``mitigate table RUNS... [--out DIR]``.
 
 Takes row files and run or sweep folders, partial ones too. Prints the table and writes
 ``table.md``, ``heatmap.png`` and ``severity.png``.
@@ -10,6 +10,8 @@ import argparse
 import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+
+from mitigate.core.arguments import check_paths
 
 OUT = Path("runs/table")
 
@@ -31,6 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)
     try:
+        check_paths(options.rows, "--out DIR")
         written = run(options.rows, options.out)
     except (OSError, ValueError) as error:
         from mitigate.core.conf import said

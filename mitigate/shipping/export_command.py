@@ -1,4 +1,4 @@
-"""Write a run's agent as a folder to ship: ``python -m mitigate.export runs/a my_agent``.
+"""Write a run's agent as a folder to ship: ``mitigate export runs/a my_agent``.
 
 ``checkpoints/hardened/<name>`` gets the weights (or adapters and a reference to their base),
 ``config.yaml``, ``program.pt2``, a card and a README. The folder is made aside, reloaded in a fresh

@@ -1,4 +1,4 @@
-"""Many trainings or evaluations: ``python -m mitigate.sweep recipe=imitation,stacked seed=0,1``.
+"""Many trainings or evaluations: ``mitigate sweep recipe=imitation,stacked seed=0,1``.
 
 Each combination of values is a run in a folder of its own, on this machine or on those of
 ``launcher``. A failed one does not stop the others; the same command again goes on with what is

@@ -1,4 +1,4 @@
-"""Kinds of agent side by side: ``python -m mitigate.table1 table=objects jobs=2``.
+"""Kinds of agent side by side: ``mitigate table1 table=objects jobs=2``.
 
 ``table=routes`` and ``table=objects`` are the paper's Table I: plain and hardened agents under
 everything. ``routes_ablations`` and ``objects_ablations`` blank their senses one by one. The same

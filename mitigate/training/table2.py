@@ -1,4 +1,4 @@
-"""The paper's Tables I and II: ``python -m mitigate.table2 seeds=[0] jobs=2``.
+"""The paper's Tables I and II: ``mitigate table2 seeds=[0] jobs=2``.
 
 Table II is all methods with our reference agent, Table I all kinds of agent (``mitigate.table1``).
 Trains and evaluates every column for every seed, several cells at a time, each in processes of its

@@ -1,8 +1,8 @@
-"""Train an agent by a recipe: ``python -m mitigate.train recipe=da_per_episode severity=0.6``.
+"""Train an agent by a recipe: ``mitigate train recipe=da_per_episode severity=0.6``.
 
-A recipe config names one or more stages; one agent goes through them in order, each stage a
-:class:`~mitigate.training.trainer.Trainer` run in its own subfolder. The same command again goes
-on where the last one stopped. Afterwards the agent is evaluated before and after.
+A recipe names one or more stages; one agent goes through them in order, each in a subfolder of the
+run. The same command again goes on where the last one stopped. Afterwards the agent is evaluated
+before and after.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.core.arguments import asks_help, paths_and_options
+from mitigate.core.arguments import asks_help, check_paths, paths_and_options
 
 
 def test_paths_and_options_may_stand_in_any_order():
@@ -31,3 +31,11 @@ def test_what_cannot_be_read_is_explained(arguments, words):
 
 def test_nothing_and_a_wish_show_the_help():
     assert asks_help([]) and asks_help(["a", "--help"]) and not asks_help(["a"])
+
+
+def test_an_option_among_paths_is_answered_with_how_options_are_written(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ValueError, match=r"no file out=report. Options are written --out DIR here"):
+        check_paths(["runs/a", "out=report"], "--out DIR")
+    (tmp_path / "out=report").mkdir()
+    check_paths(["runs/a", "out=report", "runs/seed=0"], "--out DIR")

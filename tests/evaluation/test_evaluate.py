@@ -37,3 +37,11 @@ def test_another_severity_of_depth_is_another_folder():
         for options in ([], ["severity_depth=0.9"], ["severity_depth=0.6"])
     }
     assert folders == {"0.6", "0.6-d0.9", "0.6-d0.6"}
+
+
+@pytest.mark.parametrize("option", ["finetune.lr=9", "++cost.evaluation=4"])
+def test_an_option_of_trainings_is_refused(tmp_path, option):
+    cfg = conf.load_config("evaluate", [option, f"runs={tmp_path}"])
+    with pytest.raises(ValueError, match="is for trainings"):
+        evaluate.run(cfg, [option])
+    assert not list(tmp_path.iterdir())

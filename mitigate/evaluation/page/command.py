@@ -1,4 +1,4 @@
-"""Write result rows as one HTML file: ``python -m mitigate.report ROWS... --out report.html``.
+"""Write result rows as one HTML file: ``mitigate report ROWS... --out report.html``.
 
 Takes row files and run or sweep folders, partial ones too. The file needs no network and no other
 file: tables that sort, heatmaps whose cells list their episodes, curves, and walks where weights
