@@ -2,7 +2,8 @@
 
 habitat-sim 0.3 is not on the package index; how to get it, and scenes: ``docs/habitat.md``. The
 lab is not needed: cameras, actions and measures are VLN-CE's, and measures equal those of
-habitat-lab on the same walk (path by path, geodesics by the navmesh).
+habitat-lab on the same walk (path by path, geodesics by the navmesh), but for nDTW: it is against
+an episode's reference path, where VLN-CE's is against the denser locations of ``*_gt.json``.
 """
 
 from __future__ import annotations
@@ -116,7 +117,10 @@ class HabitatWorld:
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """One low-level action. Raises ValueError for one that does not exist."""
+        """One low-level action. Raises ValueError for one that does not exist, RuntimeError after
+        the last one."""
+        if self.done:
+            raise RuntimeError("The episode is over: reset first.")
         if action == STOP:
             self.stopped = True
         elif action in MOVES:
@@ -130,8 +134,9 @@ class HabitatWorld:
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """success, spl, path_length, geodesic_distance, distance_to_goal, ndtw (metres),
-        collisions and steps; as habitat-lab's Success, SPL and VLN-CE's NDTW measure them."""
+        """success, spl, path_length, geodesic_distance, distance_to_goal (metres), ndtw,
+        collisions and steps; success and spl as habitat-lab's Success and SPL. ndtw is to the
+        reference path, by the rule's metres."""
         walked, left = np.array(self.path), self.distance_to_goal()
         length = metrics.path_length(walked)
         won = self._rule.met(left, self.stopped)
@@ -147,7 +152,8 @@ class HabitatWorld:
         found |= {n: round(d, 4) for n, d in distances.items() if math.isfinite(d)}
         if self.episode.reference_path:
             reference = np.array(self.episode.reference_path)
-            found["ndtw"] = round(metrics.ndtw(walked, reference), 6)
+            by = self._rule.metres
+            found["ndtw"] = round(metrics.ndtw(walked, reference, threshold=by), 6)
         return found
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:

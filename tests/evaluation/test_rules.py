@@ -72,6 +72,30 @@ def test_the_expert_ends_where_the_rule_counts_it(rule, task):
         assert world.measures()["success"] == 1
 
 
+@pytest.mark.parametrize("rule, within", [("apartments", 1.0), ("objectnav", 0.1)])
+def test_both_distances_of_an_episode_are_to_what_the_rule_counts_from(rule, within):
+    world = ApartmentsWorld(rule=rule)
+    for episode in load_episodes("val_seen", "ogn")[:20:5]:
+        world.reset(episode)
+        at_once, told = world.measures(), episode.geodesic_distance
+        assert at_once["geodesic_distance"] == at_once["distance_to_goal"]
+        assert (at_once["geodesic_distance"] == told) == (rule == "apartments")
+        while not world.done:
+            world.step(world.expert().action())
+        assert world.measures()["distance_to_goal"] < within
+        assert world.measures()["spl"] <= 1
+
+
+def test_the_threshold_of_ndtw_is_the_metres_of_the_rule():
+    episode, found = load_episodes("val_seen")[0], {}
+    for rule, metres in (("apartments", 2.0), ("vln_ce", 3.0), ("wmnav", 1.0)):
+        world = ApartmentsWorld(rule=rule)
+        world.reset(episode)
+        found[rule] = -math.log(world.measures()["ndtw"]) * metres
+    assert found["vln_ce"] == pytest.approx(found["apartments"], rel=1e-4)
+    assert found["wmnav"] == pytest.approx(found["apartments"], rel=1e-4)
+
+
 def test_the_expert_of_the_usual_rule_walks_as_it_did():
     """Shipped rows and weights are of these walks."""
     world, said = ApartmentsWorld(), []

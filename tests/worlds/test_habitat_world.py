@@ -2,13 +2,16 @@
 (docs/habitat.md)."""
 
 import json
+import math
 import pickle
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from mitigate.core.build import maker
 from mitigate.core.conf import load_config
-from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.observation import DEPTH, FORWARD, RGB, STOP
 from mitigate.evaluation import metrics
 from mitigate.worlds import habitat_world
 from mitigate.worlds.habitat_world import NAVMESH, HabitatWorld
@@ -83,6 +86,31 @@ def test_a_scene_that_does_not_load_is_not_taken_for_the_one_before(tmp_path, mo
     monkeypatch.setattr(Simulator, "walkable", True)
     made._enter("a.glb")
     assert made._sim.loaded == str(tmp_path / "a.glb")
+
+
+def begun(rule, monkeypatch):
+    """A world as it stands at the start of an episode, without a simulator."""
+    told = SimpleNamespace(reference_path=[(0.0, 0.0, 0.0), (0.0, 0.0, -2.0)])
+    made = HabitatWorld("scenes", rule=rule)
+    vars(made).update(episode=told, path=[np.zeros(3)], start_distance=2.0)
+    vars(made).update(stopped=False, steps=0, collisions=0)
+    monkeypatch.setattr(made, "distance_to_goal", lambda: 2.0)
+    monkeypatch.setattr(made, "_observation", lambda: None)
+    return made
+
+
+@pytest.mark.parametrize("rule, metres", [("apartments", 2.0), ("vln_ce", 3.0)])
+def test_the_threshold_of_ndtw_is_the_metres_of_the_rule(rule, metres, monkeypatch):
+    found = begun(rule, monkeypatch).measures()["ndtw"]
+    assert found == pytest.approx(math.exp(-2.0 / (2 * metres)), abs=1e-5)
+
+
+def test_after_stop_nothing_can_be_done(monkeypatch):
+    made = begun("vln_ce", monkeypatch)
+    made.step(STOP)
+    with pytest.raises(RuntimeError, match="over: reset first"):
+        made.step(FORWARD)
+    assert made.done and made.steps == 1
 
 
 def test_an_oracle_stops_where_the_rule_counts_it():

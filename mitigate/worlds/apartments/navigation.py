@@ -49,9 +49,18 @@ class FreeSpace:
 
     def cell_of(self, xy: np.ndarray | tuple[float, float]) -> int:
         """Index of the free cell nearest to a plan position (metres)."""
+        return int(self.nearest[self._place(xy)])
+
+    def _place(self, xy: np.ndarray | tuple[float, float]) -> tuple[int, int]:
+        """(i, j) of the cell, free or not, nearest to a plan position (metres)."""
         i = min(max(int(xy[1] / CELL), 0), self.free.shape[0] - 1)
         j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
-        return int(self.nearest[i, j])
+        return i, j
+
+    def stand(self, xy: np.ndarray) -> np.ndarray:
+        """Where an agent can stand that is put at a plan position [2] (metres): there, if its cell
+        is free, else in the middle of the nearest that is."""
+        return xy if self.free[self._place(xy)] else self.centre(self.cell_of(xy))
 
     def centre(self, cell: int) -> np.ndarray:
         """Plan position (metres) of the middle of a free cell."""

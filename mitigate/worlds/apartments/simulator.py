@@ -50,7 +50,7 @@ class Simulator:
         return self._renderer
 
     def reset(self, episode: Episode) -> None:
-        """Put the agent at the start of an episode.
+        """Put the agent at the start of an episode; of one inside of something, beside it.
 
         Raises ValueError if start or goal lie farther than ``NEAR`` from where one can stand.
         """
@@ -60,10 +60,8 @@ class Simulator:
         for goal in episode.goals:
             self._check_place("has a goal", goal.position)
         self.field = goal_field(episode.scene_id, tuple(goal.position for goal in episode.goals))
-        self.xy, self.heading = (
-            from_vlnce(episode.start_position),
-            heading_of(episode.start_rotation),
-        )
+        self.xy = self.space.stand(from_vlnce(episode.start_position))
+        self.heading = heading_of(episode.start_rotation)
         self.path = [self.xy.copy()]
         self.steps = self.collisions = 0
         self.stopped = False
@@ -100,7 +98,10 @@ class Simulator:
         return self.renderer.render(*place, views=views)
 
     def step(self, action: int) -> None:
-        """One low-level action. Raises ``ValueError`` for an action that does not exist."""
+        """One low-level action. Raises ``ValueError`` for an action that does not exist,
+        ``RuntimeError`` after the last one."""
+        if self.done:
+            raise RuntimeError("The episode is over: reset first.")
         if action == FORWARD:
             self.xy, collided = self.space.move(self.xy, self.heading, FORWARD_METRES)
             self.collisions += collided

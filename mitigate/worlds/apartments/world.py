@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
@@ -13,14 +14,8 @@ from mitigate.core.memory import Memory
 from mitigate.core.names import unknown
 from mitigate.core.observation import (
     DEPTH,
-    FORWARD,
-    FORWARD_METRES,
-    LEFT,
     POSE,
     RGB,
-    RIGHT,
-    STOP,
-    TURN_DEGREES,
     VIEWS,
     Observation,
     Sensor,
@@ -29,6 +24,7 @@ from mitigate.core.observation import (
 from mitigate.evaluation import metrics
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
+from mitigate.worlds.apartments.expert import GeodesicExpert
 from mitigate.worlds.apartments.labels import (
     ahead,
     column_labels,
@@ -43,6 +39,7 @@ from mitigate.worlds.episodes import Episode, from_vlnce
 
 KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
 LARGEST = 2048  # pixels of a view (ours)
+APART = 0.5  # metres between the way that a file says and the measured, to warn of (ours)
 RULES = {"apartments": metrics.Rule("vln", SUCCESS_METRES), **metrics.RULES}
 
 
@@ -69,6 +66,7 @@ class ApartmentsWorld:
         self._memory = Memory(0)
         self._simulator: Simulator | None = None
         self._rendered: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        self._warned = False
 
     def __getstate__(self) -> dict[str, Any]:
         return {"size": self.size, "layouts": self.layouts, "views": self.views, "rule": self._rule}
@@ -106,6 +104,8 @@ class ApartmentsWorld:
     def reset(self, episode: Episode) -> Observation:
         """Raises ValueError for an episode that is not one of an apartment."""
         self.simulator.reset(episode)
+        self._shortest = round(self._left(), 4)
+        self._compare_length(episode)
         return self._observation()
 
     def step(self, action: int) -> Observation:
@@ -113,22 +113,20 @@ class ApartmentsWorld:
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """success, spl, path_length, geodesic_distance, distance_to_goal, ndtw (metres),
-        collisions and steps."""
-        simulator = self.simulator
-        episode, walked = simulator.episode, np.array(simulator.path)
-        length, left = metrics.path_length(walked), simulator.distance_to_goal()
-        reference = np.stack([from_vlnce(p) for p in episode.reference_path])
-        geodesic = float(episode.geodesic_distance or simulator.distance_to_goal(reference[0]))
-        away = float(self._field()[simulator.space.cell_of(simulator.xy)])
-        won = RULES[self._rule].met(away, simulator.stopped)
+        """success, spl, path_length, geodesic_distance, distance_to_goal (metres), ndtw,
+        collisions and steps. Both distances are to what the rule counts from, the first from where
+        the episode starts; ndtw is to the reference path, by the rule's metres."""
+        simulator, rule = self.simulator, RULES[self._rule]
+        walked, left = np.array(simulator.path), self._left()
+        length, won = metrics.path_length(walked), rule.met(left, simulator.stopped)
+        reference = np.stack([from_vlnce(p) for p in simulator.episode.reference_path])
         return {
             "success": int(won),
-            "spl": round(metrics.spl(won, geodesic, length), 6),
+            "spl": round(metrics.spl(won, self._shortest, length), 6),
             "path_length": round(length, 4),
-            "geodesic_distance": geodesic,
+            "geodesic_distance": self._shortest,
             "distance_to_goal": round(left, 4),
-            "ndtw": round(metrics.ndtw(walked, reference, threshold=SUCCESS_METRES), 6),
+            "ndtw": round(metrics.ndtw(walked, reference, threshold=rule.metres), 6),
             "collisions": int(simulator.collisions),
             "steps": simulator.steps,
         }
@@ -140,6 +138,23 @@ class ApartmentsWorld:
         """Metres from every free cell to what the rule counts from: the goal, or a view point."""
         points = RULES[self._rule].view_points
         return view_field(self.simulator.episode) if points else self.simulator.field
+
+    def _left(self) -> float:
+        """Metres from the agent to what the rule counts from."""
+        return float(self._field()[self.simulator.space.cell_of(self.simulator.xy)])
+
+    def _compare_length(self, episode: Episode) -> None:
+        """Warn, once a world, of an episode whose file says another way to the goal."""
+        told, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
+        if told is None or abs(told - measured) <= APART or self._warned:
+            return
+        self._warned = True
+        warnings.warn(
+            f"The episode {episode.episode_id} says a geodesic_distance of {told:g} m, but its "
+            f"goal is {measured:.1f} m from its start; SPL goes by what is measured. Was the list "
+            "made for these apartments, in metres? Others of it may be wrong, too.",
+            stacklevel=3,
+        )
 
     def truth(self) -> Mapping[str, np.ndarray]:
         """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),
@@ -277,29 +292,3 @@ class CameraLabels(Labels):
     ) -> tuple[np.ndarray, np.ndarray]:
         concepts, seen = column_labels(apartment, ids, depth)
         return concepts[0], seen[0]
-
-
-class GeodesicExpert:
-    """Distances and the greedy follower of a geodesic ``field``: it turns to the heading whose step
-    lowers the distance most, and stops within what ``rule`` counts."""
-
-    def __init__(self, simulator: Simulator, rule: metrics.Rule, field: np.ndarray) -> None:
-        self.simulator, self.rule, self.field = simulator, rule, field
-
-    def distance(self, xy: np.ndarray) -> float:
-        return float(self.field[self.simulator.space.cell_of(xy)])
-
-    def counts(self, metres: float) -> bool:
-        return self.rule.met(metres, True)
-
-    def action(self) -> int:
-        simulator = self.simulator
-        if self.distance(simulator.xy) < self.rule.stop_within:
-            return STOP
-        turns = sorted(range(-12, 13), key=abs)
-        headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
-        ends = [
-            simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings
-        ]
-        best = turns[int(np.argmin([self.distance(end) for end in ends]))]
-        return FORWARD if best == 0 else LEFT if best > 0 else RIGHT

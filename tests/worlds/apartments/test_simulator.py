@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -105,6 +106,8 @@ def test_turns_are_15_degrees_and_left_is_counter_clockwise(simulator):
 def test_an_episode_ends_at_stop_and_at_the_step_limit(simulator, episodes):
     simulator.step(STOP)
     assert simulator.done and simulator.stopped
+    with pytest.raises(RuntimeError, match="over: reset first"):
+        simulator.step(FORWARD)
     simulator.reset(episodes[1])
     for _ in range(MAX_STEPS):
         assert not simulator.done
@@ -116,6 +119,46 @@ def test_the_distance_to_the_goal_is_the_episodes_and_zero_at_the_goal(simulator
     assert simulator.distance_to_goal() == pytest.approx(episodes[0].geodesic_distance, abs=0.01)
     goal = from_vlnce(episodes[0].goals[0].position)
     assert simulator.distance_to_goal(goal) == 0.0 and SUCCESS_METRES == 2.0
+
+
+def start_at(episode, xy):
+    return replace(episode, start_position=(float(xy[0]), 0.0, -float(xy[1])))
+
+
+def test_a_start_inside_of_something_is_beside_it_and_a_free_one_stays(simulator, episodes):
+    space = simulator.space
+    blocked = (np.argwhere(~space.free)[:, ::-1] + 0.5) * CELL
+    away = [np.hypot(*(space.centre(space.cell_of(xy)) - xy)) for xy in blocked]
+    inside = blocked[[0.05 < metres < 0.3 for metres in away]][::40]
+    for xy in inside:
+        simulator.reset(start_at(episodes[0], xy))
+        assert free_at(space, simulator.xy) and len(inside) > 3
+        for _ in range(24):
+            simulator.step(FORWARD)
+            simulator.step(LEFT)
+        assert len(np.unique(simulator.path, axis=0)) > 2
+    free = space.centre(7) + [0.031, -0.017]
+    simulator.reset(start_at(episodes[0], free))
+    assert np.array_equal(simulator.xy, free)
+
+
+def test_the_shortest_way_is_measured_from_the_start_whatever_the_file_says(episodes):
+    world, first = ApartmentsWorld(16), episodes[0]
+    own = first.geodesic_distance
+    elsewhere = (first.reference_path[-1], *first.reference_path[1:])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for told in (own, own + 0.3, None):
+            world.reset(replace(first, geodesic_distance=told, reference_path=elsewhere))
+            assert world.measures()["geodesic_distance"] == own
+    for told in (0.0, 2 * own):
+        other = ApartmentsWorld(16)
+        with pytest.warns(UserWarning, match=rf"{first.episode_id} says .* {told:g} m, but its"):
+            other.reset(replace(first, geodesic_distance=told))
+        assert other.measures()["geodesic_distance"] == own
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            other.reset(replace(episodes[1], geodesic_distance=told))
 
 
 def test_an_unknown_action_names_the_allowed_ones(simulator):
