@@ -50,7 +50,8 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
     """Yield the (key, value) pairs of the JSON object in ``path``, one value in memory at a time.
 
     The value of the key ``streamed``, if it is a list, comes as an iterator over its items.
-    Raises ValueError if the file is no JSON object, is malformed, cut short or not text.
+    Raises ValueError if the file is no JSON object, is malformed, cut short or not text, or if
+    anything follows the object.
     """
     with open_text(path) as file:
         json_file = _JsonFile(file, path)
@@ -67,6 +68,7 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
                     pass
             else:
                 yield key, json_file.value()
+        json_file.end()
 
 
 class _JsonFile:
@@ -103,6 +105,12 @@ class _JsonFile:
         found = self._text.startswith(character, self._at)
         self._at += len(character) * found
         return found
+
+    def end(self) -> None:
+        """Raise if anything but white space is left."""
+        self.accept("")
+        if self._at < len(self._text):
+            self._fail("expected the end of the file")
 
     def value(self) -> Any:
         """Return the next JSON value, reading on until it is whole."""

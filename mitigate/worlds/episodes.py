@@ -97,6 +97,11 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         if key != "episodes":
             continue
         found = True
+        if not isinstance(items, Iterator):
+            raise ValueError(
+                f"{path}: 'episodes' is {short(items)}, not a list. Correct the file, or download "
+                "it again."
+            )
         for index, raw in enumerate(items):
             yield _episode(raw, path, index, hidden_goals)
     if not found:
@@ -204,7 +209,7 @@ def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Epis
         trajectory_id=str(ids["trajectory_id"]),
         scene_id=record.get("scene_id", str),
         start_position=record.vector("start_position", 3),
-        start_rotation=record.vector("start_rotation", 4),
+        start_rotation=record.rotation("start_rotation"),
         goals=() if hide else tuple(map(_goal, record.records("goals"))),
         instruction=_instruction(record),
         reference_path=() if hide else record.vectors("reference_path", 3),

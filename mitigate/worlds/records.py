@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -9,6 +10,8 @@ from mitigate.core.names import short
 
 Vector = tuple[float, ...]
 FARTHEST = 1e6  # metres (ours)
+OFF_ONE = 1e-2  # of a quaternion's length, for digits that were cut (ours)
+TILTED = 0.1  # of a quaternion's x and z: 11 degrees (ours)
 NEEDED = (
     "An episode needs episode_id, trajectory_id, scene_id, start_position [x, y, z], "
     "start_rotation [x, y, z, w], goals [{position, radius}], instruction {instruction_text} and "
@@ -42,15 +45,26 @@ class Record:
         return value
 
     def metres(self, key: str) -> float | None:
-        """Return the finite number ``key``, None if it is absent."""
+        """Return the finite number ``key``, 0 or more, None if it is absent."""
         value = self.get(key, (int, float), None)
-        if value is not None and not _finite(value):
-            self.fail(f"has a wrong {key!r}: metres are needed, not {short(value)}")
+        if value is not None and not (_finite(value) and value >= 0):
+            self.fail(f"has a wrong {key!r}: metres from 0 on are needed, not {short(value)}")
         return value
 
     def vector(self, key: str, size: int) -> Vector:
         """Return ``key`` as ``size`` finite numbers."""
         return self._vector(key, self.get(key, list), size)
+
+    def rotation(self, key: str) -> Vector:
+        """Return ``key`` as a unit quaternion (x, y, z, w) about the vertical y."""
+        found = self.vector(key, 4)
+        x, _, z, _ = found
+        if abs(math.hypot(*found) - 1) > OFF_ONE or max(abs(x), abs(z)) > TILTED:
+            self.fail(
+                f"has a wrong {key!r}: a unit quaternion [x, y, z, w] about the vertical y is "
+                f"needed, not {short(list(found))} (is it [w, x, y, z]?)"
+            )
+        return found
 
     def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
         """Return ``key`` as a non-empty list of vectors."""

@@ -172,6 +172,10 @@ def test_a_missing_key_is_named_with_file_and_episode(tmp_path, key):
     [
         ({"start_position": [1, 2]}, "wrong 'start_position': 3 finite numbers"),
         ({"start_rotation": [0, 0, 0, "w"]}, "wrong 'start_rotation': 4 finite numbers"),
+        ({"start_rotation": [0.8, 0, 0.6, 0]}, r"\[0.8, 0.0, 0.6, 0.0\] \(is it \[w, x, y, z\]"),
+        ({"start_rotation": [0, 0, 0, 0]}, "unit quaternion"),
+        ({"start_rotation": [0, 0.9, 0, 0.9]}, "unit quaternion"),
+        ({"start_rotation": [0.2, 0, 0, 0.98]}, "about the vertical"),
         ({"reference_path": []}, "has an empty 'reference_path'"),
         ({"reference_path": [[0, 0, None]]}, "wrong 'reference_path'"),
         ({"goals": []}, "has an empty 'goals'"),
@@ -180,6 +184,7 @@ def test_a_missing_key_is_named_with_file_and_episode(tmp_path, key):
         ({"instruction": "go"}, "wrong 'instruction': 'go'"),
         ({"scene_id": 5}, "wrong 'scene_id': 5"),
         ({"info": {"geodesic_distance": "far"}}, "info, has a wrong 'geodesic_distance'"),
+        ({"info": {"geodesic_distance": -1.5}}, "metres from 0 on are needed, not -1.5"),
     ],
 )
 def test_a_wrong_value_is_named(tmp_path, changes, message):
@@ -202,11 +207,24 @@ def test_broken_files_are_refused(tmp_path):
         "empty.json": b"",
         "comma.json": b'{"episodes": [{} {}]}',
         "deep.json": b'{"episodes": [' + b"[" * 200_000,
+        "two.json": json.dumps({"episodes": [R2R]}).encode() + b'\n{"episodes": []}',
     }
     for name, content in cases.items():
         (tmp_path / name).write_bytes(content)
         with pytest.raises(ValueError, match=f"{name}(: episode 0| is not whole JSON)"):
             list(read_episodes(tmp_path / name))
+
+
+@pytest.mark.parametrize("held", [None, {}, "none", 3])
+def test_episodes_that_are_no_list_are_refused(tmp_path, held):
+    path = write_json(tmp_path / "a.json", {"episodes": held})
+    with pytest.raises(ValueError, match=r"a\.json: 'episodes' is .*, not a list"):
+        list(read_episodes(path))
+
+
+def test_a_rotation_of_few_digits_is_one(tmp_path):
+    path = episode_file(tmp_path, start_rotation=[0.01, -0.38, -0.02, 0.92])
+    assert list(read_episodes(path))[2].start_rotation == (0.01, -0.38, -0.02, 0.92)
 
 
 def test_other_kinds_of_file_are_told_apart(tmp_path):
