@@ -30,7 +30,7 @@ class GymWorld(SeededWorld):
         entries: Mapping[str, str] | None = None,
         *,
         success: str | None = None,
-        unit: float = 1.0,
+        unit: float | None = None,
         limit: int = 500,
         rule: str | None = None,
     ) -> None:
@@ -49,13 +49,21 @@ class GymWorld(SeededWorld):
         return self._observation(seen if isinstance(seen, Mapping) else {WHOLE: seen})
 
     def step(self, action: int) -> Observation:
-        """Raises ValueError for an action that the environment does not have."""
+        """Raises ValueError for an action that the environment does not have, and at the end of an
+        episode whose ``info`` does not say ``success``."""
         space = self.env.action_space
         if not 0 <= action < space.n:
             raise ValueError(f"Unknown action {action}: the environment has {space.n}.")
         first = int(getattr(space, "start", 0))
         seen, reward, terminated, truncated, self._info = self.env.step(action + first)
-        self._end_step(float(reward), bool(terminated or truncated))
+        over = bool(terminated or truncated)
+        if over and self.success is not None and self.success not in self._info:
+            raise ValueError(
+                f"At the end of the episode info has no entry {self.success!r}, only "
+                f"{', '.join(map(repr, self._info)) or 'none'}: name another, or write it there, "
+                "False for a failure."
+            )
+        self._end_step(float(reward), over)
         return self._observation(seen if isinstance(seen, Mapping) else {WHOLE: seen})
 
     def _flag(self) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,6 +12,8 @@ from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
 from mitigate.worlds.episodes import Episode
 
+FARTHEST = 100.0  # metres: half of an indoor frame's readings are nearer (ours)
+
 
 class SeededWorld:
     """A subclass sets ``_steps``, ``_reward`` and ``done`` as it goes, and says what it saw.
@@ -18,10 +21,12 @@ class SeededWorld:
     Args: found: shape, dtype and greatest value of each entry of the environment's observations.
     entries: names of its frames by ours ("rgb", "depth", "pose"). success: the entry that says at
     the end whether it went well; None: a reward above 0 in the last step. unit: metres of one unit
-    of depth. limit: steps after which an episode is over at the latest. rule: what success means,
-    in words, for the rows; None: what ``success`` says.
+    of depth, which whole numbers need; None: 1. limit: steps after which an episode is over at the
+    latest. rule: what success means, in words, for the rows; None: what ``success`` says.
 
-    Raises ValueError if an entry is not there, or RGB is not uint8.
+    Depth that is not finite or below 0 reads 0, no reading. Raises ValueError if an entry is not
+    there, RGB is not uint8, or ``unit`` or ``limit`` is none; and for the first depth of an episode
+    if that cannot be metres.
     """
 
     done = True
@@ -31,12 +36,14 @@ class SeededWorld:
         found: Mapping[str, tuple[tuple[int, ...], str, float]],
         entries: Mapping[str, str],
         success: str | None,
-        unit: float,
+        unit: float | None,
         limit: int,
         rule: str | None,
     ) -> None:
-        self.entries, self.success, self.unit = dict(entries), success, unit
-        self.limit = limit
+        if limit < 1:
+            raise ValueError(f"limit={limit}: an episode has 1 step or more.")
+        self.entries, self.success = dict(entries), success
+        self.unit, self.limit = 1.0 if unit is None else unit, limit
         self.rule = rule or (f"{success} at the end" if success else "reward > 0 at the end")
         lacking = [entry for entry in self.entries.values() if entry not in found]
         if lacking or not self.entries:
@@ -47,7 +54,9 @@ class SeededWorld:
         self.sensors: dict[str, Sensor] = {}
         for name, entry in self.entries.items():
             shape, dtype, most = found[entry]
-            of_depth = {"unit": "m", "high": most * unit} if name == DEPTH else {}
+            if name == DEPTH:
+                _check_unit(entry, dtype, unit)
+            of_depth = {"unit": "m", "high": most * self.unit} if name == DEPTH else {}
             self.sensors[name] = Sensor(name, tuple(shape), dtype, **of_depth)  # type: ignore[arg-type]
         if RGB in self.sensors and self.sensors[RGB].dtype != "uint8":
             raise ValueError(
@@ -57,7 +66,7 @@ class SeededWorld:
 
     def measures(self) -> dict[str, float]:
         """success, spl (the same: no shortest path is known) and steps."""
-        won = int(self._won() and self.done)
+        won = int(self.done and self._won())
         return {"success": won, "spl": float(won), "steps": self._steps}
 
     def expert(self) -> None:
@@ -84,6 +93,29 @@ class SeededWorld:
         """Copies: an environment may use its buffers again."""
         frames = {name: np.array(seen[entry]) for name, entry in self.entries.items()}
         if DEPTH in frames:
-            frames[DEPTH] = frames[DEPTH].astype(np.float32) * np.float32(self.unit)
+            frames[DEPTH] = self._metres(frames[DEPTH])
         pose = {POSE: frames.pop(POSE)} if POSE in frames else {}
         return Observation(pose, lambda: frames, tuple(frames))
+
+    def _metres(self, depth: np.ndarray) -> np.ndarray:
+        """Depth as float32 metres; of the first in an episode it is asked whether it can be."""
+        metres = depth.astype(np.float32) * np.float32(self.unit)
+        metres = np.where(np.isfinite(metres) & (metres > 0), metres, np.float32(0))
+        known = metres[metres > 0]
+        if self._steps == 0 and len(known) and float(np.median(known)) > FARTHEST:
+            raise ValueError(
+                f"Half of the depth is farther than {np.median(known):.0f} m: that is not metres. "
+                "Give unit=, the metres of one unit of it (0.001 for millimetres)."
+            )
+        return metres
+
+
+def _check_unit(entry: str, dtype: str, unit: float | None) -> None:
+    """Raise ValueError for a unit of depth that is none, or is not said and must be."""
+    if unit is not None and not 0 < unit < math.inf:
+        raise ValueError(f"unit={unit:g} is no unit of depth: give metres above 0.")
+    if unit is None and not dtype.startswith("float"):
+        raise ValueError(
+            f"The depth {entry!r} is {dtype}, which may be anything: give unit=, the metres of one "
+            "unit of it (0.001 for millimetres)."
+        )

@@ -149,7 +149,7 @@ class EnvWorld(SeededWorld):
         entries: Mapping[str, str] | None = None,
         *,
         success: str | None = None,
-        unit: float = 1.0,
+        unit: float | None = None,
         limit: int = 500,
         rule: str | None = None,
     ) -> None:

@@ -98,6 +98,59 @@ def test_a_gymnasium_environment_is_a_world(entry):
         world.step(5)
 
 
+def test_a_success_that_info_never_says_is_told_at_the_end():
+    from mitigate.worlds.gym import GymWorld
+
+    world = GymWorld(Room(), success="is_success")
+    with pytest.raises(ValueError, match="no entry 'is_success', only 'won'"):
+        run_episode(Brightness(), world, episode(3), CLEAN, 0)
+    cut = GymWorld(Room(), success="is_success", limit=2)  # the environment did not end it
+    assert run_episode(Brightness(), cut, episode(3), CLEAN, 0)["success"] == 0
+
+
+class Deep(Room):
+    """A room of which depth is seen, the same everywhere."""
+
+    def __init__(self, depth):
+        super().__init__("rgb")
+        self.depth = np.asarray(depth)
+        box = gymnasium.spaces.Box(0, 60000, (SIZE, SIZE, 1), self.depth.dtype.type)
+        self.observation_space = gymnasium.spaces.Dict({**self.observation_space, "depth": box})
+
+    def _look(self):
+        return {**super()._look(), "depth": np.full((SIZE, SIZE, 1), self.depth)}
+
+
+def test_depth_in_whole_numbers_needs_its_unit():
+    from mitigate.worlds.gym import GymWorld
+
+    with pytest.raises(ValueError, match=r"'depth' is uint16, .*give unit=.*millimetres"):
+        GymWorld(Deep(np.uint16(2500)))
+    world = GymWorld(Deep(np.uint16(2500)), unit=0.001)
+    seen = world.reset(episode(3))["depth"]
+    assert seen.dtype == np.float32 and np.allclose(seen, 2.5)
+    with pytest.raises(ValueError, match="farther than 2500 m: that is not metres"):
+        GymWorld(Deep(np.float32(2500))).reset(episode(3))["depth"]
+    for unit in (0, -1.0, float("nan")):
+        with pytest.raises(ValueError, match="no unit of depth"):
+            GymWorld(Deep(np.float32(2)), unit=unit)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
+def test_depth_that_is_none_is_no_reading(value):
+    from mitigate.worlds.gym import GymWorld
+
+    assert not GymWorld(Deep(np.float32(value))).reset(episode(3))["depth"].any()
+
+
+@pytest.mark.parametrize("limit", [0, -3])
+def test_an_episode_without_a_step_is_refused(limit):
+    from mitigate.worlds.gym import GymWorld
+
+    with pytest.raises(ValueError, match="1 step or more"):
+        GymWorld(Room(), limit=limit)
+
+
 def test_a_gymnasium_environment_without_frames_is_refused_with_what_it_has():
     from mitigate.worlds.gym import GymWorld
 
