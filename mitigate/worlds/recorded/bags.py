@@ -39,12 +39,15 @@ class Bag:
     stepped = False
 
     def __init__(self, path: Path, topics: Topics, hfov: float | None, yaw: float = 0.0) -> None:
-        self.path, self.name, self.instruction = path, path.stem, words(path.with_suffix(".txt"))
+        self.path, self.name = path, path.name if path.is_dir() else path.stem
+        self.instruction = words(path.parent / f"{self.name}.txt")
         with self._open() as reader:
             there = {name: info.msgtype for name, info in reader.topics.items()}
             self.topics = chosen(path, there, topics)
             self.kinds = [kind for kind in KINDS if kind in self.topics]
             stamps, places, lenses = self._index(reader, hfov)
+        if hfov is not None and all(kind in lenses for kind in self.kinds):
+            raise ValueError(f"{path} says how wide its cameras see: leave hfov= out.")
         self._pair(stamps, places, yaw)
         self.cameras: Mapping[str, Lens] = {
             kind: lenses[kind] if kind in lenses else self._wide(kind, hfov) for kind in self.kinds
@@ -108,45 +111,48 @@ class Bag:
 
     def _messages(
         self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
-    ) -> Iterator[tuple[str, float, Any]]:
-        """(name, seconds, message) of these topics in the order of the bag. ``decode``: which of a
-        name's messages are wanted, counted from 0; the others are None; names not in it: all."""
+    ) -> Iterator[tuple[str, tuple[float, float], Any]]:
+        """(name, seconds, message) of these topics in the order of the bag. seconds: by the header
+        and as received. ``decode``: which of a name's messages are wanted, counted from 0; the
+        others are None; names not in it: all."""
         by_topic: dict[str, list[str]] = {}
         for name in names:
             by_topic.setdefault(self.topics[name], []).append(name)
         connections = [c for c in reader.connections if c.topic in by_topic]
         counts = dict.fromkeys(names, -1)
         for connection, received, raw in reader.messages(connections=connections):
-            time = stamp(raw, reader.is2) or received / 1e9
+            times = stamp(raw, reader.is2), received / 1e9
             for name in by_topic[connection.topic]:
                 counts[name] += 1
                 needed = name not in decode or counts[name] in decode[name]
                 message = reader.deserialize(raw, connection.msgtype) if needed else None
-                yield name, time, message
+                yield name, times, message
 
     def _index(
         self, reader: Any, hfov: float | None
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
         """When each image was taken, (time, x, y, heading) of each pose, and the lenses."""
-        stamps: dict[str, list[float]] = {kind: [] for kind in self.kinds}
-        places: list[tuple[float, ...]] = []
+        stamps: dict[str, list[tuple[float, float]]] = {name: [] for name in (*self.kinds, POSE)}
+        places: list[tuple[float, float, float]] = []
         lenses: dict[str, Lens] = {}
         images: dict[str, set[int]] = {kind: set() for kind in self.kinds}
-        for name, time, message in self._messages(reader, list(self.topics), images):
+        for name, times, message in self._messages(reader, list(self.topics), images):
             if name in stamps:
-                stamps[name].append(time)
-                if len(stamps[name]) > LONGEST:
-                    raise ValueError(f"{self.path} has more than {LONGEST} images: cut it.")
-            elif name == POSE:
-                places.append((time, *place(message)))
+                stamps[name].append(times)
+            if name in self.kinds and len(stamps[name]) > LONGEST:
+                raise ValueError(f"{self.path} has more than {LONGEST} images: cut it.")
+            if name == POSE:
+                places.append(place(message))
                 if len(places) > MOST_POSES:
                     raise ValueError(f"{self.path} has more than {MOST_POSES} poses: cut it.")
-            else:
+            elif name not in self.kinds:
                 kind = name.removeprefix("info ")
                 unusable = kind not in lenses and hfov is not None and not message_focal(message)
                 if kind not in lenses and not unusable:
                     lenses[kind] = lens(kind, message, self.path)
-        return stamps, places, lenses
+        taken = {name: _times(listed) for name, listed in stamps.items()}
+        placed_at = [(time, *where) for time, where in zip(taken.pop(POSE), places, strict=True)]
+        return taken, placed_at, lenses
 
     def _wide(self, kind: str, hfov: float | None) -> Lens:
         if hfov is None:
@@ -193,6 +199,12 @@ class Bag:
         self.times, self.poses = times[kept], None if poses is None else poses[kept]
         self.paired = {kind: index[kept] for kind, index in paired.items()}
         self.dropped = int((~kept).sum())
+
+
+def _times(stamps: Sequence[tuple[float, float]]) -> list[float]:
+    """Of a topic's messages (by the header, as received): by the header, if one says a time."""
+    said = any(header for header, _ in stamps)
+    return [header if said else received for header, received in stamps]
 
 
 def message_focal(message: Any) -> bool:

@@ -11,6 +11,7 @@ Beside each, ``instruction.txt`` may hold the words.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -125,9 +126,7 @@ def _recorded(
             f"{len(steps)} steps: it is not whole."
         )
     steps = steps[: min(counts)]
-    poses = None
-    if all(_is_place(step) for step in steps):
-        poses = np.array([(*from_vlnce(s["position"]), s["heading"]) for s in steps], np.float64)
+    poses = _places(steps, folder / STEPS)
     said = str(told.get("text") or told.get("category") or "")[:LARGEST_WORDS]
     unit = _told(_json(top / RECORDING), "unit", top / RECORDING) or 0.001
     if not 0 < unit <= 1:
@@ -165,6 +164,22 @@ def _told(held: Mapping[str, Any], key: str, file: Path) -> float | None:
     return float(value)
 
 
+def _places(steps: Sequence[Any], file: Path) -> np.ndarray | None:
+    """float64 [N, 3] of the lines of steps.jsonl; None, with a warning if it is not of all, where
+    a line does not say where the agent was."""
+    there = sum(map(_is_place, steps))
+    if there < len(steps):
+        if there:
+            warnings.warn(
+                f"{file} lacks the pose of {len(steps) - there} of {len(steps)} steps: the drive "
+                "is read without poses.",
+                stacklevel=2,
+            )
+        return None
+    poses = [(*from_vlnce(step["position"]), step["heading"]) for step in steps]
+    return _in_radians(np.array(poses, np.float64), file)
+
+
 def _is_place(step: Any) -> bool:
     """Whether a line of steps.jsonl says where the agent was."""
     place = step.get("position") if isinstance(step, dict) else None
@@ -197,21 +212,28 @@ def _simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
 def _poses(file: Path) -> np.ndarray:
     """float64 [N, 3] of lines "x,y,heading", with or without these names above them."""
     lines = [
-        [word.strip() for word in line.split(",")]
-        for line in text(file).splitlines()
+        (n, [word.strip() for word in line.split(",")])
+        for n, line in enumerate(text(file).splitlines(), 1)
         if line.strip()
     ]
-    if lines and any(word.isalpha() and word.lower() != "nan" for word in lines[0]):
-        if lines[0] != ["x", "y", "heading"]:
-            raise ValueError(f"{file} has the columns {','.join(lines[0])}, not x,y,heading.")
+    first = lines[0][1] if lines else []
+    if any(word.isalpha() and word.lower() != "nan" for word in first):
+        if first != ["x", "y", "heading"]:
+            raise ValueError(f"{file} has the columns {','.join(first)}, not x,y,heading.")
         lines = lines[1:]
-    wrong = [n for n, line in enumerate(lines, 1) if len(line) != 3]
+    wrong = [n for n, line in lines if len(line) != 3]
     if wrong:
         raise ValueError(f"{file}, line {wrong[0]}, is not x,y,heading.")
-    poses = np.array([[number(w, file, n) for w in line] for n, line in enumerate(lines, 1)])
-    if len(poses) and np.ptp(poses[:, 2]) > 0 and np.abs(poses[:, 2]).max() > MOST_TURNED:
-        raise ValueError(f"{file} has headings up to {np.abs(poses[:, 2]).max():g}: give radians.")
-    return poses.reshape(-1, 3)
+    poses = np.array([[number(w, file, n) for w in line] for n, line in lines])
+    return _in_radians(poses.reshape(-1, 3), file)
+
+
+def _in_radians(poses: np.ndarray, file: Path) -> np.ndarray:
+    """``poses`` [N, 3]. Raises ValueError for headings that are degrees."""
+    headings = poses[:, 2]
+    if len(poses) and np.ptp(headings) > 0 and np.abs(headings).max() > MOST_TURNED:
+        raise ValueError(f"{file} has headings up to {np.abs(headings).max():g}: give radians.")
+    return poses
 
 
 def _ordered(folder: Path) -> list[Path]:

@@ -6,6 +6,7 @@ black (no reading in depth) where the camera did not look.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -16,10 +17,12 @@ from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation, Sens
 from mitigate.core.progress import Progress
 from mitigate.worlds.episodes import Episode, Instruction
 from mitigate.worlds.recorded.source import Lens, Source
-from mitigate.worlds.recorded.steps import Driven, Step, driven
+from mitigate.worlds.recorded.steps import Driven, Step, driven, strange
 from mitigate.worlds.world import Expert
 
 LARGEST = 1 << 32  # bytes of the frames of a drive (ours)
+STRANGE = 1 / 3  # of the steps that move: more do not go along the heading by mistake (ours)
+ENOUGH = 5  # steps that move, to say so (ours)
 FARTHEST = 100.0  # metres: half of an indoor frame's readings are nearer (ours)
 OVER = 4  # pixels of a side of what is drawn into, for one of a view that is not filled (ours)
 OFF = 3.0  # degrees that a camera may look beside its view of the panorama (ours)
@@ -93,6 +96,8 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
     taken = None if poses is None else driven(poses)
+    if poses is not None and taken is not None:
+        _check_headings(source.name, *strange(poses, taken))
     return Recording(source.name, source.instruction, frames, times, poses, taken)
 
 
@@ -188,6 +193,17 @@ def _check_metres(name: str, depth: np.ndarray | None) -> None:
         raise ValueError(
             f"Half of {name}'s depth is farther than {np.median(valid):.0f} m: that is not metres. "
             "Of 16-bit PNG set unit= (metres of a count)."
+        )
+
+
+def _check_headings(name: str, strange: int, moves: int) -> None:
+    """Warn if too many of the steps that move go another way than the heading."""
+    if moves >= ENOUGH and strange > STRANGE * moves:
+        warnings.warn(
+            f"{name}: {strange} of {moves} steps that move go back or sideways. Does the heading "
+            "point along the way? It is counter-clockwise from +y, in radians; of a bag, yaw= says "
+            "where its camera looks.",
+            stacklevel=3,
         )
 
 

@@ -21,6 +21,7 @@ GAP = 2.0  # seconds between two poses, at most, for a place between them to be 
 LONGEST = 1 << 20  # instants of a drive (ours): 9 hours at 30 Hz
 LARGEST_TEXT, LARGEST_WORDS = 1 << 28, 1 << 16  # bytes of a list, of an instruction (ours)
 NARROW, WIDE = 10.0, 179.0  # degrees that a camera sees
+LEVEL = 0.3  # of a direction's length lies level, or it has no heading: 73 degrees down (ours)
 LOW, BESIDE = 1.0, 4.0  # degrees from top to bottom; pictures from the middle to the centre (ours)
 ASPECT = 0.02  # share by which a picture's aspect may differ from its CameraInfo's (ours)
 
@@ -115,8 +116,10 @@ class Source(Protocol):
 
 
 def plan_pose(x: float, y: float, forward: np.ndarray) -> tuple[float, float, float]:
-    """The pose in the plan frame of an agent at (x, y) that faces ``forward`` [3] (z is up)."""
-    return x, y, math.atan2(-forward[0], forward[1])
+    """The pose in the plan frame of an agent at (x, y) that faces ``forward`` [3] (z is up); its
+    heading is NaN where it faces up or down."""
+    level = math.hypot(forward[0], forward[1]) >= LEVEL
+    return x, y, math.atan2(-forward[0], forward[1]) if level else math.nan
 
 
 def rotated(quaternion: Sequence[float], axis: Sequence[float]) -> np.ndarray:

@@ -11,6 +11,7 @@ from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP
 
 NONE = -1  # what was done is none of an agent's actions: it went back, or sideways
 NEARLY = 0.98  # of a step: one of exactly its length must not be missed by rounding (ours)
+MOVES = 0.05  # metres: a robot that stands is measured to move by less (ours)
 PAUSE = 0.5  # of a step: less is none (ours)
 
 
@@ -96,6 +97,14 @@ def driven(poses: np.ndarray) -> Driven:
         else:
             actions[index] = FORWARD if ahead > aside else NONE
     return Driven(actions, metres, radians)
+
+
+def strange(poses: np.ndarray, taken: Driven) -> tuple[int, int]:
+    """How many of the steps between poses [T, 3] that move, by ``MOVES`` or more, none of an
+    agent's actions is like, and how many move."""
+    moves = np.hypot(*np.diff(poses[:, :2], axis=0).T) >= MOVES
+    moves &= np.isin(taken.actions[:-1], (FORWARD, NONE))
+    return int((taken.actions[:-1][moves] == NONE).sum()), int(moves.sum())
 
 
 def answered(actions: np.ndarray) -> Driven:

@@ -81,7 +81,8 @@ def _listed(path: Path, name: str) -> list[tuple[float, Path]]:
 
 
 def _trajectory(file: Path) -> np.ndarray:
-    """float64 [N, 4]: time and plan pose of lines "time x y z qx qy qz qw"."""
+    """float64 [N, 4]: time and plan pose of lines "time x y z qx qy qz qw". Raises ValueError if
+    most look up or down, as a robot's poses would be read."""
     rows = []
     for line, words in _table(file, least=8):
         numbers = [number(word, file, line) for word in words[:8]]
@@ -89,6 +90,13 @@ def _trajectory(file: Path) -> np.ndarray:
         rows.append((numbers[0], *plan_pose(numbers[1], numbers[2], ahead)))
     if not rows:
         raise ValueError(f"{file} holds no pose.")
+    unknown = sum(math.isnan(row[3]) for row in rows)
+    if 2 * unknown > len(rows):
+        raise ValueError(
+            f"{file}: {unknown} of {len(rows)} poses look up or down, or are none. They must be of "
+            "the camera's optical axis (z ahead, x right, y down), with z up in the room. Turn "
+            "those of a robot (x ahead) so, or delete the file to go without poses."
+        )
     return np.array(sorted(rows))
 
 

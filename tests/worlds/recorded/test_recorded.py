@@ -5,15 +5,19 @@ from __future__ import annotations
 import json
 import math
 import struct
+import warnings
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from shutil import copytree
 
 import cv2
 import numpy as np
 import pytest
+from rosbags.rosbag1 import Writer
+from rosbags.typesys import Stores, get_typestore
 
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
-from mitigate.replay.export_drive import write_bag, write_frames
+from mitigate.replay.export_drive import TOPICS, messages, write_bag, write_frames
 from mitigate.worlds.recorded import RecordedWorld, Step, load, open_recording
 from mitigate.worlds.recorded.messages import stamp
 from mitigate.worlds.recorded.recording import square
@@ -85,6 +89,44 @@ def test_a_bag_gives_what_the_folder_gives(folder, tmp_path, form):
     assert first.driven.actions.tolist() == second.driven.actions.tolist()
 
 
+def bag_of(path: Path, headers: Sequence[int]) -> Path:
+    """A bag of ROS 1, a step for each header's seconds, received from second 1000 on."""
+    store = get_typestore(Stores.ROS1_NOETIC)
+    made = {}
+    with Writer(path) as writer:
+        for number, (step, stamped) in enumerate(zip(steps(walk()), headers, strict=True)):
+            for name, message in messages(store, step, stamped, True):
+                kind = message.__msgtype__
+                if name not in made:
+                    made[name] = writer.add_connection(TOPICS[name], kind, typestore=store)
+                raw = store.serialize_ros1(message, kind)
+                writer.write(made[name], (1000 + number) * 10**9, raw)
+    return path
+
+
+@pytest.mark.parametrize("headers", [range(6), [0] * 6])
+def test_a_time_of_zero_is_one_unless_no_header_says_another(tmp_path, headers):
+    (drive,) = open_recording(bag_of(tmp_path / "robot.bag", headers))
+    assert drive.times.tolist() == [(1000 if not any(headers) else 0) + n for n in range(6)]
+    assert np.allclose(drive.poses, walk(), atol=1e-6)
+
+
+def test_a_bag_that_is_a_folder_with_a_dot_has_its_own_words(tmp_path):
+    bag = write_bag(tmp_path / "drive.2", steps(walk()), "mcap")
+    (tmp_path / "drive.txt").write_text("of another drive")
+    assert (open_recording(bag)[0].name, read(bag).instruction) == ("drive.2", "")
+    (tmp_path / "drive.2.txt").write_text("walk to the door")
+    assert read(bag).instruction == "walk to the door"
+
+
+def test_a_width_beside_that_of_a_bag_is_refused(tmp_path):
+    bag = write_bag(tmp_path / "robot", steps(walk()), "mcap")
+    with pytest.raises(ValueError, match=r"says how wide its cameras see: leave hfov="):
+        open_recording(bag, hfov=60.0)
+    (there,) = open_recording(bag, hfov=60.0, topics=Topics(info="none"))
+    assert there.cameras[RGB].hfov == 60.0 and there.cameras[DEPTH].focal is not None
+
+
 def test_a_bag_says_which_topics_there_are_and_takes_one_that_is_named(tmp_path):
     bag = write_bag(tmp_path / "robot", steps(walk()), "bag")
     with pytest.raises(ValueError, match="/camera/color/image_raw"):
@@ -149,6 +191,28 @@ def test_frames_at_a_cameras_pace_are_thinned_to_an_agents_steps(tmp_path):
     assert np.allclose(found.poses[:, 2], 0, atol=1e-6)
 
 
+def turn_poses(folder: Path, quaternion: str, numbers: Sequence[int]) -> None:
+    """Give poses of a folder of TUM's form another rotation."""
+    lines = (folder / "groundtruth.txt").read_text().splitlines()
+    for n in numbers:  # the first line is a comment
+        lines[1 + n] = " ".join([*lines[1 + n].split()[:4], quaternion])
+    (folder / "groundtruth.txt").write_text("\n".join(lines))
+
+
+def test_poses_of_a_robot_are_not_taken_for_those_of_a_camera(tmp_path):
+    folder = tum(tmp_path / "lab", steps([(0.0, 0.25 * i, 0.0) for i in range(8)]))
+    turn_poses(folder, "0 0 0.38 0.92", range(8))  # about the vertical, as x ahead has it
+    with pytest.raises(ValueError, match=r"8 of 8 poses look up or down.*z ahead"):
+        read(folder)
+
+
+def test_a_camera_that_looks_down_for_a_moment_keeps_the_heading_between(tmp_path):
+    folder = tum(tmp_path / "lab", steps([(0.0, 0.25 * i, 0.1) for i in range(8)]))
+    turn_poses(folder, "1 0 0 0", [3, 4])
+    (drive,) = open_recording(folder)
+    assert np.allclose(drive.poses[:, 2], 0.1, atol=1e-6) and drive.dropped == 0
+
+
 def test_a_list_that_names_a_file_outside_of_its_folder_is_refused(tmp_path):
     folder = tum(tmp_path / "lab", steps(walk()))
     (folder / "rgb.txt").write_text("100.0 ../../secret.png\n")
@@ -156,7 +220,9 @@ def test_a_list_that_names_a_file_outside_of_its_folder_is_refused(tmp_path):
         read(folder)
 
 
-def test_a_recording_of_mitigate_run_is_read_with_its_cameras(tmp_path):
+@pytest.fixture
+def recorded(tmp_path):
+    """A folder as ``mitigate run record=`` makes it, of one episode."""
     made = steps(walk())
     write_frames(tmp_path / "x", made, "")
     episode = tmp_path / "recorded" / "kitchen" / "17"
@@ -173,7 +239,43 @@ def test_a_recording_of_mitigate_run_is_read_with_its_cameras(tmp_path):
     ]
     (episode / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     copytree(episode, episode.with_name(".18.4711.tmp"))  # left by a run that was killed
-    found = read(tmp_path / "recorded")
+    return tmp_path / "recorded"
+
+
+def change_steps(recorded: Path, change: Callable[[int, dict], object]) -> None:
+    """Change the lines of the episode, each of which ``change`` gets with its number."""
+    file = recorded / "kitchen" / "17" / "steps.jsonl"
+    lines = [json.loads(line) for line in file.read_text().splitlines()]
+    for number, line in enumerate(lines):
+        change(number, line)
+    file.write_text("".join(json.dumps(line) + "\n" for line in lines))
+
+
+def test_degrees_in_a_recording_are_not_taken_for_radians(recorded):
+    change_steps(recorded, lambda n, line: line.update(heading=15.0 * n))
+    with pytest.raises(ValueError, match=r"steps\.jsonl has headings up to 75: give radians"):
+        read(recorded)
+
+
+def test_poses_that_a_recording_lacks_are_counted(recorded):
+    change_steps(recorded, lambda n, line: n == 2 and line.pop("heading"))
+    with pytest.warns(UserWarning, match=r"lacks the pose of 1 of 6 steps.*without poses"):
+        assert read(recorded).poses is None
+
+
+def test_headings_that_do_not_point_along_the_way_are_told(folder):
+    way = [(0.0, 0.25 * n, 0.0) for n in range(6)]
+    for heading, strange in ((0.0, False), (math.pi / 2, True)):  # of +x as ROS has it
+        rows = "".join(f"{x},{y},{heading}\n" for x, y, _ in way)
+        (folder / "poses.csv").write_text(rows)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            read(folder)
+        assert [("5 of 5 steps that move" in str(w.message)) for w in said] == [True] * strange
+
+
+def test_a_recording_of_mitigate_run_is_read_with_its_cameras(recorded):
+    found = read(recorded)
     assert (found.name, found.instruction) == ("kitchen/17", "go to the sink")
     assert np.allclose(found.poses, np.array(walk()), atol=1e-6)
 
@@ -318,7 +420,9 @@ def test_a_folder_of_drives_gives_all(tmp_path):
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,0\n"), "as many of each"),
         (lambda f: (f / "poses.csv").write_text("heading,x,y\n" + "90,0,0\n" * 6), "columns"),
         (lambda f: (f / "poses.csv").write_text("0,0,90\n0,0,0\n" * 3), "radians"),
-        (lambda f: (f / "poses.csv").write_text("0,0\n" * 6), "not x,y,heading"),
+        (lambda f: (f / "poses.csv").write_text("0,0\n" * 6), "line 1, is not x,y,heading"),
+        (lambda f: (f / "poses.csv").write_text("x,y,heading\n\n0,0\n"), "line 3, is not"),
+        (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,a\n"), "line 2: 'a'"),
         (lambda f: (f / "poses.csv").write_text("0,0,nan\n" * 6), "no finite number"),
         (lambda f: (f / "rgb" / "000002.png").write_bytes(b"\x89PNG cut"), "000002.png"),
         (lambda f: (f / "rgb" / "000002.png").unlink(), "as many of each"),
