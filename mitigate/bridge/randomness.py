@@ -30,6 +30,6 @@ def randomness(runs: Sequence[Sequence[Row]]) -> str:
         f"## The agent's own randomness\n\n{len(runs)} clean runs of the same {len(names)} "
         f"episodes: SR {rates}. From one run to another {100 * flips:.1f} % of the episodes end "
         f"otherwise; second minus first {100 * moved.value:+.1f} "
-        f"[{100 * moved.low:+.1f}, {100 * moved.high:+.1f}]. A difference between two conditions "
+        f"{moved.interval('+.1f', 100)}. A difference between two conditions "
         "that is not larger says nothing.\n"
     )

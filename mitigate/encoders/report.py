@@ -22,7 +22,7 @@ from mitigate.encoders.frames import Frames, collect
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.probe import Score, average, measure
 from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
-from mitigate.evaluation.bootstrap import Estimate
+from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
 from mitigate.evaluation.conditions import conditions
 from mitigate.training.parts import without_adapters
 from mitigate.training.stages import IDENTITY
@@ -143,8 +143,8 @@ def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
 def table(scores: Scores, about: str) -> str:
     """Markdown: a block for each measure."""
     parts = [
-        f"# Features before and after\n\n{about}. In brackets 95 % intervals over scenes (n/a: of "
-        "one scene alone there is none).\n"
+        f"# Features before and after\n\n{about}. In brackets 95 % intervals over scenes "
+        f"({NO_INTERVAL}: of one scene alone there is none).\n"
     ]
     for what, named in MEASURES.items():
         own = [condition for condition, other in _cells(scores) if other == what]
@@ -162,8 +162,7 @@ def _line(scores: Scores, condition: str, what: str) -> str:
 
 
 def _text(e: Estimate, sign: str = "") -> str:
-    between = "n/a" if math.isnan(e.low) else f"{e.low:{sign}.2f}, {e.high:{sign}.2f}"
-    return f"{e.value:{sign}.2f} [{between}]"
+    return f"{e.value:{sign}.2f} {e.interval(f'{sign}.2f')}"
 
 
 def _cells(scores: Scores) -> list[tuple[str, str]]:

@@ -18,12 +18,16 @@ RESAMPLES = 10_000
 LEVEL = 0.95
 Z = 1.959964  # of the normal distribution at LEVEL
 _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
+ROUNDING = 1e-9  # by which resamples that are alike may differ (ours)
+NO_INTERVAL = "[–]"
+NO_WIDTH = f"{NO_INTERVAL}: no interval, as no resample differs (one episode alone, or all alike)."
 CHUNK = 1 << 20  # draws handled at a time (ours): 8 MiB of indices
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """A value and its percentile interval; NaN bounds mean that it cannot be told."""
+    """A value and its percentile interval; NaN bounds mean that it cannot be told. One without a
+    width says nothing either: of one episode, or where no resample differs."""
 
     value: float
     low: float
@@ -32,7 +36,19 @@ class Estimate:
     @property
     def excludes_zero(self) -> bool:
         """Whether the interval lies on one side of zero."""
-        return self.low > 0 or self.high < 0
+        return self.has_width and (self.low > 0 or self.high < 0)
+
+    @property
+    def has_width(self) -> bool:
+        """Whether the interval says anything."""
+        return self.high - self.low > ROUNDING
+
+    def interval(self, form: str, scale: float = 1.0) -> str:
+        """The interval as tables show it, each bound times ``scale`` in ``form``; ``NO_INTERVAL``
+        where it says nothing."""
+        if not self.has_width:
+            return NO_INTERVAL
+        return f"[{scale * self.low:{form}}, {scale * self.high:{form}}]"
 
 
 def resampled_means(values: ArrayLike, *, resamples: int = RESAMPLES, seed: int = 0) -> np.ndarray:

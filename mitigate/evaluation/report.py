@@ -12,7 +12,7 @@ from pathlib import Path
 from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.names import counted, markdown_of
 from mitigate.evaluation.blocks import PROMPT_ONLY, meant
-from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
+from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES, Estimate
 from mitigate.evaluation.grid import METRICS, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
@@ -25,7 +25,9 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
     for index, section in enumerate(parts):
         names = pictures[index] if index < len(pictures) else ()
         shown = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
-        texts.append(f"{_heading(section)}\n\n{_table(section)}\n\n{_notes(section)}\n\n{shown}")
+        table = _table(section)
+        about = f"{NO_WIDTH}\n" * (NO_INTERVAL in table) + _notes(section)
+        texts.append(f"{_heading(section)}\n\n{table}\n\n{about}\n\n{shown}")
     return "\n\n".join(text.strip() for text in texts) + "\n"
 
 
@@ -215,8 +217,8 @@ def _interval(estimate: Estimate | None, metric: str) -> str:
     if estimate is None:
         return "–"
     if metric == "SR":
-        return f"{100 * estimate.value:.1f} [{100 * estimate.low:.1f}, {100 * estimate.high:.1f}]"
-    return f"{estimate.value:.2f} [{estimate.low:.2f}, {estimate.high:.2f}]"
+        return f"{100 * estimate.value:.1f} {estimate.interval('.1f', 100)}"
+    return f"{estimate.value:.2f} {estimate.interval('.2f')}"
 
 
 def _prs(section: Section, place: tuple[str, str, str]) -> str:
@@ -226,7 +228,7 @@ def _prs(section: Section, place: tuple[str, str, str]) -> str:
     prs, marks = found.estimate, _escaped(section.marks(found, place[1]))
     if math.isnan(prs.value):
         return f"undefined{marks}"
-    return f"**{prs.value:.2f}** [{prs.low:.2f}, {prs.high:.2f}]{marks}"
+    return f"**{prs.value:.2f}** {prs.interval('.2f')}{marks}"
 
 
 def _moved(change: Estimate | None) -> str:
@@ -234,7 +236,7 @@ def _moved(change: Estimate | None) -> str:
         return "–"
     text = f"{100 * change.value:+.1f}"
     text = f"**{text}**" if change.excludes_zero else text
-    return f"{text} [{100 * change.low:+.1f}, {100 * change.high:+.1f}]"
+    return f"{text} {change.interval('+.1f', 100)}"
 
 
 def _change(section: Section, place: tuple[str, str, str]) -> str:
@@ -243,7 +245,7 @@ def _change(section: Section, place: tuple[str, str, str]) -> str:
         return "–"
     change, marks = found.estimate, _escaped(section.marks(found, place[1]))
     text = f"**{change.value:+.2f}**" if change.excludes_zero else f"{change.value:+.2f}"
-    return f"{text} [{change.low:+.2f}, {change.high:+.2f}]{marks}"
+    return f"{text} {change.interval('+.2f')}{marks}"
 
 
 def _escaped(text: str) -> str:

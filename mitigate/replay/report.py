@@ -85,7 +85,7 @@ def _others(found: Found) -> list[str]:
 
 
 def _percent(share: Estimate) -> str:
-    return f"{100 * share.value:.1f} [{100 * share.low:.1f}, {100 * share.high:.1f}]"
+    return f"{100 * share.value:.1f} {share.interval('.1f', 100)}"
 
 
 def heatmap(found: Found, severity: float, path: Path) -> Path:

@@ -33,7 +33,7 @@ from mitigate.corruptions.gallery import depth_picture
 from mitigate.corruptions.registry import title
 from mitigate.encoders.frames import collect
 from mitigate.encoders.sources import UNSEEN
-from mitigate.evaluation.bootstrap import Estimate, mean, share
+from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate, mean, share
 from mitigate.evaluation.conditions import conditions
 from mitigate.restoration.frames import RIGHT
 from mitigate.restoration.restorer import Restorer, load_restorer
@@ -148,11 +148,13 @@ def table(scores: dict[tuple[str, str], Score], about: str) -> str:
                 cells = [_text(score.before), _text(score.after), *(_text(s, 100) for s in shares)]
                 lines.append(f"| {' | '.join([title(name), *cells])} |")
         parts.append("\n".join(lines) + "\n")
+    if any(NO_INTERVAL in part for part in parts):
+        parts.append(f"{NO_INTERVAL}: no interval, as all instants are alike.\n")
     return "\n".join(parts)
 
 
 def _text(e: Estimate, scale: float = 1.0) -> str:
-    return f"{scale * e.value:.1f} [{scale * e.low:.1f}, {scale * e.high:.1f}]"
+    return f"{scale * e.value:.1f} {e.interval('.1f', scale)}"
 
 
 def sheet(

@@ -14,7 +14,7 @@ from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
 from mitigate.core.names import counted, markdown_of, short
 from mitigate.corruptions import SUITE_VERSION
-from mitigate.evaluation.bootstrap import Estimate
+from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
 from mitigate.shipping import hardened
@@ -204,7 +204,10 @@ def _table(entry: dict[str, Any]) -> str:
 
 def _cell(found: list[float | None]) -> str:
     texts = ["–" if value is None else f"{value:.3f}" for value in found]
-    return texts[0] if len(texts) == 1 else f"{texts[0]} [{texts[1]}, {texts[2]}]"
+    if len(found) == 1:
+        return texts[0]
+    own = f"[{texts[1]}, {texts[2]}]" if found[1] != found[2] else NO_INTERVAL
+    return f"{texts[0]} {own}"
 
 
 def _use(card: dict[str, Any]) -> str:

@@ -162,7 +162,7 @@ def test_before_is_the_encoder_that_the_training_began_with(tmp_path, pictures):
         1, abs=0.01
     )
     assert clean["before"][1:] == [None, None]  # of six folders one is unseen
-    assert "[n/a] |" in (out / "features.md").read_text()
+    assert "[–] |" in (out / "features.md").read_text()
 
 
 def test_there_is_no_before_of_an_encoder_that_changed(tmp_path, pictures, monkeypatch):

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.bootstrap import mean, prs, prs_difference, resampled_means, share
+from mitigate.evaluation.bootstrap import (
+    NO_INTERVAL,
+    mean,
+    prs,
+    prs_difference,
+    resampled_means,
+    share,
+)
 
 
 @pytest.fixture
@@ -102,6 +109,17 @@ def test_without_clean_success_there_is_no_prs():
     found = prs(np.zeros(20), np.zeros((3, 20)))
     assert all(math.isnan(x) for x in (found.value, found.low, found.high))
     assert not found.excludes_zero
+
+
+@pytest.mark.parametrize("wins", [1.0, 1 / 3])
+@pytest.mark.parametrize("episodes", [1, 7])
+def test_an_interval_without_a_width_says_nothing(episodes, wins):
+    clean, corrupted = np.ones(episodes), np.full((2, episodes), wins)
+    for found in (prs(clean, corrupted), mean(corrupted[0])):
+        assert found.value == pytest.approx(wins)
+        assert not (found.has_width or found.excludes_zero)
+        assert found.interval(".2f") == NO_INTERVAL
+    assert mean([0.1, 0.4]).interval(".1f", 100) == "[10.0, 40.0]"
 
 
 def test_gaps_and_unequal_episodes_are_refused(results):

@@ -68,6 +68,18 @@ def test_prs_differences_are_paired_and_against_base():
     assert (nothing.low, nothing.high) == (0.0, 0.0)
 
 
+def test_one_episode_gives_no_interval_and_nothing_in_bold():
+    def one(wins, **agent):
+        return [row(0, wins, **agent), row(0, 1, **agent, corruption="spatter", severity=0.6)]
+
+    text = markdown(sections(one(1) + one(0, **HARD)))
+    found = lines(one(1) + one(0, **HARD))
+    assert found["Clean SR against base"] == ["–", "-100.0 [–]"]
+    assert found["**PRS-SR (RGB)**"][0].startswith("**1.00** [–]")
+    assert text.count("[–]: no interval") == 1
+    assert "[–]" not in markdown(sections(column(8, ALL)))
+
+
 def test_clean_differences_are_paired_and_against_base():
     found = lines(column(8, ALL) + column(5, ALL, **HARD))
     first, second = found["Clean SR against base"]

@@ -8,11 +8,11 @@ from typing import Any
 
 from mitigate.corruptions.registry import AND, UNSEEN
 from mitigate.evaluation.blocks import BLOCKS, FRAMES, PROMPT_ONLY, SUITE, kind
-from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES
+from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page import document
-from mitigate.evaluation.page.model import CLEAN, shortened
+from mitigate.evaluation.page.model import CLEAN, has_width, shortened
 from mitigate.evaluation.sections import label
 
 ABOUT = (
@@ -87,9 +87,11 @@ def _cell(entry: LeaderboardEntry, name: str) -> list[Any]:
 
 
 def _notes(values: list[list[Any]]) -> list[str]:
-    marks = "".join(value[3] for line in values for value in line if value)
+    held = [value for line in values for value in line if value]
+    marks = "".join(value[3] for value in held)
+    alike = [] if all(map(has_width, held)) else [NO_WIDTH]
     other = "† k/K: over k corruptions, not the K that the score stands for; do not compare."
-    return [other] if "†" in marks else []
+    return [other, *alike] if "†" in marks else alike
 
 
 def _rank(entry: LeaderboardEntry) -> float:

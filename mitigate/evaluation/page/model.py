@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate
+from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES, ROUNDING, Estimate
 from mitigate.evaluation.grid import METRICS
 from mitigate.evaluation.sections import Retained, Section, compare, label
 
@@ -69,6 +69,11 @@ def numbers(found: Estimate | None) -> Numbers:
     if found is None or math.isnan(found.value):
         return None
     return [None if math.isnan(x) else shortened(x) for x in (found.value, found.low, found.high)]
+
+
+def has_width(found: Sequence[Any]) -> bool:
+    """Whether numbers have an interval that says anything, or none that is shown."""
+    return None in found[1:3] or found[2] - found[1] > ROUNDING
 
 
 def shortened(x: float) -> float:
@@ -200,7 +205,10 @@ def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> di
 def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, Any]) -> list[str]:
     notes = []
     lines = [*values, *(pair["measures"] for pair in pairs.values() if pair)]
-    marks = "".join(value[3] for line in lines for value in line if value and len(value) > 3)
+    held = [value for line in lines for value in line if value]
+    marks = "".join(value[3] for value in held if len(value) > 3)
+    if not all(map(has_width, held)):
+        notes.append(NO_WIDTH)
     if "‡" in marks:
         notes.append("‡ The clean value is so low that a PRS says little.")
     if "†" in marks:

@@ -104,8 +104,7 @@ class ApartmentsWorld:
     def reset(self, episode: Episode) -> Observation:
         """Raises ValueError for an episode that is not one of an apartment."""
         self.simulator.reset(episode)
-        self._shortest = round(self._left(), 4)
-        self._compare_length(episode)
+        self._shortest = self._shortest_way(episode)
         return self._observation()
 
     def step(self, action: int) -> Observation:
@@ -143,18 +142,23 @@ class ApartmentsWorld:
         """Metres from the agent to what the rule counts from."""
         return float(self._field()[self.simulator.space.cell_of(self.simulator.xy)])
 
-    def _compare_length(self, episode: Episode) -> None:
-        """Warn, once a world, of an episode whose file says another way to the goal."""
+    def _shortest_way(self, episode: Episode) -> float:
+        """Metres from the start to what the rule counts from, or what the file says where goals are
+        hidden. Warns, once a world, of a file that says another way to the goal."""
         told, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
-        if told is None or abs(told - measured) <= APART or self._warned:
-            return
-        self._warned = True
-        warnings.warn(
-            f"The episode {episode.episode_id} says a geodesic_distance of {told:g} m, but its "
-            f"goal is {measured:.1f} m from its start; SPL goes by what is measured. Was the list "
-            "made for these apartments, in metres? Others of it may be wrong, too.",
-            stacklevel=3,
-        )
+        if told is None:
+            return round(self._left(), 4)
+        if not episode.goals:
+            return told
+        if abs(told - measured) > APART and not self._warned:
+            self._warned = True
+            warnings.warn(
+                f"The episode {episode.episode_id} says a geodesic_distance of {told:g} m, but "
+                f"its goal is {measured:.1f} m from its start; SPL goes by what is measured. Was "
+                "the list made for these apartments, in metres? Others of it may be wrong, too.",
+                stacklevel=3,
+            )
+        return round(self._left(), 4)
 
     def truth(self) -> Mapping[str, np.ndarray]:
         """concepts float32 [12, C] (``labels.CONCEPTS``: what shows in the middle of each view),

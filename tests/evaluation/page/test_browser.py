@@ -9,7 +9,7 @@ import pytest
 from mitigate.evaluation.blocks import FRAMES
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.report import report as report_of
-from tests.evaluation.made_rows import cell, column
+from tests.evaluation.made_rows import cell, column, row
 from tests.evaluation.page.chromium import PROGRAM, Page
 
 pytestmark = pytest.mark.skipif(PROGRAM is None, reason="no Chromium: apt-get install chromium")
@@ -97,6 +97,16 @@ def test_a_difference_over_fewer_corruptions_says_so(page, tmp_path):
     )
     assert values[2] == "20.0" and changes[2].endswith("] \u2020 1/12")
     assert not any("\u2020" in change for change in changes[:2])
+
+
+def test_an_interval_without_a_width_is_not_shown_and_not_bold(page, tmp_path):
+    rows = [row(0, 1), row(0, 0, name="hard", agent="ba9876543210")]
+    rows += [{**one, "corruption": "spatter", "severity": 0.6} for one in rows]
+    page.open(document.write(report_of(rows), tmp_path / "page.html"), "#section=0&baseline=0")
+    found = page.ask("document.querySelector('.agents .change').textContent")
+    assert found.strip() == "\u2212100.0 [\u2013]"
+    assert page.ask("document.querySelector('.agents .change').className") == "change same"
+    assert page.errors == []
 
 
 def test_any_agent_can_be_the_baseline(page, report):

@@ -61,6 +61,14 @@ def test_values_and_differences_are_those_of_the_table(rows):
     assert [line["label"] for line in shown["columns"]] == ["base", "hard"]
 
 
+def test_an_interval_without_a_width_is_told_in_a_note():
+    varied = column(8, {"spatter": 2})
+    alike = [row(0, 1), row(0, 1, corruption="spatter", severity=0.6)]
+    for shown, told in ((varied, False), (alike, True)):
+        (part,) = held(report(shown))[0]["sections"]
+        assert any(note.startswith("[–]") for note in part["notes"]) == told
+
+
 def test_agents_without_a_common_seed_have_no_difference(rows):
     apart = column(6, {"spatter": 6}, name="apart", agent="cccccccccccc", seed=7)
     (shown,) = held(report(rows + apart))[0]["sections"]

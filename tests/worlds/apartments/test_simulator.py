@@ -153,7 +153,7 @@ def test_the_shortest_way_is_measured_from_the_start_whatever_the_file_says(epis
             assert world.measures()["geodesic_distance"] == own
     for told in (0.0, 2 * own):
         other = ApartmentsWorld(16)
-        with pytest.warns(UserWarning, match=rf"{first.episode_id} says .* {told:g} m, but its"):
+        with pytest.warns(UserWarning, match=rf"{first.episode_id} says .* {told:g} m, but"):
             other.reset(replace(first, geodesic_distance=told))
         assert other.measures()["geodesic_distance"] == own
         with warnings.catch_warnings():

@@ -40,10 +40,13 @@ function shown(value, unit, signed = false) {
   return signed && !zero ? "+" + text : text;
 }
 
-const interval = (found, unit, signed = false) =>
-  `[${shown(found[1], unit, signed)}, ${shown(found[2], unit, signed)}]`;
+// An interval without a width says nothing: there was one episode, or no resample differs.
+const hasWidth = (found) => found[1] !== null && found[2] - found[1] > 1e-9;
 
-const onOneSide = (found) => found[1] > 0 || found[2] < 0;
+const interval = (found, unit, signed = false) => (hasWidth(found)
+  ? `[${shown(found[1], unit, signed)}, ${shown(found[2], unit, signed)}]` : "[\u2013]");
+
+const onOneSide = (found) => hasWidth(found) && (found[1] > 0 || found[2] < 0);
 
 function labelled(text, control) {
   return el("label", { class: "field" }, el("span", {}, text), control);

@@ -43,7 +43,7 @@ function valueCell(found, unit, [low, high]) {
   return [
     el("span", { class: "value" }, shown(found[0], unit), marksOf(found)),
     found[1] !== null && el("span", { class: "interval" }, interval(found, unit)),
-    found[1] !== null && whisker(found, low, high),
+    hasWidth(found) && whisker(found, low, high),
   ];
 }
 
