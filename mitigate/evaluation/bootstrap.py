@@ -128,6 +128,11 @@ def prs(clean: ArrayLike, corrupted: ArrayLike, **options: int) -> Estimate:
     return _estimate(value, samples)
 
 
+def ratio(parts: ArrayLike, wholes: ArrayLike, **options: int) -> Estimate:
+    """Return the sum of ``parts`` [N] over that of ``wholes`` [N], with its interval."""
+    return prs(wholes, parts, **options)
+
+
 def prs_difference(
     first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: int
 ) -> Estimate:

@@ -62,12 +62,13 @@ def compare(
 
 def _share(walks: Sequence[np.ndarray]) -> Estimate:
     """The share of true steps with its interval: by resampling runs of ``BLOCK`` steps, or, of
-    fewer than ``FEW`` runs, Wilson's score interval, each run counting once."""
-    value = float(np.concatenate(walks).astype(float).mean())
-    blocks = np.array([part.mean() for walk in walks for part in _blocks(walk)])
-    if len(blocks) >= FEW and np.ptp(blocks) > 0:
-        found = bootstrap.share(blocks)
-        return Estimate(value, found.low, found.high)
+    fewer than ``FEW`` runs or runs that are alike, Wilson's score interval, each run counting
+    once."""
+    blocks = [part for walk in walks for part in _blocks(walk)]
+    true, steps = (np.array([measure(part) for part in blocks]) for measure in (np.sum, len))
+    value = float(true.sum() / steps.sum())
+    if len(blocks) >= FEW and np.ptp(true / steps) > 0:
+        return bootstrap.ratio(true, steps)
     n, z = len(blocks), bootstrap.Z
     middle = (value + z * z / (2 * n)) / (1 + z * z / n)
     half = z * np.sqrt(value * (1 - value) / n + z * z / (4 * n * n)) / (1 + z * z / n)

@@ -20,7 +20,7 @@ from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, ST
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import episode_lists
 from mitigate.replay import export_drive, replay, report
-from mitigate.replay.changes import compare
+from mitigate.replay.changes import _share, compare
 from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
 from mitigate.restoration.restorer import Restorer
@@ -119,6 +119,14 @@ def test_a_drive_without_what_the_agent_reads_says_so():
 def answers(actions, aims=None) -> Answers:
     aims = np.full((len(actions), 2), np.nan) if aims is None else aims
     return Answers(np.array(actions), aims)
+
+
+def test_an_interval_holds_its_own_value_however_long_the_drives_are():
+    """Short drives are runs of few steps, which must not count as much as whole ones."""
+    walks = [np.zeros(14, bool)] * 40 + [np.ones(1, bool)] * 20
+    found = _share(walks)
+    assert found.value == pytest.approx(20 / 580)
+    assert found.low < found.value < found.high < 0.1
 
 
 def test_changes_are_counted_against_clean_answers_and_against_the_driver():
