@@ -133,7 +133,7 @@ class Bag:
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
         """When each image was taken, (time, x, y, heading) of each pose, and the lenses."""
         stamps: dict[str, list[tuple[float, float]]] = {name: [] for name in (*self.kinds, POSE)}
-        places: list[tuple[float, float, float]] = []
+        places: list[tuple[float, ...]] = []
         lenses: dict[str, Lens] = {}
         images: dict[str, set[int]] = {kind: set() for kind in self.kinds}
         for name, times, message in self._messages(reader, list(self.topics), images):
@@ -151,8 +151,8 @@ class Bag:
                 if kind not in lenses and not unusable:
                     lenses[kind] = lens(kind, message, self.path)
         taken = {name: _times(listed) for name, listed in stamps.items()}
-        placed_at = [(time, *where) for time, where in zip(taken.pop(POSE), places, strict=True)]
-        return taken, placed_at, lenses
+        timed = zip(taken.pop(POSE), places, strict=True)
+        return taken, [(time, *where) for time, where in timed], lenses
 
     def _wide(self, kind: str, hfov: float | None) -> Lens:
         if hfov is None:
