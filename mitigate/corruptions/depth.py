@@ -49,13 +49,13 @@ def _add_noise(views, streams, base, square, z_max, table, out):
                 for j in range(4):
                     draws[4 * i + j] = table[(word >> _U(16 * j + 4)) & _U(0xFFF)]
             for i in range(source.size):
-                z = source[i]
+                z = min(source[i], z_max)
                 moved = min(max(z + (base + square * z * z) * draws[i], NEAREST), z_max)
-                target[i] = moved if is_valid(z) else z
+                target[i] = moved if is_valid(source[i]) else source[i]
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """z + s (0.02 + 0.02 z^2) n, n ~ N(0, 1) for each pixel of each frame."""
+    """z + s (0.02 + 0.02 z^2) n, n ~ N(0, 1) for each pixel of each frame; z at most z_max."""
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)

@@ -20,6 +20,19 @@ def test_noise_grows_with_the_square_of_depth(metres, severity):
     assert np.abs(noise).max() < 4.6 * sigma
 
 
+@pytest.mark.parametrize("name", ["gaussian_noise", "ripple", "broad_depth"])
+@pytest.mark.parametrize("metres", [11.0, 65.5, 3.4e38])
+def test_depth_beyond_the_range_is_corrupted_as_depth_at_its_end(name, metres):
+    near = np.full((4, 24, 32), 4.0, np.float32)
+    far, end = near.copy(), near.copy()
+    far[:, :8], end[:, :8] = metres, 10.0
+    for episode in "abcdefgh":
+        made = corrupt(far, name, 1.0, key=Key(0, episode))
+        assert np.array_equal(made, corrupt(end, name, 1.0, key=Key(0, episode)))
+    if name == "gaussian_noise":
+        assert made[:, :8].min() > 1.0
+
+
 def test_noise_is_new_for_every_frame_and_view():
     first = corrupt(WALL, "gaussian_noise", 0.5, key=Key(0, "a", 0)) - 4
     second = corrupt(WALL, "gaussian_noise", 0.5, key=Key(0, "a", 1)) - 4
