@@ -135,7 +135,7 @@ def _eligible(text: str, name: str, tagger: str) -> list[Token]:
     found = [token for token in named(tagger)(text) if token.is_word]
     if name == "capitalize":
         return [token for token in found if token.tag in SPOKEN]
-    return [t for t in found if t.tag in SLIGHT and t.lower not in words.SPATIAL]
+    return [t for t in found if t.tag in SLIGHT and not words.is_kept(t.lower)]
 
 
 def _replaced(

@@ -152,6 +152,24 @@ def test_masks_never_hide_a_word_that_says_where(chosen):
     assert {"left", "right", "forward", "through", "past", "not"} <= words.SPATIAL
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "It isn't there, won’t open and doesn't move; they aren't red, and you shouldn't stop.",
+        "Neither the sofa nor the bed, nothing else.",
+        "Go northward, southward, eastward and westward.",
+        "Take the same door as on the previous floor, only the preceding one, and the following.",
+    ],
+)
+def test_masks_never_hide_a_denial_a_compass_word_or_which_one(text):
+    kept = words.bag("isn't won't doesn't aren't shouldn't neither nor nothing same previous only")
+    kept |= words.bag("northward southward eastward westward preceding following")
+    masked = tokens(corrupt_instruction(text, "mask", 1.0, KEY))
+    for old, new in zip(tokens(text), masked, strict=True):
+        assert new.text == old.text or old.lower not in kept
+    assert "[MASK]" in [token.text for token in masked]
+
+
 def test_masks_write_the_tokenizers_own_mask_token():
     got = corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token="<mask>")
     assert "<mask>" in got and "[MASK]" not in got and "left" in got and "sofa" in got
