@@ -28,6 +28,7 @@ from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.core.files import atomic_text
 from mitigate.corruptions import INSTRUCTION, SUITE_VERSION, Key, corrupt_instruction
 from mitigate.corruptions.instruction import check_text, is_rewritten
+from mitigate.corruptions.language.english import is_english, passed_through
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
 from mitigate.corruptions.suite import check_name, check_severity
@@ -165,7 +166,7 @@ def _changed(
     for episode in episodes:
         counts.episodes += 1
         instruction = episode.instruction
-        if not (instruction.language or "en").lower().startswith("en"):
+        if not is_english(instruction.language):
             counts.skipped_languages[instruction.language] += 1
             yield unchanged(episode)
             continue
@@ -247,8 +248,7 @@ def notices(summary: dict[str, Any]) -> list[str]:
     told = []
     skipped = summary["skipped_languages"]
     if skipped:
-        which = ", ".join(f"{count} in {language}" for language, count in skipped.items())
-        told.append(f"warning: instructions in other languages passed through unchanged: {which}")
+        told.append(f"warning: {passed_through(skipped)}")
     removed = summary["tokens"].get("removed", 0)
     if removed:
         told.append(

@@ -168,8 +168,9 @@ SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | ba
     nearby adjacent middle front rear top bottom upper lower inner outer halfway directly
     immediately slightly slight sharp sharply hard diagonally diagonal clockwise counterclockwise
     northward southward eastward westward same previous preceding following only
-    perpendicular parallel to until till once before after when where not never cannot
-    no neither nor nothing none nobody without further farther beyond again twice indoors outdoors inside outside half both
+    perpendicular parallel to until till once before after when where not never cannot no neither
+    nor nothing none nobody without further farther beyond again twice indoors outdoors inside
+    outside half both
     all each every another between side end long entire whole full off facing leading central
     immediate
     """
