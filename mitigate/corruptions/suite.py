@@ -216,8 +216,8 @@ def corrupt(
         sensor: depth range and sentinel.
 
     Returns a new array of the same shape and dtype; the input is not modified.
-    Raises ValueError for a wrong name, severity, dtype, shape, heading or key, and for depth whose
-    nearest valid pixel is over three times the sensor's z_max: it is in millimetres.
+    Raises ValueError for a wrong name, severity, dtype, shape, heading or key, and for depth of
+    which over nine tenths are beyond three times the sensor's z_max: it is in millimetres.
     """
     check_name(name)
     severity = check_severity(severity)

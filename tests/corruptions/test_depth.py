@@ -147,10 +147,21 @@ def test_valid_depth_is_clipped_to_the_range_of_the_sensor(name):
 def test_millimetres_are_refused(name, severity):
     depth = np.full((48, 64), 2500, np.float32)
     depth[:3] = np.array([0.0, np.nan, np.inf, -1.0] * 16, np.float32)
-    with pytest.raises(ValueError, match=r"z_max of 10 m \(nearest 2500\).*millimetres") as error:
+    with pytest.raises(ValueError, match=r"z_max of 10 m \(half.*2500\).*millimetres") as error:
         corrupt(depth, name, severity, key=1)
     assert "\n" not in str(error.value)
     corrupt(depth, name, severity, key=1, sensor=DepthSensor(z_max=3000.0))
+
+
+def test_a_few_small_counts_do_not_make_metres_of_millimetres_nor_a_far_sky_the_reverse():
+    depth = np.full((48, 64), 2500, np.float32)
+    depth[-3:] = 12.0  # one in sixteen
+    for frame in (depth, depth[::-1]):
+        with pytest.raises(ValueError, match="Nearly all valid pixels"):
+            corrupt(frame, "multipath", 0.6, key=1)
+    outdoors = np.full((48, 64), 1000.0, np.float32)
+    outdoors[38:] = np.linspace(40.0, 2.0, 10, dtype=np.float32)[:, None]  # the ground
+    assert (corrupt(outdoors, "multipath", 0.6, key=1)[:38] == 10.0).all()
 
 
 @pytest.mark.parametrize("depth", [12.0, 0.0, np.nan, np.inf])
