@@ -205,9 +205,10 @@ def corrupt(
 
     Args:
         frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees. V
-            counts the views of one instant, 36 at most: they share one mask. It is no batch axis;
-            corrupt a batch one instant at a time, each with its own key.
+            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees,
+            level: the flare knows no elevation. V counts the views of one instant, 36 at most: they
+            share one mask. It is no batch axis; corrupt a batch one instant at a time, each with
+            its own key.
         name: one of NAMES.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
         key: names the random draw; a whole number is a seed, a text an episode.
