@@ -126,8 +126,8 @@ def flare_centres(
 
     The light has a fixed direction in the world: column U(0.1, 0.9) W, row U(0, 0.5) H of a camera
     at a random world yaw. ``heading`` (rad, counter-clockwise) turns with the agent and view k
-    looks at heading - 30 k degrees, level, also from the 13th view on. Without a heading that camera
-    is view 0.
+    looks at heading - 30 k degrees, level, even from the 13th view on. Without a heading that
+    camera is view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
 from hashlib import sha256
 from pathlib import Path
 
@@ -206,6 +207,15 @@ def test_an_instruction_without_a_word_is_refused(text, name):
 def test_a_very_long_instruction_with_emoji_and_control_characters_is_corrupted(name):
     text = "Turn left 🙂 at the\x07 sofa and go\u200b on. " * 1100
     assert corrupt_instruction(text, name, 1.0, KEY) != text
+
+
+@pytest.mark.parametrize("space", [" ", "\n", "\t "])
+def test_a_long_run_of_white_space_takes_no_time(space):
+    text = "Turn left{0}at the sofa,{0}then{0},{0}now{0}walk{0}and stop.".format(space * 1500)
+    start = time.process_time()
+    for manner in MANNERS:
+        corrupt_instruction(text, manner, 1.0, KEY)
+    assert time.process_time() - start < 2.0
 
 
 def test_wrong_options_name_the_right_ones():

@@ -47,7 +47,8 @@ def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) ->
     refused: list[str] = []
     tries = count = 0
     if rewrite is not None:
-        spoken = rewrite(text, manner).strip()
+        answer = rewrite(text, manner)
+        spoken = answer.strip() if isinstance(answer, str) else ""
         tries, problems = 1, check(text, spoken) if spoken else ["empty answer"]
         if not problems:
             return Restyled(spoken, tries, True, 0, 0, ())
