@@ -19,7 +19,7 @@ from mitigate.bridge.results import Told
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption
-from mitigate.corruptions.language.english import is_english
+from mitigate.corruptions.language.text import is_english
 
 if TYPE_CHECKING:
     from mitigate.restoration.restorer import Restorer

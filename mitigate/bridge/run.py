@@ -128,7 +128,7 @@ def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
     """The conditions beside clean that reach the agent, and the names of those whose words it would
     not hear; say which do not, and which words are in other languages."""
     from mitigate.bridge.conditions import applicable, untold
-    from mitigate.corruptions.language.english import is_english, passed_through
+    from mitigate.corruptions.language.text import is_english, passed_through
 
     fitting, unheard, told = [], [], made[0].told()
     for cell in made[1:]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mitigate.corruptions import Corruption, Key, corrupt_instruction
-from mitigate.corruptions.language.english import is_english
+from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
 from mitigate.worlds.episodes import read_extras
 

@@ -54,6 +54,20 @@ class Key:
             ) from None
 
 
+def as_key(key: Key | int | str) -> Key:
+    """``key``; a whole number n is Key(n, "0"), a text t is Key(0, t). ValueError for the rest."""
+    if isinstance(key, Key):
+        return key
+    if isinstance(key, str):
+        return Key(0, key)
+    if isinstance(key, int | np.integer) and not isinstance(key, bool):
+        return Key(int(key), "0")
+    raise ValueError(
+        "key must be a Key(seed, episode, frame), a whole number (the seed) or a text (the "
+        f"episode), but it is {key!r}. It names the random draw: equal keys give equal pixels."
+    )
+
+
 @lru_cache(maxsize=256)
 def _episode_hash(seed: int, episode: str, name: str) -> tuple:
     """The hash state of these parts, to copy and go on from, and its digest as an integer."""

@@ -15,7 +15,7 @@ from mitigate.core import observation
 from mitigate.core.names import unknown
 from mitigate.corruptions import registry
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
-from mitigate.corruptions.keying import Key
+from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import MODALITIES
 
 SUITE_VERSION = "1.1"  # changes when any pixel or word of any corruption changes
@@ -127,20 +127,6 @@ def _check_pair(name: str) -> None:
 
 
 CLEAN = Corruption("clean", 0.0)
-
-
-def as_key(key: Key | int | str) -> Key:
-    """``key``; a whole number n is Key(n, "0"), a text t is Key(0, t). ValueError for the rest."""
-    if isinstance(key, Key):
-        return key
-    if isinstance(key, str):
-        return Key(0, key)
-    if isinstance(key, int | np.integer) and not isinstance(key, bool):
-        return Key(int(key), "0")
-    raise ValueError(
-        "key must be a Key(seed, episode, frame), a whole number (the seed) or a text (the "
-        f"episode), but it is {key!r}. It names the random draw: equal keys give equal pixels."
-    )
 
 
 def _rgb_views(frame: np.ndarray) -> np.ndarray:

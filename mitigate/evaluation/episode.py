@@ -15,7 +15,7 @@ from mitigate.corruptions import (
     corrupt_instruction,
     inject_system_prompt,
 )
-from mitigate.corruptions.language.english import is_english
+from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.registry import parts
 from mitigate.evaluation.rows import MEASURES
 from mitigate.restoration.restorer import Restorer

@@ -28,7 +28,7 @@ from mitigate.core.identity import identity
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
-from mitigate.corruptions.language.english import is_english, passed_through
+from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode, run_side_by_side

@@ -25,7 +25,7 @@ from mitigate.corruptions import (
 from mitigate.corruptions.language import words
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.prefixes import SPLITS, prefixes
-from mitigate.corruptions.language.style import MANNERS
+from mitigate.corruptions.language.style import MANNERS, restyle
 from mitigate.corruptions.language.tagger import tag, tokens
 
 SPOKEN = tuple(name for name in INSTRUCTION if name != "white_box")
@@ -227,8 +227,24 @@ def test_wrong_options_name_the_right_ones():
         corrupt_instruction(TEXT, "black_box", 0.5, KEY, split="tset")
     with pytest.raises(ValueError, match="inject_system_prompt"):
         corrupt_instruction(TEXT, "white_box", 0.5, KEY)
-    with pytest.raises(ValueError, match="must be a Key"):
-        corrupt_instruction(TEXT, "mask", 0.5, 3)
+    with pytest.raises(ValueError, match="key must be a Key.*whole number.*text"):
+        corrupt_instruction(TEXT, "mask", 0.5, None)
+
+
+@pytest.mark.parametrize(("short", "key"), [(7, Key(7, "0")), ("kitchen", Key(0, "kitchen"))])
+def test_a_number_or_a_text_will_do_for_a_key(short, key):
+    for name in SPOKEN:
+        made = corrupt_instruction(TEXT, name, 0.6, short)
+        assert made == corrupt_instruction(TEXT, name, 0.6, key)
+    prompt = "Do: {task}"
+    assert inject_system_prompt(prompt, 0.6, short) == inject_system_prompt(prompt, 0.6, key)
+    with pytest.raises(ValueError, match="key must be a Key"):
+        inject_system_prompt(prompt, 0.6, 1.5)
+
+
+def test_a_style_of_a_text_without_a_word_is_refused():
+    with pytest.raises(ValueError, match="The instruction is empty"):
+        restyle(" ... ", "formal", KEY)
 
 
 def test_white_box_goes_before_the_task_slot_and_never_runs_clean():

@@ -1,8 +1,22 @@
-"""Which instructions are corrupted: those in English; what is said of the others."""
+"""Which texts are corrupted: those that hold a word, in English; what is said of the others."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+
+
+def has_word(text: object) -> bool:
+    """Return whether ``text`` is a text with a letter or a digit in it."""
+    return isinstance(text, str) and any(character.isalnum() for character in text)
+
+
+def check_text(text: str) -> None:
+    """Raise ValueError if ``text`` holds no word."""
+    if not has_word(text):
+        raise ValueError(
+            f"The instruction is empty: {text!r:.60} holds no word. Give the sentence that the "
+            "agent is to follow, or leave the episode out."
+        )
 
 
 def is_english(language: str | None) -> bool:
