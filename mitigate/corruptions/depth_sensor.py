@@ -81,7 +81,7 @@ def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
         middle = float(np.median(views[(views > 0) & (views < np.inf)]))
         raise ValueError(
             f"Nearly all valid pixels lie far beyond the sensor's z_max of {sensor.z_max:g} m "
-            f"(half of them beyond {middle:g}): is the depth in millimetres? Divide it by 1000, "
+            f"(median {middle:g}): is the depth in millimetres? Divide it by 1000, "
             "give unit=mm for a folder of PNG, or a sensor with a greater z_max if these are "
             "metres."
         )

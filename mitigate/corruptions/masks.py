@@ -133,11 +133,6 @@ def flare_centres(
     focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width
     yaw = math.atan2(0.5 - column, focal)  # from the camera, counter-clockwise
     tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # of the elevation
-    if heading is not None and not math.isfinite(heading):
-        raise ValueError(
-            f"The flare needs a heading in finite radians, not {heading}. Pass heading=None, or an "
-            "observation without a pose, if it is not known."
-        )
     if heading is not None:
         yaw += 2.0 * math.pi * uniform(value, 2) - heading
     centres = []

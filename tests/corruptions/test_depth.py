@@ -147,7 +147,7 @@ def test_valid_depth_is_clipped_to_the_range_of_the_sensor(name):
 def test_millimetres_are_refused(name, severity):
     depth = np.full((48, 64), 2500, np.float32)
     depth[:3] = np.array([0.0, np.nan, np.inf, -1.0] * 16, np.float32)
-    with pytest.raises(ValueError, match=r"z_max of 10 m \(half.*2500\).*millimetres") as error:
+    with pytest.raises(ValueError, match=r"z_max of 10 m \(median 2500\).*millimetres") as error:
         corrupt(depth, name, severity, key=1)
     assert "\n" not in str(error.value)
     corrupt(depth, name, severity, key=1, sensor=DepthSensor(z_max=3000.0))

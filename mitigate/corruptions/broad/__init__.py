@@ -45,7 +45,7 @@ RECORDS = (
         sources="PRIME (Modas et al. 2022), AugMix (Hendrycks et al. 2020); strengths are ours",
         source="PRIME, AugMix",
         episode=STATE,
-        frame="noise, lost views; in some episodes flicker, displacement, shapes",
+        frame="noise, views; or shapes, flicker",
     ),
     Record(
         name="broad_depth",
@@ -59,6 +59,6 @@ RECORDS = (
         sources="after PRIME (Modas et al. 2022); primitives and strengths are ours",
         source="ours, after PRIME",
         episode=STATE,
-        frame="noise, pixels, views; in some episodes errors, shapes",
+        frame="noise, pixels, views; or shapes",
     ),
 )
