@@ -139,7 +139,7 @@ def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
             unheard.append(cell.name)
         else:
             fitting.append(cell)
-    others = Counter(spoken for spoken in told.languages.values() if not is_english(spoken))
+    others = Counter(str(spoken) for spoken in told.languages.values() if not is_english(spoken))
     if others and any("instruction" in cell.corruption.modalities for cell in fitting):
         print(f"run: {passed_through(others)}", flush=True)
     return fitting, unheard

@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
+from mitigate.corruptions.cached import cached
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, flat, is_valid
 from mitigate.corruptions.echo import ECHO_GAP, ECHO_HERTZ, ECHO_REACH, ECHO_STRENGTH, multipath
 from mitigate.corruptions.keying import (
@@ -63,7 +64,7 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
     return out
 
 
-@lru_cache(maxsize=16)
+@cached
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """uint8 [H, 2 W]: 0 kept, 1 no reading, 2 reads z_max; the map twice, side by side, so that a
     row of it from any column on is one piece."""

@@ -84,7 +84,9 @@ def run(
         key, text = Key(seed, episode.episode_id), episode.instruction.text
         if corruption in MANNERS:
             return _restyled(text, corruption, severity, key, rewrite, counts.gate)
-        return corrupt_instruction(text, corruption, severity, key, **given)
+        return corrupt_instruction(
+            text, corruption, severity, key, split=split, mask_token=mask, tagger=tagger
+        )
 
     episodes = tqdm(read_episodes(source, hidden_goals=True), unit="episode", disable=None)
     other_words = words is not None and tokenizer != VOCABULARY

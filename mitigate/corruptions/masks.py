@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 
 from mitigate.core import observation
+from mitigate.corruptions.cached import cached
 from mitigate.corruptions.keying import field, top_share, uniform
 
 DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
@@ -76,7 +77,7 @@ def cover(views, alpha, colour, out):
                 target[i] = source[i] + ((part[i] + 32) >> 6)
 
 
-@lru_cache(maxsize=32)
+@cached
 def light_ramp(value: int, height: int, width: int) -> np.ndarray:
     """float32 [H, W] in [0, 1]: a linear ramp along an angle, or the distance to one light."""
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
@@ -97,13 +98,13 @@ def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarr
     return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
 
 
-@lru_cache(maxsize=16)
+@cached
 def low_light_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the dark, in 1/32768."""
     return opacity_mask(light_loss(value, severity, height, width), 1.0, NEUTRAL)
 
 
-@lru_cache(maxsize=16)
+@cached
 def spatter_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the dirt, in 1/32768."""
     smooth, cells = field(value, height, width, SPATTER_CORRELATION)
@@ -162,7 +163,7 @@ def _look_up(down, right, table, out):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
 
 
-@lru_cache(maxsize=64)
+@cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the glow around (x, y) pixels, in 1/32768."""
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)

@@ -222,7 +222,9 @@ def corrupt_observation(
     return found
 
 
-def _corrupted_entry(obs: dict, part: Corruption, key: Key, sensor: DepthSensor) -> dict:
+def _corrupted_entry(
+    obs: dict, part: Corruption, key: Key | int | str, sensor: DepthSensor
+) -> dict:
     """The entry that one corruption changes, by name."""
     entry = observation.RGB if part.modality == "rgb" else observation.DEPTH
     if entry not in obs:
