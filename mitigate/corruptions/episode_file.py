@@ -63,14 +63,8 @@ def run(
     Raises ValueError or FileNotFoundError for wrong options or files, and for an ``out`` that is
     there and was not made so; then ``out`` is untouched.
     """
-    check_name(corruption, INSTRUCTION)
+    _check_name(corruption)
     severity = check_severity(severity)
-    if corruption == "white_box":
-        raise ValueError(
-            "corruption=white_box is not applicable to a file: it corrupts the system prompt of an "
-            "agent, which no episode holds. Evaluate an agent that has one, or use "
-            "corruption=black_box."
-        )
     Key(seed, "0")  # refuses a seed that is none
     check_options(split, "[MASK]" if mask_token is None else mask_token, tagger)
     _check_target(source, out)
@@ -101,6 +95,16 @@ def run(
         **{name: given[name] for name in USES.get(corruption, ())},
     }
     return _summarised(settings, counts, out)
+
+
+def _check_name(corruption: str) -> None:
+    check_name(corruption, INSTRUCTION)
+    if corruption == "white_box":
+        raise ValueError(
+            "corruption=white_box is not applicable to a file: it corrupts the system prompt of an "
+            "agent, which no episode holds. Evaluate an agent that has one, or use "
+            "corruption=black_box."
+        )
 
 
 def _check_target(source: Path | str, out: Path | str) -> None:
