@@ -90,7 +90,7 @@ COMMANDS = {
     "corrupt_episodes": Command(
         "mitigate.corruptions.episodes_command",
         "corrupt the instructions of an R2R-CE or RxR-CE file",
-        "val_unseen.json.gz out.json.gz family=mask severity=0.5",
+        "val_unseen.json.gz out.json.gz corruption=mask severity=0.5",
     ),
     "export_drive": Command(
         "mitigate.replay.export_drive",

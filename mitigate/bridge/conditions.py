@@ -17,8 +17,9 @@ from mitigate.bridge.identity import adapters_of, label_of, place_of, settings_o
 from mitigate.bridge.recording import Recorder
 from mitigate.bridge.results import Told
 from mitigate.bridge.subset import Subset
-from mitigate.bridge.words import Words, is_english
+from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption
+from mitigate.corruptions.language.text import is_english
 
 if TYPE_CHECKING:
     from mitigate.restoration.restorer import Restorer

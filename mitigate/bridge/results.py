@@ -28,8 +28,9 @@ class Told:
 
     ends: of each episode, by its name; again: episodes that ended once more, of which the first
     counts; dropped: left in the middle. cameras: of all calls, as first described; first: what the
-    first episode says. refused: what the server could not do, and why processes stopped themselves,
-    in words. adapted: encoders that got adapters. connected: environments that are there now.
+    first episode says; languages: of the episodes' words, by name. refused: what the server could
+    not do, and why processes stopped themselves, in words. adapted: encoders that got adapters.
+    connected: environments that are there now.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
@@ -39,6 +40,7 @@ class Told:
     dropped: list[str] = field(default_factory=list)
     refused: list[str] = field(default_factory=list)
     first: dict[str, Any] = field(default_factory=dict)
+    languages: dict[str, str | None] = field(default_factory=dict)
     adapted: list[str] = field(default_factory=list)
     connected: int = 0
 
@@ -63,6 +65,7 @@ def read(folder: Path) -> Told:
             told.cameras += [c for c in event["cameras"] if c.get("name") not in known]
         elif kind == "episode":
             told.first = told.first or event
+            told.languages[name] = event.get("language")
         elif kind == "end":
             held = told.ends.setdefault(name, event)
             told.again += held is not event

@@ -12,6 +12,7 @@ import shlex
 import signal
 import sys
 import time
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -125,8 +126,9 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
 
 def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
     """The conditions beside clean that reach the agent, and the names of those whose words it would
-    not hear; say which do not."""
+    not hear; say which do not, and which words are in other languages."""
     from mitigate.bridge.conditions import applicable, untold
+    from mitigate.corruptions.language.text import is_english, passed_through
 
     fitting, unheard, told = [], [], made[0].told()
     for cell in made[1:]:
@@ -137,6 +139,9 @@ def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
             unheard.append(cell.name)
         else:
             fitting.append(cell)
+    others = Counter(str(spoken) for spoken in told.languages.values() if not is_english(spoken))
+    if others and any("instruction" in cell.corruption.modalities for cell in fitting):
+        print(f"run: {passed_through(others)}", flush=True)
     return fitting, unheard
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from mitigate.corruptions import Corruption, Key, corrupt_instruction
+from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
 from mitigate.worlds.episodes import read_extras
 
@@ -16,7 +17,6 @@ NO_TOKENIZER = (
     "tokenizer's files; ETPNav's repository has it), or tokenizer=EPISODES.json.gz for R2R-CE's "
     "own vocabulary in that file."
 )
-ENGLISH = ("en", "en-us", "en-in")
 
 
 @dataclass
@@ -85,8 +85,3 @@ def fixed_length(tokens: list[Any]) -> int | None:
     token that comes twice and more at the end."""
     repeated = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
     return len(tokens) if repeated else None
-
-
-def is_english(language: str | None) -> bool:
-    """Whether words of that language are corrupted; None: not told, so they are."""
-    return language is None or language.lower() in ENGLISH

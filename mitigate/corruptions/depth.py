@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
+from mitigate.corruptions.cached import cached
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, flat, is_valid
 from mitigate.corruptions.echo import ECHO_GAP, ECHO_HERTZ, ECHO_REACH, ECHO_STRENGTH, multipath
 from mitigate.corruptions.keying import (
@@ -49,13 +50,13 @@ def _add_noise(views, streams, base, square, z_max, table, out):
                 for j in range(4):
                     draws[4 * i + j] = table[(word >> _U(16 * j + 4)) & _U(0xFFF)]
             for i in range(source.size):
-                z = source[i]
+                z = min(source[i], z_max)
                 moved = min(max(z + (base + square * z * z) * draws[i], NEAREST), z_max)
-                target[i] = moved if is_valid(z) else z
+                target[i] = moved if is_valid(source[i]) else source[i]
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """z + s (0.02 + 0.02 z^2) n, n ~ N(0, 1) for each pixel of each frame."""
+    """z + s (0.02 + 0.02 z^2) n, n ~ N(0, 1) for each pixel of each frame; z at most z_max."""
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
@@ -63,7 +64,7 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
     return out
 
 
-@lru_cache(maxsize=16)
+@cached
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """uint8 [H, 2 W]: 0 kept, 1 no reading, 2 reads z_max; the map twice, side by side, so that a
     row of it from any column on is one piece."""

@@ -14,7 +14,9 @@ from numba import njit
 from mitigate.core import observation
 
 NEAREST = np.float32(1e-3)  # metres: valid depth never falls below
-BEYOND = 3.0  # times z_max: a frame with nothing nearer is not in metres (ours)
+BEYOND = 3.0  # times z_max: a frame with hardly anything nearer is not in metres (ours)
+LEAST_NEAR = 10  # one valid pixel in so many is nearer; outdoors, the ground alone is (ours)
+LOOKED_AT = 8192  # pixels, to tell the unit by (ours)
 LIGHT_SPEED = 299_792_458.0  # metres a second
 
 
@@ -59,25 +61,27 @@ def flat(views: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def _comes_near(pixels, limit):
-    """Whether a valid pixel is at most ``limit``; the first one ends the search."""
-    i = 0
-    while i < pixels.size and not (is_valid(pixels[i]) and pixels[i] <= limit):
-        i += 1
-    return i < pixels.size
+def _is_near(pixels, limit):
+    """Whether one valid pixel in ``LEAST_NEAR`` is at most ``limit``, or none is valid; of a large
+    frame about ``LOOKED_AT`` are looked at, evenly."""
+    near = valid = 0
+    for i in range(0, pixels.size, pixels.size // LOOKED_AT + 1):
+        valid += is_valid(pixels[i])
+        near += is_valid(pixels[i]) & (pixels[i] <= limit)
+    return LEAST_NEAR * near >= valid
 
 
 def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
-    """Raise ValueError for depth [V, H, W] that cannot be metres: all of it is far beyond z_max.
+    """Raise ValueError for depth [V, H, W] that cannot be metres: nearly all of it is far beyond
+    z_max.
 
     Clipped to the sensor's range, it would be one flat wall.
     """
-    if _comes_near(views.reshape(-1), np.float32(BEYOND * sensor.z_max)):
-        return
-    nearest = float(np.min(views, initial=np.inf, where=views > 0))
-    if nearest < math.inf:
+    if not _is_near(views.reshape(-1), np.float32(BEYOND * sensor.z_max)):
+        middle = float(np.median(views[(views > 0) & (views < np.inf)]))
         raise ValueError(
-            f"Every valid pixel lies far beyond the sensor's z_max of {sensor.z_max:g} m (nearest "
-            f"{nearest:g}): is the depth in millimetres? Divide it by 1000, give unit=mm for a "
-            "folder of PNG, or a sensor with a greater z_max if these are metres."
+            f"Nearly all valid pixels lie far beyond the sensor's z_max of {sensor.z_max:g} m "
+            f"(median {middle:g}): is the depth in millimetres? Divide it by 1000, "
+            "give unit=mm for a folder of PNG, or a sensor with a greater z_max if these are "
+            "metres."
         )

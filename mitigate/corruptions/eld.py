@@ -165,7 +165,8 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
 def low_light_noise(
     views: np.ndarray, severity: float, key: Key, heading=None, camera: Camera = SONY_A7S2
 ) -> np.ndarray:
-    """``low_light`` seen by a noisy sensor: same mask, same mean, uint8 [V, H, W, 3]."""
+    """``low_light`` seen by a noisy sensor: same mask, and up to s = 0.6 the same mean within 1 %
+    (beyond, noise that is clipped at 0 brightens: 1 is no darker than 0.8). uint8 [V, H, W, 3]."""
     count, height, width, _ = views.shape
     t = tables(severity, camera)
     mask = low_light_mask(digest(key, "low_light"), severity, height, width)

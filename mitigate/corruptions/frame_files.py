@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import io
 import math
+import os
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -31,8 +32,10 @@ class LeftOutError(ValueError):
 def modality(path: Path) -> str:
     """What a file holds, "rgb" or "depth": by its name and, for PNG, the header.
 
-    Raises LeftOutError if it is neither.
+    Raises LeftOutError if it is neither, or a pipe or device, which may never end.
     """
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise LeftOutError("is no regular file")
     suffix = path.suffix.lower()
     if suffix != ".png":
         return DEPTH if suffix == ".npy" else RGB

@@ -12,11 +12,12 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.keying import Key, as_key, digest, uniform
 from mitigate.corruptions.language import words
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
 from mitigate.corruptions.language.tagger import Token, named
+from mitigate.corruptions.language.text import check_text
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 
 SPOKEN = words.bag("NOUN PROPN VERB ADP")  # what capitals stress
@@ -39,7 +40,7 @@ def corrupt_instruction(
     text: str,
     name: str,
     severity: float,
-    key: Key,
+    key: Key | int | str,
     *,
     split: str = "test",
     mask_token: str = "[MASK]",
@@ -53,18 +54,20 @@ def corrupt_instruction(
         name: one of INSTRUCTION but "white_box", which corrupts a prompt: ``inject_system_prompt``.
         severity: s in [0, 1]: the probability of a rewrite (styles), the share of eligible words
             (capitals, masks), the share of the prefix bank (black box); 0 returns ``text``.
-        key: names the random draw; its frame is not used.
+        key: names the random draw; its frame is not used. A whole number is a seed, a text an
+            episode.
         split: of the prefix bank: "train", "validation" or "test".
         mask_token: what stands for a hidden word.
         rewrite: (text, manner) -> text, a language model in place of the rules for styles.
         tagger: what finds the eligible words, "own" or "spacy".
 
-    Raises ValueError for a wrong name, severity, key, split or mask token, and for an empty text.
+    Raises ValueError for a wrong name, severity, key, split, mask token or tagger, and for an empty
+    text.
     """
     check_name(name, INSTRUCTION)
     severity = check_severity(severity)
-    if not isinstance(key, Key):
-        raise ValueError(f"key must be a Key(seed, episode), but it is {key!r}.")
+    key = as_key(key)
+    check_options(split, mask_token, tagger)
     if name == "white_box":
         raise ValueError(
             "'white_box' leaves the instruction as it is and corrupts the agent's system prompt: "
@@ -82,15 +85,21 @@ def corrupt_instruction(
             text, _eligible(text, name, tagger), severity, digest(key, name), str.upper
         )
     if name == "mask":
-        if not mask_token or not mask_token.strip():
-            raise ValueError(
-                "The mask token is empty: give the agent tokenizer's own, such as [MASK] (BERT) or "
-                "<mask> (RoBERTa). A tokenizer that has none takes the default '[MASK]' as text."
-            )
         return _replaced(
             text, _eligible(text, name, tagger), severity, digest(key, name), lambda _: mask_token
         )
     return " ".join((*stacked(severity, key, split), text))
+
+
+def check_options(split: str, mask_token: str, tagger: str) -> None:
+    """Raise ValueError for a split, a mask token or a tagger that is none."""
+    prefixes(split)
+    if not isinstance(mask_token, str) or not mask_token.strip():
+        raise ValueError(
+            "The mask token is empty: give the agent tokenizer's own, such as [MASK] (BERT) or "
+            "<mask> (RoBERTa). A tokenizer that has none takes the default '[MASK]' as text."
+        )
+    named(tagger)
 
 
 def is_rewritten(manner: str, severity: float, key: Key) -> bool:
@@ -99,14 +108,15 @@ def is_rewritten(manner: str, severity: float, key: Key) -> bool:
 
 
 def inject_system_prompt(
-    prompt: str | None, severity: float, key: Key, split: str = "test"
+    prompt: str | None, severity: float, key: Key | int | str, split: str = "test"
 ) -> str | NotApplicable:
     """Return ``prompt`` with misleading sentences in front of its task slot, or at its end.
 
     The slot is the first ``{instruction}``, ``{task}`` or the like. Severity is as for "black_box".
     An agent without a prompt (None or empty) gives NotApplicable, never a clean result.
+    Raises ValueError for a wrong severity, key or split.
     """
-    severity = check_severity(severity)
+    severity, key = check_severity(severity), as_key(key)
     if not prompt:
         return NotApplicable("white_box", "the agent has no system prompt")
     if severity == 0.0:
@@ -119,7 +129,7 @@ def inject_system_prompt(
 
 
 def stacked(severity: float, key: Key, split: str) -> list[str]:
-    """Return the sentences in front: of each family one, drawn by key; the share ``severity``."""
+    """Return the sentences in front: of each kind one, drawn by key; the share ``severity``."""
     bank, stream = prefixes(split), digest(key, "prefixes")
     drawn = [
         sentences[int(uniform(stream, index) * len(sentences))]
@@ -135,7 +145,7 @@ def _eligible(text: str, name: str, tagger: str) -> list[Token]:
     found = [token for token in named(tagger)(text) if token.is_word]
     if name == "capitalize":
         return [token for token in found if token.tag in SPOKEN]
-    return [t for t in found if t.tag in SLIGHT and t.lower not in words.SPATIAL]
+    return [t for t in found if t.tag in SLIGHT and not words.is_kept(t.lower)]
 
 
 def _replaced(
@@ -148,12 +158,3 @@ def _replaced(
         token = eligible[place]
         text = text[: token.start] + change(token.text) + text[token.end :]
     return text
-
-
-def check_text(text: str) -> None:
-    """Raise ValueError if ``text`` holds no word."""
-    if not isinstance(text, str) or not any(character.isalnum() for character in text):
-        raise ValueError(
-            f"The instruction is empty: {text!r:.60} holds no word. Give the sentence that the "
-            "agent is to follow, or leave the episode out."
-        )

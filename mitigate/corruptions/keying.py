@@ -20,11 +20,14 @@ from statistics import NormalDist
 import numpy as np
 from numba import njit
 
+from mitigate.corruptions.cached import cached
+
 GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment
 MIX_A, MIX_B = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB  # splitmix64 multipliers
 MASK = (1 << 64) - 1
 NORMAL_BITS = 12  # size of the normal quantile table: |n| <= 3.7, and 16 KB stay in the L1 cache
 FIELD_SIDE = 128  # cells along the shorter side of a random field, at every frame size
+FIELD_LONGEST = 32 * FIELD_SIDE  # cells along the longer side at most: they get longer beyond 32:1
 
 _U = np.uint64
 _GOLDEN, _A, _B = _U(GOLDEN), _U(MIX_A), _U(MIX_B)
@@ -52,6 +55,20 @@ class Key:
                 f"The seed and the frame of a key must be whole numbers, but it has seed="
                 f"{self.seed!r}, frame={self.frame!r}. Write, for instance, Key(0, '17', frame=3)."
             ) from None
+
+
+def as_key(key: Key | int | str) -> Key:
+    """``key``; a whole number n is Key(n, "0"), a text t is Key(0, t). ValueError for the rest."""
+    if isinstance(key, Key):
+        return key
+    if isinstance(key, str):
+        return Key(0, key)
+    if isinstance(key, int | np.integer) and not isinstance(key, bool):
+        return Key(int(key), "0")
+    raise ValueError(
+        "key must be a Key(seed, episode, frame), a whole number (the seed) or a text (the "
+        f"episode), but it is {key!r}. It names the random draw: equal keys give equal pixels."
+    )
 
 
 @lru_cache(maxsize=256)
@@ -186,18 +203,18 @@ def _resize_torus(cells, height, width):
     return out
 
 
-@lru_cache(maxsize=32)
+@cached
 def field(value: int, height: int, width: int, correlation: float) -> tuple:
     """A Gaussian random field on a torus, and the cells that it was resampled from.
 
     ``correlation`` is the standard deviation of the smoothing kernel as a fraction of the shorter
     side. The field is drawn on a grid whose shorter side has ``FIELD_SIDE`` cells and resampled, so
-    a frame and its half-size copy get the same pattern.
+    a frame and its half-size copy get the same pattern. A frame longer than 32:1 gets longer cells.
 
     Returns (float32 [height, width] with unit standard deviation, float32 [cells]).
     """
     scale = FIELD_SIDE / min(height, width)
-    rows, cols = max(1, round(height * scale)), max(1, round(width * scale))
+    rows, cols = (min(round(side * scale), FIELD_LONGEST) for side in (height, width))
     sigma = correlation * FIELD_SIDE
     radius = int(np.ceil(3.0 * sigma))
     weights = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma) ** 2)

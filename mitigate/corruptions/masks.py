@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 
 from mitigate.core import observation
+from mitigate.corruptions.cached import cached
 from mitigate.corruptions.keying import field, top_share, uniform
 
 DARK_BASE, DARK_RAMP = 0.60, 0.37  # between RobustNav (0.57-0.31 of the mean) and 3DCC (0.24-0.12)
@@ -76,7 +77,7 @@ def cover(views, alpha, colour, out):
                 target[i] = source[i] + ((part[i] + 32) >> 6)
 
 
-@lru_cache(maxsize=32)
+@cached
 def light_ramp(value: int, height: int, width: int) -> np.ndarray:
     """float32 [H, W] in [0, 1]: a linear ramp along an angle, or the distance to one light."""
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
@@ -97,13 +98,13 @@ def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarr
     return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
 
 
-@lru_cache(maxsize=16)
+@cached
 def low_light_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the dark, in 1/32768."""
     return opacity_mask(light_loss(value, severity, height, width), 1.0, NEUTRAL)
 
 
-@lru_cache(maxsize=16)
+@cached
 def spatter_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the dirt, in 1/32768."""
     smooth, cells = field(value, height, width, SPATTER_CORRELATION)
@@ -126,17 +127,13 @@ def flare_centres(
 
     The light has a fixed direction in the world: column U(0.1, 0.9) W, row U(0, 0.5) H of a camera
     at a random world yaw. ``heading`` (rad, counter-clockwise) turns with the agent and view k
-    looks at heading - 30 k degrees. Without a heading that camera is view 0.
+    looks at heading - 30 k degrees, level, even from the 13th view on. Without a heading that
+    camera is view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width
     yaw = math.atan2(0.5 - column, focal)  # from the camera, counter-clockwise
     tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # of the elevation
-    if heading is not None and not math.isfinite(heading):
-        raise ValueError(
-            f"The flare needs a heading in finite radians, not {heading}. Pass heading=None, or an "
-            "observation without a pose, if it is not known."
-        )
     if heading is not None:
         yaw += 2.0 * math.pi * uniform(value, 2) - heading
     centres = []
@@ -166,7 +163,7 @@ def _look_up(down, right, table, out):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
 
 
-@lru_cache(maxsize=64)
+@cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the glow around (x, y) pixels, in 1/32768."""
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)

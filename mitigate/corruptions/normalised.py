@@ -8,13 +8,13 @@ from numba import njit
 from mitigate.core import observation
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.suite import SENSOR, Corruption, corrupt_observation
+from mitigate.corruptions.suite import SENSOR, Corruption, check_corruption, corrupt_observation
 
 LEAST = np.float32(1e-6)  # of the range: what valid depth at or under z_min becomes, as 0 is a hole
 
 
 def corrupt_normalised(
-    obs: dict, corruption: Corruption, key: Key, sensor: DepthSensor = SENSOR
+    obs: dict, corruption: Corruption, key: Key | int | str, sensor: DepthSensor = SENSOR
 ) -> dict:
     """``corrupt_observation`` for an observation whose ``depth`` is normalised.
 
@@ -27,7 +27,7 @@ def corrupt_normalised(
     ``corrupt_observation`` does.
     """
     check_sensor(sensor)
-    if observation.DEPTH not in {*obs}.intersection(corruption.modalities):
+    if observation.DEPTH not in {*obs}.intersection(check_corruption(corruption).modalities):
         return corrupt_observation(obs, corruption, key, sensor)
     clean = np.ascontiguousarray(_checked(np.asarray(obs[observation.DEPTH])))
     metres, range_ = np.empty_like(clean), _range(sensor)

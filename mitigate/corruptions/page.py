@@ -54,10 +54,15 @@ the rule "more s never changes less" between neighbours on the fine grid of {ste
 ## Rules
 
 - s = 0 returns a bit-exact copy; on one draw, s = 0.1, 0.2, ... 1 never changes less (SSIM and PSNR
-  of RGB, mean absolute error of depth). Between them, see *slip* above.
+  of RGB, mean absolute error of depth). Between them, see *slip* above. `quantization` keeps this
+  rule on average alone: over 300 views of `val_unseen` the mean error rises at each of these steps,
+  from 0.012 m at 0.1 to 0.126 m at 1, and 45 % of the views fall at one or more of them, by 0.015 m
+  in the mean and 0.11 m at most.
 - Every draw is a function of (seed, episode, corruption, frame, view, pixel): the same frame gets
   the same pixels in any batch, process or order, in training and in evaluation.
-- The 12 views of a panorama share lens and light; only the views that face a flare show it.
+- The 12 views of a panorama share lens and light; only the views that face a flare show it. View k
+  of any number is taken to look at yaw -30 k degrees and level: of 36 views in three elevations the
+  light stands at the same height in all three.
 - Lengths are shares of the frame, so a frame and its half-size copy are corrupted alike.
 - Invalid depth (0, negative, NaN, infinite) comes back as it was and takes no part in a
   neighbourhood; other depth is clipped to 0.001 m ... z_max.
@@ -66,7 +71,8 @@ the rule "more s never changes less" between neighbours on the fine grid of {ste
 ## Known limits
 
 - **ELD** treats sRGB as a power of {gamma:g}, draws noise for each channel and knows no Bayer
-  pattern. Clipping at 0 brightens deep shadows, as real cameras do.
+  pattern. Clipping at 0 brightens deep shadows, as real cameras do: the mean is that of
+  `low_light` within 1 % up to s = 0.6, and at 1 the view above is as bright as at 0.8.
 - **Motion blur**: the response of a line to a fine regular pattern has side lobes, so that a longer
   line can change it less. On a fine grid SSIM rises by less than {blur_most:g} between neighbours
   on the chequered scene of the tests, and by at most {blur_slip} on the view above. A line under

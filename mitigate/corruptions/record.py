@@ -1,7 +1,7 @@
 """One record a corruption: all that tables, pages, suites and benchmarks say of it.
 
 A corruption of your own is such a record, found by the entry point group ``mitigate.corruptions``
-(``docs/corruption-entry-points.md``); ours stand at the end of ``rgb.py``, ``eld.py``,
+(``docs/bring-your-own.md``); ours stand at the end of ``rgb.py``, ``eld.py``,
 ``depth.py``, ``language/families.py`` and the files of ``unseen``.
 """
 

@@ -89,7 +89,6 @@ def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndar
     """Screen blend with a radial glow from a fixed direction in the world, where a view sees it."""
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
-    heading = None if heading is None else float(heading)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)
     for view, centre in enumerate(centres):
         if centre is None:

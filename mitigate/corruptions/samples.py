@@ -1,7 +1,7 @@
-"""Look at the instruction families on a file: ``python -m mitigate.corruptions.samples FILE``.
+"""Corruptions of instructions, seen on a file: ``python -m mitigate.corruptions.samples FILE``.
 
-Prints, as Markdown, how often the fidelity gate passed, what a family costs in time, what the gate
-catches of known lies, and examples drawn by a seed.
+Prints, as Markdown, how often the fidelity gate passed, what a corruption costs in time, what the
+gate catches of known lies, and examples drawn by a seed.
 """
 
 from __future__ import annotations
@@ -14,27 +14,29 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
+from mitigate.corruptions.episode_file import NAMES
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.style import MANNERS, restyle
-from mitigate.corruptions.suite import INSTRUCTION
+from mitigate.corruptions.language.text import has_word
 from mitigate.worlds.episodes import read_episodes
 
 OTHER = {"left": "right", "right": "left"}
-FAMILIES = tuple(name for name in INSTRUCTION if name != "white_box")
 
 
 def instructions(path: Path, count: int | None) -> list[tuple[str, str]]:
     """Return (id, text) of the first ``count`` instructions of an episode file or a text file.
 
-    A text file has one instruction a line; empty lines and lines that begin with # are left out.
+    Those without a word are left out. A text file has one instruction a line; lines that begin with
+    # are left out.
     """
     if path.suffix == ".txt":
         lines = path.read_text(encoding="utf-8").splitlines()
-        texts = [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+        texts = [line.strip() for line in lines if has_word(line) and not line.startswith("#")]
         return [(str(index), text) for index, text in enumerate(texts[:count])]
-    return [(e.episode_id, e.instruction.text) for e in islice(read_episodes(path), count)]
+    found = ((e.episode_id, e.instruction.text) for e in read_episodes(path))
+    return list(islice((pair for pair in found if has_word(pair[1])), count))
 
 
 def gate(found: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
@@ -51,8 +53,8 @@ def gate(found: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
 
 
 def cost(found: list[tuple[str, str]], seed: int) -> Iterator[list[str]]:
-    """Yield one table row a family at severity 1: milliseconds and words an instruction."""
-    for name in FAMILIES:
+    """Yield one table row a corruption at severity 1: milliseconds and words an instruction."""
+    for name in NAMES:
         start = time.process_time()
         said = [corrupt_instruction(text, name, 1.0, Key(seed, key)) for key, text in found]
         spent = time.process_time() - start
@@ -93,16 +95,16 @@ _LIES: dict[str, Callable[[str], Iterator[str]]] = {
 
 
 def examples(found: list[tuple[str, str]], count: int, seed: int) -> Iterator[str]:
-    """Yield ``count`` instructions, drawn by ``seed``, and what each family makes of them."""
+    """Yield ``count`` instructions, drawn by ``seed``, and what each corruption makes of them."""
     stream = digest(Key(seed, "samples"), "samples")
     order = sorted(range(len(found)), key=lambda index: uniform(stream, index))
     for index in order[:count]:
         name, text = found[index]
         yield f"> {text.strip()}\n"
-        for family in FAMILIES:
-            severity = 1.0 if family in MANNERS else 0.5
-            said = corrupt_instruction(text, family, severity, Key(seed, name)).strip()
-            yield f"- `{family}` {severity:g}: {said}"
+        for corruption in NAMES:
+            severity = 1.0 if corruption in MANNERS else 0.5
+            said = corrupt_instruction(text, corruption, severity, Key(seed, name)).strip()
+            yield f"- `{corruption}` {severity:g}: {said}"
         yield ""
 
 
@@ -128,7 +130,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         print(f"{len(found)} instructions\n")
         print(_table(("manner", "passed at once", "passed", "clauses reworded"),
             gate(found, given.seed)))  # fmt: skip
-        print(_table(("family", "ms", "words against clean"), cost(found, given.seed)))
+        print(_table(("corruption", "ms", "words against clean"), cost(found, given.seed)))
         print(_table(("lie", "told", "caught"), lies(found)))
         print("\n".join(examples(found, given.show, given.seed)))
     except (FileNotFoundError, ValueError) as error:

@@ -11,7 +11,14 @@ from typing import Any
 
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.registry import broad_name, modality
-from mitigate.corruptions.suite import CLEAN, NAMES, Corruption, check_name, check_severity
+from mitigate.corruptions.suite import (
+    CLEAN,
+    NAMES,
+    Corruption,
+    check_corruption,
+    check_name,
+    check_severity,
+)
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
 Severity = float | Sequence[float]  # one, or the ends of a range
@@ -166,6 +173,23 @@ class Schedule:
         self._weights = [1.0 / len(self.names)] * len(self.names)
         if state["success"] is not None:
             self.refresh(state["success"])
+
+
+def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
+    """What ``by`` does to one frame, and the key: a corruption meets every frame.
+
+    Raises ValueError if ``by`` is neither.
+    """
+    if isinstance(by, Schedule):
+        return by.draw(seed, episode, frame)
+    return check_corruption(by), Key(seed, str(episode), frame)
+
+
+def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
+    """The corruptions that ``by`` may do, none if all is clean. ValueError if it is neither."""
+    if isinstance(by, Schedule):
+        return () if by.mode == "clean" else by.names
+    return tuple(part.name for part in check_corruption(by).parts)
 
 
 def _checked(severity: Severity) -> float | tuple[float, float]:

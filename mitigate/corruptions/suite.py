@@ -14,9 +14,10 @@ import numpy as np
 from mitigate.core import observation
 from mitigate.core.names import unknown
 from mitigate.corruptions import registry
-from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
-from mitigate.corruptions.keying import Key
+from mitigate.corruptions.depth_sensor import DepthSensor
+from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import MODALITIES
+from mitigate.corruptions.views import depth_views, rgb_views
 
 SUITE_VERSION = "1.1"  # changes when any pixel or word of any corruption changes
 
@@ -26,7 +27,6 @@ NAMES = RGB + DEPTH
 # what is done to the words before an episode begins: see instruction.py
 INSTRUCTION = registry.names("instruction")
 SENSOR = DepthSensor()
-MOST_VIEWS = 36  # of one instant: R2R's discrete panoramas (3 elevations of 12); VLN-CE has 12
 
 
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
@@ -129,67 +129,29 @@ def _check_pair(name: str) -> None:
 CLEAN = Corruption("clean", 0.0)
 
 
-def as_key(key: Key | int | str) -> Key:
-    """``key``; a whole number n is Key(n, "0"), a text t is Key(0, t). ValueError for the rest."""
-    if isinstance(key, Key):
-        return key
-    if isinstance(key, str):
-        return Key(0, key)
-    if isinstance(key, int | np.integer) and not isinstance(key, bool):
-        return Key(int(key), "0")
-    raise ValueError(
-        "key must be a Key(seed, episode, frame), a whole number (the seed) or a text (the "
-        f"episode), but it is {key!r}. It names the random draw: equal keys give equal pixels."
-    )
-
-
-def _rgb_views(frame: np.ndarray) -> np.ndarray:
-    """The frame as contiguous uint8 [V, H, W, 3]; ValueError for anything else."""
-    if frame.dtype != np.uint8:
+def check_corruption(corruption: Corruption) -> Corruption:
+    """Return ``corruption``, or raise ValueError if it is a name or anything else."""
+    if not isinstance(corruption, Corruption):
         raise ValueError(
-            f"RGB frames must be uint8 in 0-255, but this one is {frame.dtype}. Convert it first: "
-            "np.rint(frame * 255).astype(np.uint8) if it is in 0-1, np.rint(frame).astype(np.uint8)"
-            " if it is in 0-255. Float frames are refused because pipelines such as CLIP's divide "
-            "by 255 only for uint8, so a float frame in 0-255 silently breaks them."
+            f"What is done is a Corruption(name, severity), such as Corruption('spatter', 0.6), "
+            f"but it is {corruption!r:.60}."
         )
-    if frame.ndim not in (3, 4) or frame.shape[-1] != 3 or 0 in frame.shape:
-        raise ValueError(
-            f"RGB frames must be [H, W, 3] or [views, H, W, 3], but the shape is {frame.shape}. "
-            "Move the channels last, drop an alpha channel, and corrupt a batch one instant at a "
-            "time: every instant has its own key."
-        )
-    return _one_instant(np.ascontiguousarray(frame if frame.ndim == 4 else frame[None]))
+    return corruption
 
 
-def _depth_views(frame: np.ndarray, sensor: DepthSensor) -> np.ndarray:
-    """The frame as contiguous float32 [V, H, W]; ValueError for anything else, millimetres too."""
-    if frame.dtype != np.float32:
+def check_heading(heading: float | None) -> float | None:
+    """Return ``heading`` as a float or None, or raise ValueError for NaN, infinity and text."""
+    try:
+        value = math.nan if isinstance(heading, str | bool) else float(heading or 0.0)
+    except (TypeError, ValueError):
+        value = math.nan
+    if not math.isfinite(value):
         raise ValueError(
-            f"Depth must be float32 in metres, but this frame is {frame.dtype}. Convert it first: "
-            "depth.astype(np.float32), divided by 1000 if it holds millimetres (uint16); a sensor "
-            "that normalises to 0-1 goes through DepthSensor(z_min, z_max).to_metres."
+            f"The heading must be in finite radians, not {heading!r}. Pass heading=None, or an "
+            "observation without a pose, if it is not known: a flare then keeps its place in view "
+            "0."
         )
-    shape = frame.shape[:-1] if frame.ndim > 2 and frame.shape[-1] == 1 else frame.shape
-    if len(shape) not in (2, 3) or 0 in shape:
-        raise ValueError(
-            f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], but the shape is "
-            f"{frame.shape}. Corrupt a batch one instant at a time: every instant has its own key."
-        )
-    views = frame.reshape((1, *shape) if len(shape) == 2 else shape)
-    views = _one_instant(np.ascontiguousarray(views))
-    check_unit(views, sensor)
-    return views
-
-
-def _one_instant(views: np.ndarray) -> np.ndarray:
-    """``views`` [V, ...] as they are; ValueError for more of them than a panorama has."""
-    if len(views) > MOST_VIEWS:
-        raise ValueError(
-            f"There are {len(views)} views, but an instant has {MOST_VIEWS} at most. The leading "
-            "axis is the views of one panorama, which share one mask. Is it a batch? Corrupt it "
-            "one instant at a time: every instant has its own key."
-        )
-    return views
+    return None if heading is None else value
 
 
 def corrupt(
@@ -205,9 +167,10 @@ def corrupt(
 
     Args:
         frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k degrees. V
-            counts the views of one instant, 36 at most: they share one mask. It is no batch axis;
-            corrupt a batch one instant at a time, each with its own key.
+            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V looks at yaw -30 k
+            degrees, level: the flare knows no elevation. V counts the views of one instant, 36 at
+            most: they share one mask. It is no batch axis; corrupt a batch one instant at a time,
+            each with its own key.
         name: one of NAMES.
         severity: s in [0, 1]; 0 returns a bit-exact copy.
         key: names the random draw; a whole number is a seed, a text an episode.
@@ -216,16 +179,16 @@ def corrupt(
         sensor: depth range and sentinel.
 
     Returns a new array of the same shape and dtype; the input is not modified.
-    Raises ValueError for a wrong name, severity, dtype, shape, heading or key, and for depth whose
-    nearest valid pixel is over three times the sensor's z_max: it is in millimetres.
+    Raises ValueError for a wrong name, severity, dtype, shape, heading or key, and for depth of
+    which over nine tenths are beyond three times the sensor's z_max: it is in millimetres.
     """
     check_name(name)
     severity = check_severity(severity)
-    key = as_key(key)
+    key, heading = as_key(key), check_heading(heading)
     frame = np.asarray(frame)
     record = registry.record(name)
     rgb = record.modality == "rgb"
-    views = _rgb_views(frame) if rgb else _depth_views(frame, sensor)
+    views = rgb_views(frame) if rgb else depth_views(frame, sensor, name)
     if severity == 0.0:
         return frame.copy()
     assert record.apply is not None, "names of frames have a function"
@@ -243,22 +206,25 @@ def corrupt(
 
 
 def corrupt_observation(
-    obs: dict, corruption: Corruption, key: Key, sensor: DepthSensor = SENSOR
+    obs: dict, corruption: Corruption, key: Key | int | str, sensor: DepthSensor = SENSOR
 ) -> dict:
     """A new observation dict with what ``corruption`` concerns corrupted (``core/observation.py``).
 
     The other entries are the same objects as in ``obs``. The heading is read from ``obs["pose"]``.
     A corrupted instruction leaves the frames clean: ``corrupt_instruction`` changed the words.
-    Raises ValueError if the modality is missing or the pose is not [3], and as ``corrupt`` does.
+    Raises ValueError if the modality is missing, the pose is not [3] or ``corruption`` is none, and
+    as ``corrupt`` does.
     """
     found = dict(obs)
-    for part in corruption.parts:
+    for part in check_corruption(corruption).parts:
         if part.modality != "instruction":
             found |= _corrupted_entry(found, part, key, sensor)
     return found
 
 
-def _corrupted_entry(obs: dict, part: Corruption, key: Key, sensor: DepthSensor) -> dict:
+def _corrupted_entry(
+    obs: dict, part: Corruption, key: Key | int | str, sensor: DepthSensor
+) -> dict:
     """The entry that one corruption changes, by name."""
     entry = observation.RGB if part.modality == "rgb" else observation.DEPTH
     if entry not in obs:

@@ -15,6 +15,7 @@ from mitigate.corruptions import (
     corrupt_instruction,
     inject_system_prompt,
 )
+from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.registry import parts
 from mitigate.evaluation.rows import MEASURES
 from mitigate.restoration.restorer import Restorer
@@ -106,9 +107,10 @@ class _Walk:
 
 
 def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
-    """Return the words of ``episode`` as ``corruption`` leaves them."""
+    """Return the words of ``episode`` as ``corruption`` leaves them; those of another language than
+    English stay."""
     text, key = episode.instruction.text, Key(seed, episode.episode_id)
-    for part in corruption.parts:
+    for part in corruption.parts if is_english(episode.instruction.language) else ():
         if part.modality == "instruction" and part.name != "white_box":
             text = corrupt_instruction(text, part.name, part.severity, key)
     return text

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import time
 import warnings
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -27,6 +28,7 @@ from mitigate.core.identity import identity
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
+from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode, run_side_by_side
@@ -156,6 +158,7 @@ def evaluate(
     }
     jobs = _jobs(episodes, conditions, label)
     todo = [job for job in jobs if rows.identity(job[2]) not in known]
+    _warn_of_languages(todo)
     heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
     decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
     repaired = {decision.original: decision.text for decision in decided}
@@ -206,6 +209,17 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
             stacklevel=3,
         )
     return kept
+
+
+def _warn_of_languages(jobs: list[Job]) -> None:
+    """Warn of episodes whose instructions are to be corrupted and are not in English."""
+    found = {
+        episode.episode_id: episode.instruction.language
+        for episode, condition, _ in jobs
+        if "instruction" in condition.modalities and not is_english(episode.instruction.language)
+    }
+    if found:
+        warnings.warn(passed_through(Counter(map(str, found.values()))), stacklevel=3)
 
 
 def _run(

@@ -18,7 +18,7 @@ from mitigate.core.identity import DIGITS
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
-from mitigate.corruptions.suite import MOST_VIEWS
+from mitigate.corruptions.views import MOST_VIEWS
 from mitigate.restoration import folder as folders
 from mitigate.restoration.choices import SENSORS, parted
 from mitigate.restoration.frames import CHANNELS, SensorRestorer

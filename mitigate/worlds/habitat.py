@@ -19,7 +19,13 @@ from mitigate.corruptions import registry
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
-from mitigate.corruptions.suite import NAMES, SENSOR, Corruption, corrupt_observation
+from mitigate.corruptions.suite import (
+    NAMES,
+    SENSOR,
+    Corruption,
+    check_corruption,
+    corrupt_observation,
+)
 
 TURNS = ("left", "right")
 _CAMERA = re.compile(r"(rgb|depth)(?:_(\d+(?:\.\d+)?))?")
@@ -58,7 +64,7 @@ def corrupt_habitat(
     """
     if turn not in TURNS:
         raise ValueError(f"turn must be 'left' or 'right', where rgb_30 looks, but it is {turn!r}.")
-    if len(corruption.parts) > 1:
+    if len(check_corruption(corruption).parts) > 1:
         for part in corruption.parts:
             obs = corrupt_habitat(
                 obs, part, key, sensor, heading=heading, turn=turn, normalised=normalised

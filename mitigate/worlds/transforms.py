@@ -20,6 +20,7 @@ from mitigate.corruptions import (
     corrupt_observation,
     registry,
 )
+from mitigate.corruptions.schedule import drawn, names_of
 
 
 class CorruptObservation(Transform):
@@ -37,7 +38,7 @@ class CorruptObservation(Transform):
     shape, any device; the work is done on the CPU and the result goes back to the frames' device.
 
     Args:
-        schedule: which frame meets what; ``Schedule.always("spatter", 0.6)`` for one only.
+        schedule: which frame meets what, or the corruption that all meet.
         seed: of every random draw.
         rgb, depth: names of the two entries; an absent one is left out.
         sensor: depth range and sentinel.
@@ -49,7 +50,7 @@ class CorruptObservation(Transform):
 
     def __init__(
         self,
-        schedule: Schedule,
+        schedule: Schedule | Corruption,
         seed: int = 0,
         *,
         rgb: NestedKey = RGB,
@@ -112,10 +113,11 @@ class CorruptObservation(Transform):
 
     def _check_entries(self, frames: Collection[str]) -> None:
         """Raise ValueError at the first data, not when the draw first asks for what they lack."""
-        lost = [name for name in self.schedule.names if registry.modality(name) not in frames]
-        if lost and self.schedule.mode != "clean":
+        names = names_of(self.schedule)
+        lost = [name for name in names if registry.modality(name) not in frames]
+        if lost:
             modality = registry.modality(lost[0])
-            fit = ", ".join(name for name in self.schedule.names if name not in lost)
+            fit = ", ".join(name for name in names if name not in lost)
             raise ValueError(
                 f"The schedule may draw {lost[0]!r}, which corrupts {modality}, but the data have "
                 f"no entry {self.entries[modality]!r}. "
@@ -137,7 +139,7 @@ class CorruptObservation(Transform):
             )
         instants = data.select(EPISODE, FRAME).cpu().reshape(-1).unbind(0)
         return [
-            self.schedule.draw(self.seed, _name(instant[EPISODE]), int(instant[FRAME]))
+            drawn(self.schedule, self.seed, _name(instant[EPISODE]), int(instant[FRAME]))
             for instant in instants
         ]
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from mitigate.core.observation import DEPTH, Observation, Sensor
 from mitigate.corruptions import Corruption, DepthSensor, Key, Schedule, corrupt_observation
+from mitigate.corruptions.schedule import drawn
 from mitigate.worlds.episodes import Episode
 
 
@@ -172,9 +173,7 @@ class Corrupted(WorldWrapper):
 
     def _draw(self) -> tuple[Corruption, Key]:
         name = self.episode.episode_id if self.name is None else self.name
-        if isinstance(self.by, Schedule):
-            return self.by.draw(self.seed, name, self.looks)
-        return self.by, Key(self.seed, name, self.looks)
+        return drawn(self.by, self.seed, name, self.looks)
 
 
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:

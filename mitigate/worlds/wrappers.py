@@ -28,6 +28,7 @@ from mitigate.corruptions import (
 )
 from mitigate.corruptions.normalised import check_sensor
 from mitigate.corruptions.registry import modality
+from mitigate.corruptions.schedule import drawn, names_of
 
 
 class CorruptObservation(gymnasium.ObservationWrapper):
@@ -46,7 +47,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
 
     Args:
         env: the environment.
-        schedule: which frame meets what; ``Schedule.always("spatter", 0.6)`` for one only.
+        schedule: which frame meets what, or the corruption that all meet.
         seed: of every random draw of the corruptions.
         rgb, depth: names of the two entries of a ``Dict``.
         pose: name of an entry float [3] = (x, y, heading in radians, counter-clockwise), by which a
@@ -62,7 +63,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
     def __init__(
         self,
         env: gymnasium.Env,
-        schedule: Schedule,
+        schedule: Schedule | Corruption,
         seed: int = 0,
         *,
         rgb: str = RGB,
@@ -117,7 +118,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
 
     def observation(self, observation: Any) -> Any:
         """The corrupted observation of the current frame; the given one is not modified."""
-        self.corruption, self.key = self.schedule.draw(self.seed, self._episode, self._frame)
+        self.corruption, self.key = drawn(self.schedule, self.seed, self._episode, self._frame)
         if self._whole is not None:
             frames = {self._whole: observation}
             return self._corrupt(frames, self.corruption, self.key, self.sensor)[self._whole]
@@ -161,8 +162,7 @@ class CorruptObservation(gymnasium.ObservationWrapper):
                 f"with rgb= and depth= if they are not called {self._entries[RGB]!r} and "
                 f"{self._entries[DEPTH]!r}, and wrap before frames are transposed or made float."
             )
-        names = () if self.schedule.mode == "clean" else self.schedule.names
-        for name in names:
+        for name in names_of(self.schedule):
             if modality(name) not in found:
                 raise ValueError(
                     f"The schedule draws {name!r}, which corrupts {modality(name)}, but the "

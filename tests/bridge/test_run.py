@@ -9,12 +9,19 @@ import subprocess
 import sys
 import time
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 
+from mitigate.bridge import run as run_module
+from mitigate.bridge.condition import Condition
+from mitigate.bridge.events import EVENTS
+from mitigate.bridge.results import read
 from mitigate.bridge.run import name_of, split_command
 from mitigate.bridge.subset import Subset
+from mitigate.bridge.words import Words
 from mitigate.core.conf import options_text
+from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import rows
 
 from .conftest import AGENT, LAB
@@ -249,6 +256,23 @@ def test_words_that_would_not_be_heard_are_refused_before_their_conditions_run(r
     assert refused < begun and not (tmp_path / "o/conditions/mask-s0.6").exists()
     measured = {row["corruption"] for row in rows.read(tmp_path / "o" / "rows.jsonl")}
     assert measured == {"clean", "low_light"}
+
+
+def test_words_in_other_languages_are_counted_where_words_are_to_be_corrupted(tmp_path, capsys):
+    events = [
+        {"event": "episode", "scene": "s", "episode": str(i), "text": "x", "language": spoken}
+        for i, spoken in enumerate(["hi-IN", "en-GB", None, "hi-IN"])
+    ]
+    (tmp_path / EVENTS).write_text("".join(json.dumps(event) + "\n" for event in events))
+    told = read(tmp_path)
+    cells = [
+        SimpleNamespace(told=lambda: told, corruption=met, condition=Condition(met, 0, Words()))
+        for met in (CLEAN, Corruption("mask", 0.6))
+    ]
+    assert run_module._fitting(cells) == (cells[1:], [])
+    said = "run: instructions in other languages passed through unchanged: 2 in hi-IN\n"
+    assert capsys.readouterr().out == said
+    assert run_module._fitting(cells[:1]) == ([], []) and not capsys.readouterr().out
 
 
 def test_an_existing_sitecustomize_is_still_run(run, tmp_path):

@@ -266,7 +266,7 @@ def test_depth_in_another_unit_is_left_out(run, tmp_path):
     status, out, err = run("corruption=missing_data", "severity=0.6", "unit=m")
     assert status == 1 and "1 frames written" in out and "unit=mm" in err
     reasons = {e["file"]: e["reason"] for e in summary(tmp_path / "out")["left_out"]}
-    assert list(reasons) == ["0.png", "1.npy"] and "nearest 2500" in reasons["1.npy"]
+    assert list(reasons) == ["0.png", "1.npy"] and "median 2500" in reasons["1.npy"]
     assert not (tmp_path / "out/0.png").exists()
 
 

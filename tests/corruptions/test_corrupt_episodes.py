@@ -10,8 +10,8 @@ import tracemalloc
 
 import pytest
 
-from mitigate.corruptions import Key, corrupt_instruction, episodes_command
-from mitigate.corruptions.episodes_command import ORIGINAL, run
+from mitigate.corruptions import Key, corrupt_instruction, episode_file, episodes_command
+from mitigate.corruptions.episode_file import ORIGINAL, run
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.worlds.episodes import read_episodes, read_extras
@@ -158,9 +158,109 @@ def test_memory_does_not_grow_with_the_file(tmp_path):
     assert peaks[1] < peaks[0] + 1_000_000, peaks  # the larger file holds 11 MB more
 
 
+def test_an_instruction_without_a_word_passes_through_and_is_counted(tmp_path):
+    source = made(
+        tmp_path / "in.json.gz", episode(1), *(episode(i + 2, instruction_text=t) for i, t in
+        enumerate(("  ", "...")))
+    )  # fmt: skip
+    for name in ("formal", "mask", "black_box"):
+        summary = run(source, tmp_path / "out.json.gz", name, 1.0)
+        assert raw(tmp_path / "out.json.gz")[1:] == raw(source)[1:]
+        assert (summary["blank"], summary["changed"]) == (2, 1)
+        assert "2 instructions hold no word" in episodes_command.notices(summary)[0]
+
+
+def test_a_file_without_an_episode_is_told(tmp_path, capsys):
+    source = made(tmp_path / "in.json.gz")
+    line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
+    assert episodes_command.main(line) == 0
+    assert "warning: the file holds no episode" in capsys.readouterr().err
+
+
+def test_the_summary_has_the_options_that_the_corruption_uses_and_no_others(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    options = {"split", "mask_token", "tagger"}
+    for name, used in (
+        ("formal", {}),
+        ("capitalize", {"tagger": "own"}),
+        ("mask", {"tagger": "own", "mask_token": "[MASK]"}),
+        ("black_box", {"split": "test"}),
+    ):
+        summary = run(source, tmp_path / "out.json.gz", name, 1.0)
+        assert {key: summary[key] for key in summary.keys() & options} == used
+        assert summary["corruption"] == name
+
+
+@pytest.mark.parametrize("name", ["formal", "mask", "capitalize", "black_box"])
+@pytest.mark.parametrize(
+    "option", [{"split": "tset"}, {"tagger": "best"}, {"mask_token": " "}, {"seed": 0.5}], ids=str
+)
+def test_a_wrong_option_is_refused_whatever_reads_it_and_before_an_episode(tmp_path, name, option):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    with pytest.raises(ValueError) as error:
+        run(source, tmp_path / "out.json.gz", name, 0.5, **option)
+    assert "Episode" not in str(error.value)
+
+
+def test_family_is_another_word_for_corruption(tmp_path, capsys):
+    source = str(made(tmp_path / "in.json.gz", episode(1)))
+    for number, option in enumerate(("corruption=mask", "family=mask")):
+        line = [source, str(tmp_path / f"{number}.json"), option, "severity=1"]
+        assert episodes_command.main(line) == 0
+    assert (tmp_path / "0.json").read_bytes() == (tmp_path / "1.json").read_bytes()
+    line = [source, str(tmp_path / "2.json"), "family=mask", "corruption=mask", "severity=1"]
+    assert episodes_command.main(line) == 2 and "give one of the two" in capsys.readouterr().err
+
+
+def test_a_file_of_others_is_not_written_over(tmp_path):
+    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+    out.write_text("precious")
+    with pytest.raises(ValueError, match="there already and no file of corrupt_episodes.*move"):
+        run(source, out, "mask", 1.0)
+    assert out.read_text() == "precious"
+    out.unlink()
+    assert run(source, out, "mask", 1.0) == run(source, out, "mask", 1.0)
+
+
+def test_an_interrupt_ends_with_a_line_and_no_file(tmp_path, monkeypatch, capsys):
+    def interrupted(*given, **options):
+        raise KeyboardInterrupt
+
+    source = made(tmp_path / "in.json.gz", episode(1))
+    monkeypatch.setattr(episode_file, "corrupt_instruction", interrupted)
+    line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
+    assert episodes_command.main(line) == 130
+    assert "interrupted: nothing was written" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["in.json.gz"]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"word2idx_dict": ["walk"]},
+        {"word2idx_dict": {"walk": "2"}},
+        {"word2idx_dict": {"walk": 2.5}},
+        {"UNK_INDEX": None},
+        {"PAD_INDEX": "0"},
+    ],
+    ids=str,
+)
+def test_a_vocabulary_of_other_types_is_refused(tmp_path, wrong):
+    source = made(tmp_path / "in.json.gz", episode(1), instruction_vocab=VOCABULARY | wrong)
+    with pytest.raises(ValueError, match="needs the key instruction_vocab.*whole numbers"):
+        run(source, tmp_path / "o.json", "mask", 1.0, tokenizer="vocabulary")
+
+
+def test_a_named_tokenizer_without_transformers_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "transformers", None)
+    source = made(tmp_path / "in.json.gz", episode(1))
+    with pytest.raises(ValueError, match="needs transformers.*pip install transformers"):
+        run(source, tmp_path / "o.json", "mask", 1.0, tokenizer="bert")
+
+
 def test_a_broken_file_leaves_no_output(tmp_path):
-    source = made(tmp_path / "in.json.gz", episode(1), episode(2, instruction_text="  "))
-    with pytest.raises(ValueError, match=r"Episode 2: The instruction is empty"):
+    source = made(tmp_path / "in.json.gz", episode(1), episode(2) | {"start_position": "here"})
+    with pytest.raises(ValueError, match="start_position"):
         run(source, tmp_path / "out.json.gz", "mask", 0.5)
     assert [path.name for path in tmp_path.iterdir()] == ["in.json.gz"]
 
@@ -168,21 +268,23 @@ def test_a_broken_file_leaves_no_output(tmp_path):
 def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
     source, out = str(made(tmp_path / "in.json.gz", episode(1))), str(tmp_path / "out.json.gz")
     for options, part in (
-        (["family=mask"], "option severity is missing"),
-        (["severity=0.5"], "Families: friendly"),
-        (["family=mask", "severity=high"], "must be a number"),
-        (["family=maks", "severity=0.5"], "Did you mean mask"),
-        (["family=white_box", "severity=0.5"], "not applicable to a file"),
-        (["family=mask", "severity=0.5", "tokeniser=x"], "Did you mean tokenizer"),
-        (["family=mask", "severity=0.5", "tokenizer=/none/such"], "no tokenizer '/none/such'"),
-        (["family=mask", "severity=0.5", "tagger=best"], "own, spacy"),
+        (["corruption=mask"], "option severity is missing"),
+        (["severity=0.5"], "Corruptions: friendly"),
+        (["corruption=mask", "severity=0.5", "split=test"], "split= has no effect on mask"),
+        (["corruption=black_box", "severity=0.5", "tagger=own"], "for mask and capitalize"),
+        (["corruption=mask", "severity=high"], "must be a number"),
+        (["corruption=maks", "severity=0.5"], "Did you mean mask"),
+        (["corruption=white_box", "severity=0.5"], "not applicable to a file"),
+        (["corruption=mask", "severity=0.5", "tokeniser=x"], "Did you mean tokenizer"),
+        (["corruption=mask", "severity=0.5", "tokenizer=/none/such"], "no tokenizer '/none/such'"),
+        (["corruption=mask", "severity=0.5", "tagger=best"], "own, spacy"),
     ):
         assert episodes_command.main([source, out, *options]) == 2
         error = capsys.readouterr().err
         assert part in error and "Traceback" not in error
-    assert episodes_command.main([source, source, "family=mask", "severity=0.5"]) == 2
+    assert episodes_command.main([source, source, "corruption=mask", "severity=0.5"]) == 2
     assert "another name" in capsys.readouterr().err
-    assert episodes_command.main([source[:-3], out, "family=mask", "severity=0.5"]) == 2
+    assert episodes_command.main([source[:-3], out, "corruption=mask", "severity=0.5"]) == 2
 
 
 def test_as_a_program(tmp_path):
@@ -196,7 +298,7 @@ def test_as_a_program(tmp_path):
                 source,
                 tmp_path / "out.json.gz",
             ),
-            *("family=capitalize", "severity=1"),
+            *("corruption=capitalize", "severity=1"),
         ],
         capture_output=True,
         text=True,

@@ -20,6 +20,19 @@ def test_noise_grows_with_the_square_of_depth(metres, severity):
     assert np.abs(noise).max() < 4.6 * sigma
 
 
+@pytest.mark.parametrize("name", ["gaussian_noise", "ripple", "broad_depth"])
+@pytest.mark.parametrize("metres", [11.0, 65.5, 3.4e38])
+def test_depth_beyond_the_range_is_corrupted_as_depth_at_its_end(name, metres):
+    near = np.full((4, 24, 32), 4.0, np.float32)
+    far, end = near.copy(), near.copy()
+    far[:, :8], end[:, :8] = metres, 10.0
+    for episode in "abcdefgh":
+        made = corrupt(far, name, 1.0, key=Key(0, episode))
+        assert np.array_equal(made, corrupt(end, name, 1.0, key=Key(0, episode)))
+    if name == "gaussian_noise":
+        assert made[:, :8].min() > 1.0
+
+
 def test_noise_is_new_for_every_frame_and_view():
     first = corrupt(WALL, "gaussian_noise", 0.5, key=Key(0, "a", 0)) - 4
     second = corrupt(WALL, "gaussian_noise", 0.5, key=Key(0, "a", 1)) - 4
@@ -134,10 +147,21 @@ def test_valid_depth_is_clipped_to_the_range_of_the_sensor(name):
 def test_millimetres_are_refused(name, severity):
     depth = np.full((48, 64), 2500, np.float32)
     depth[:3] = np.array([0.0, np.nan, np.inf, -1.0] * 16, np.float32)
-    with pytest.raises(ValueError, match=r"z_max of 10 m \(nearest 2500\).*millimetres") as error:
+    with pytest.raises(ValueError, match=r"z_max of 10 m \(median 2500\).*millimetres") as error:
         corrupt(depth, name, severity, key=1)
     assert "\n" not in str(error.value)
     corrupt(depth, name, severity, key=1, sensor=DepthSensor(z_max=3000.0))
+
+
+def test_a_few_small_counts_do_not_make_metres_of_millimetres_nor_a_far_sky_the_reverse():
+    depth = np.full((48, 64), 2500, np.float32)
+    depth[-3:] = 12.0  # one in sixteen
+    for frame in (depth, depth[::-1]):
+        with pytest.raises(ValueError, match="Nearly all valid pixels"):
+            corrupt(frame, "multipath", 0.6, key=1)
+    outdoors = np.full((48, 64), 1000.0, np.float32)
+    outdoors[38:] = np.linspace(40.0, 2.0, 10, dtype=np.float32)[:, None]  # the ground
+    assert (corrupt(outdoors, "multipath", 0.6, key=1)[:38] == 10.0).all()
 
 
 @pytest.mark.parametrize("depth", [12.0, 0.0, np.nan, np.inf])

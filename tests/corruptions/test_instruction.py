@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import time
 from hashlib import sha256
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from mitigate.corruptions import (
 from mitigate.corruptions.language import words
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.prefixes import SPLITS, prefixes
-from mitigate.corruptions.language.style import MANNERS
+from mitigate.corruptions.language.style import MANNERS, restyle
 from mitigate.corruptions.language.tagger import tag, tokens
 
 SPOKEN = tuple(name for name in INSTRUCTION if name != "white_box")
@@ -152,6 +153,24 @@ def test_masks_never_hide_a_word_that_says_where(chosen):
     assert {"left", "right", "forward", "through", "past", "not"} <= words.SPATIAL
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "It isn't there, won’t open and doesn't move; they aren't red, and you shouldn't stop.",
+        "Neither the sofa nor the bed, nothing else.",
+        "Go northward, southward, eastward and westward.",
+        "Take the same door as on the previous floor, only the preceding one, and the following.",
+    ],
+)
+def test_masks_never_hide_a_denial_a_compass_word_or_which_one(text):
+    kept = words.bag("isn't won't doesn't aren't shouldn't neither nor nothing same previous only")
+    kept |= words.bag("northward southward eastward westward preceding following")
+    masked = tokens(corrupt_instruction(text, "mask", 1.0, KEY))
+    for old, new in zip(tokens(text), masked, strict=True):
+        assert new.text == old.text or old.lower not in kept
+    assert "[MASK]" in [token.text for token in masked]
+
+
 def test_masks_write_the_tokenizers_own_mask_token():
     got = corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token="<mask>")
     assert "<mask>" in got and "[MASK]" not in got and "left" in got and "sofa" in got
@@ -190,6 +209,15 @@ def test_a_very_long_instruction_with_emoji_and_control_characters_is_corrupted(
     assert corrupt_instruction(text, name, 1.0, KEY) != text
 
 
+@pytest.mark.parametrize("space", [" ", "\n", "\t "])
+def test_a_long_run_of_white_space_takes_no_time(space):
+    text = "Turn left{0}at the sofa,{0}then{0},{0}now{0}walk{0}and stop.".format(space * 1500)
+    start = time.process_time()
+    for manner in MANNERS:
+        corrupt_instruction(text, manner, 1.0, KEY)
+    assert time.process_time() - start < 2.0
+
+
 def test_wrong_options_name_the_right_ones():
     with pytest.raises(ValueError, match="Did you mean formal"):
         corrupt_instruction(TEXT, "formel", 0.5, KEY)
@@ -199,8 +227,24 @@ def test_wrong_options_name_the_right_ones():
         corrupt_instruction(TEXT, "black_box", 0.5, KEY, split="tset")
     with pytest.raises(ValueError, match="inject_system_prompt"):
         corrupt_instruction(TEXT, "white_box", 0.5, KEY)
-    with pytest.raises(ValueError, match="must be a Key"):
-        corrupt_instruction(TEXT, "mask", 0.5, 3)
+    with pytest.raises(ValueError, match="key must be a Key.*whole number.*text"):
+        corrupt_instruction(TEXT, "mask", 0.5, None)
+
+
+@pytest.mark.parametrize(("short", "key"), [(7, Key(7, "0")), ("kitchen", Key(0, "kitchen"))])
+def test_a_number_or_a_text_will_do_for_a_key(short, key):
+    for name in SPOKEN:
+        made = corrupt_instruction(TEXT, name, 0.6, short)
+        assert made == corrupt_instruction(TEXT, name, 0.6, key)
+    prompt = "Do: {task}"
+    assert inject_system_prompt(prompt, 0.6, short) == inject_system_prompt(prompt, 0.6, key)
+    with pytest.raises(ValueError, match="key must be a Key"):
+        inject_system_prompt(prompt, 0.6, 1.5)
+
+
+def test_a_style_of_a_text_without_a_word_is_refused():
+    with pytest.raises(ValueError, match="The instruction is empty"):
+        restyle(" ... ", "formal", KEY)
 
 
 def test_white_box_goes_before_the_task_slot_and_never_runs_clean():

@@ -119,6 +119,16 @@ def test_a_field_has_unit_spread_and_the_correlation_asked_for():
     assert np.mean(cells * shifted) / cells.var() == pytest.approx(np.exp(-1), abs=0.08)
 
 
+def test_a_narrow_frame_has_a_bounded_field_and_a_usual_one_the_same_cells_as_ever():
+    value = keying.digest(Key(0, "f"), "x")
+    assert keying.field(value, 30, 120, 0.025)[1].size == 128 * 512
+    smooth, cells = keying.field(value, 1, 16_000, 0.025)
+    assert smooth.shape == (1, 16_000) and cells.size == 128 * 4096
+    assert np.isfinite(smooth).all() and 0.5 < smooth.std() < 1.5
+    frame = np.full((16_000, 1), 3.0, np.float32)
+    assert (corrupt(frame, "missing_data", 0.6, key=Key(0, "a")) != frame).any()
+
+
 def test_a_field_wraps_and_is_the_same_at_half_size():
     value = keying.digest(Key(0, "f"), "x")
     full, cells = keying.field(value, 256, 320, 0.018)

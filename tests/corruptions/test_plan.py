@@ -1,5 +1,7 @@
 """Which files of a folder are frames: links are followed, whatever they lead to."""
 
+import os
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -39,3 +41,12 @@ def test_links_to_folders_are_followed_but_not_in_a_circle_nor_into_the_results(
             "results/": "is where the results go",
         }
     assert (walk / "out/linked/c/0.png").is_file() and not (walk / "out/linked").is_symlink()
+
+
+def test_a_pipe_is_left_out_with_the_reason(walk):
+    for name in ("0.5.png", "2.jpg", "3.npy"):
+        os.mkfifo(walk / "in/a" / name)
+    found = run(walk / "in/a", walk / "out", Settings("spatter", 0.6))
+    assert found["written"] == 2
+    left_out = {e["file"]: e["reason"] for e in found["left_out"]}
+    assert left_out == dict.fromkeys(("0.5.png", "2.jpg", "3.npy"), "is no regular file")

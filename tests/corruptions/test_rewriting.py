@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
 from mitigate.corruptions import Key, corrupt_instruction
@@ -56,6 +58,30 @@ def test_a_cut_last_line_is_passed_over_and_mended(tmp_path):
         rewriter = Rewriter(model, "m", cache)
         assert rewriter(TEXT, "friendly") == rewriter(TEXT, "formal") == model.answer
     assert len(model.asked) == 1
+
+
+@pytest.mark.parametrize("answer", [None, "", " \n", 7, "half \ud83d"])
+def test_an_answer_that_is_no_text_is_told_and_asked_for_again(tmp_path, answer):
+    cache, model = tmp_path / "cache.jsonl", Model(answer)
+    rewriter = Rewriter(model, "m", cache)
+    for _ in range(2):
+        with pytest.raises(ValueError, match="The model 'm' answered .* is not kept"):
+            rewriter(TEXT, "friendly")
+    assert len(model.asked) == 2 and not cache.exists()
+    model.answer = "Hang a left."
+    assert rewriter(TEXT, "friendly") == "Hang a left."
+
+
+def test_lines_of_a_cache_that_hold_no_answer_are_passed_over(tmp_path):
+    cache, model = tmp_path / "cache.jsonl", Model()
+    Rewriter(model, "m", cache)(TEXT, "friendly")
+    whole = json.loads(cache.read_text())
+    bad = [json.dumps(whole | {"answer": answer}) for answer in (None, "", "\ud800", ["x"])]
+    cache.write_bytes(b"\xff\xfe{\n" + b"[" * 100_000 + b"\n" + "\n".join(bad).encode() + b"\n")
+    assert Rewriter(model, "m", cache)(TEXT, "friendly") == model.answer
+    assert len(model.asked) == 2
+    with pytest.raises(ValueError, match="is a folder: name the file"):
+        Rewriter(model, "m", tmp_path)
 
 
 def test_the_gate_stands_behind_the_model(tmp_path):

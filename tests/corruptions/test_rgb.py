@@ -223,5 +223,5 @@ def test_black_out_is_drawn_for_each_frame_and_view():
 def test_a_flare_needs_a_heading_that_is_a_number(scene, heading):
     """A light that is nowhere would pass for a clean frame."""
     rgb, _ = scene.draw(24, 32)
-    with pytest.raises(ValueError, match="heading in finite radians"):
+    with pytest.raises(ValueError, match="heading must be in finite radians"):
         corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

@@ -11,6 +11,7 @@ from mitigate.corruptions import (
     Corruption,
     Key,
     corrupt,
+    corrupt_normalised,
     corrupt_observation,
 )
 from mitigate.corruptions.curves import curves
@@ -162,6 +163,23 @@ def test_wrong_depth_shapes_are_refused(shape):
 
 
 @pytest.mark.parametrize(
+    "frame",
+    [
+        np.zeros((48, 64, 3), np.uint8),
+        np.zeros((12, 48, 64, 3), np.float32),
+        np.ones((36, 64, 3), np.float32),
+    ],
+    ids=["uint8", "panorama", "as 36 views"],
+)
+def test_rgb_is_not_taken_for_depth_and_the_names_that_corrupt_it_are_told(frame):
+    told = "gaussian_noise corrupts depth.*RGB frame.*On RGB: .*low_light_noise.*impulse_noise"
+    with pytest.raises(ValueError, match=told):
+        corrupt(frame, "gaussian_noise", 0.5, key=KEY)
+    narrow = np.ones((4, 5, 3, 1), np.float32)
+    assert corrupt(narrow, "gaussian_noise", 0.5, key=KEY).shape == narrow.shape
+
+
+@pytest.mark.parametrize(
     "frame", [np.zeros((37, 4, 5, 3), np.uint8), np.ones((64, 4, 5), np.float32)], ids=["rgb", "z"]
 )
 def test_a_batch_is_no_panorama(frame):
@@ -184,6 +202,23 @@ def test_a_number_or_a_text_will_do_for_a_key(panorama):
     assert same(hurt(7), hurt(Key(7, "0"))) and same(hurt(np.int64(7)), hurt(7))
     assert same(hurt("kitchen"), hurt(Key(0, "kitchen")))
     assert not same(hurt(7), hurt(8)) and not same(hurt("7"), hurt(7))
+
+
+@pytest.mark.parametrize("heading", ["north", True, float("nan"), [1.0, 2.0]], ids=str)
+@pytest.mark.parametrize("name", ["flare", "spatter", "multipath"])
+def test_a_heading_that_is_no_finite_number_is_refused(panorama, name, heading):
+    with pytest.raises(ValueError, match="heading must be in finite radians"):
+        corrupt(frame_for(name, panorama), name, 0.5, key=KEY, heading=heading)
+
+
+@pytest.mark.parametrize("hurt", [corrupt_observation, corrupt_normalised])
+def test_an_observation_takes_a_short_key_and_says_what_a_corruption_is(panorama, hurt):
+    obs = {"rgb": panorama[0]}
+    made = hurt(obs, Corruption("spatter", 0.5), 7)["rgb"]
+    assert same(made, corrupt(panorama[0], "spatter", 0.5, key=7))
+    for wrong in ("spatter", ("spatter", 0.5), None):
+        with pytest.raises(ValueError, match=r"Corruption\('spatter', 0.6\)"):
+            hurt(obs, wrong, 7)
 
 
 def test_an_observation_is_hurt_in_the_modality_concerned_only(panorama):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -255,6 +256,26 @@ def test_instruction_rows_are_rows_like_others_and_white_box_is_left_out_with_a_
         ("black_box", 0.5),
     ] * 2
     assert all(rows[0].keys() == row.keys() for row in rows)
+
+
+def test_words_in_another_language_than_english_stay_with_one_warning(tmp_path):
+    hindi, english, untold = (
+        replace(episode, instruction=replace(episode.instruction, language=language))
+        for episode, language in zip(
+            load_episodes("val_seen"), ("hi-IN", "EN-gb", None), strict=False
+        )
+    )
+    conditions = [Corruption("mask", 1.0), Corruption("capitalize+low_light", 1.0)]
+    for met in conditions:
+        assert instruction(hindi, met, 0) == hindi.instruction.text
+        assert instruction(english, met, 0) != english.instruction.text
+        assert instruction(untold, met, 0) != untold.instruction.text
+    with pytest.warns(UserWarning, match="passed through unchanged: 1 in hi-IN$") as told:
+        evaluate(
+            Listener(), partial(ApartmentsWorld, SIZE), [hindi, english], conditions,
+            name="test", out=tmp_path / "rows.jsonl", split="made",
+        )  # fmt: skip
+    assert len(told) == 1
 
 
 def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):

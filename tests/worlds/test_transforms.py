@@ -16,7 +16,7 @@ from torchrl.data import (
 from torchrl.envs import Compose, EnvBase, TransformedEnv
 from torchrl.envs.utils import check_env_specs
 
-from mitigate.corruptions import DepthSensor, Key, Schedule, corrupt, corrupt_normalised
+from mitigate.corruptions import Corruption, DepthSensor, Key, Schedule, corrupt, corrupt_normalised
 from mitigate.worlds.transforms import CorruptObservation, EpisodeCounter
 
 HURT = Schedule("per_episode", 0.8, clean_share=0.2)
@@ -166,6 +166,8 @@ def test_rgb_alone_will_do_and_a_missing_modality_is_explained():
         [2, 3],
     )
     out = CorruptObservation(Schedule.always("foreign_object", 1.0))(data.clone())
+    told = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
+    assert (told["rgb"] == out["rgb"]).all()
     assert out["rgb"].shape == (2, 3, 8, 8, 3) and (out["rgb"][..., 4, 4, :] == 0).all()
     mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)  # would not ask for depth today
     for schedule in (Schedule.always("multipath", 1.0), mostly_clean):

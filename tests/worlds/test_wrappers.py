@@ -6,7 +6,17 @@ import sys
 import numpy as np
 import pytest
 
-from mitigate.corruptions import DEPTH, RGB, DepthSensor, Key, Schedule, corrupt, corrupt_normalised
+from mitigate.corruptions import (
+    CLEAN,
+    DEPTH,
+    RGB,
+    Corruption,
+    DepthSensor,
+    Key,
+    Schedule,
+    corrupt,
+    corrupt_normalised,
+)
 
 gymnasium = pytest.importorskip("gymnasium")
 from gymnasium import spaces  # noqa: E402
@@ -45,6 +55,26 @@ def episode(env, seed=None):
     frames = [env.reset(seed=seed)[0]]
     frames += [env.step(0)[0] for _ in range(3)]
     return frames
+
+
+def test_a_corruption_in_place_of_a_schedule_meets_every_frame_and_a_pair_both_entries():
+    space = spaces.Dict({"depth": METRES, "rgb": FRAME})
+    alone, always = (
+        episode(CorruptObservation(Room(space), by, 5), 3)
+        for by in (Corruption("spatter", 0.7), Schedule.always("spatter", 0.7))
+    )
+    for a, b in zip(alone, always, strict=True):
+        assert np.array_equal(a["rgb"], b["rgb"]) and np.array_equal(a["depth"], b["depth"])
+    clean, both = (
+        episode(CorruptObservation(Room(space), by, 5), 3)
+        for by in (CLEAN, Corruption("spatter+quantization", 0.7))
+    )
+    for a, b in zip(clean, both, strict=True):
+        assert (a["rgb"] != b["rgb"]).any() and (a["depth"] != b["depth"]).any()
+    with pytest.raises(ValueError, match="draws 'quantization', which corrupts depth"):
+        CorruptObservation(Room(FRAME), Corruption("spatter+quantization", 0.7))
+    with pytest.raises(ValueError, match=r"Corruption\('spatter', 0.6\), but it is 'flare'"):
+        CorruptObservation(Room(FRAME), "flare")
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ RECORDS = (
         name="broad_rgb",
         modality="rgb",
         apply=broad_rgb,
-        version="1",
+        version="2",
         label="Broad RGB",
         severity="strongest primitive",
         fails="anything: it is drawn to train on",
@@ -45,7 +45,7 @@ RECORDS = (
         sources="PRIME (Modas et al. 2022), AugMix (Hendrycks et al. 2020); strengths are ours",
         source="PRIME, AugMix",
         episode=STATE,
-        frame="noise, lost views",
+        frame="noise, views, or maps",
     ),
     Record(
         name="broad_depth",
@@ -59,6 +59,6 @@ RECORDS = (
         sources="after PRIME (Modas et al. 2022); primitives and strengths are ours",
         source="ours, after PRIME",
         episode=STATE,
-        frame="noise, pixels, views",
+        frame="noise, views, or maps",
     ),
 )

@@ -135,8 +135,9 @@ PRIMITIVES = (curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidde
 def compose(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """One to three primitives of random strength up to ``severity``, kept through the episode."""
     valid = (views > 0) & np.isfinite(views)
-    shares = np.where(valid, views / np.float32(sensor.z_max), np.float32(np.nan))
-    made = composed(shares, severity, key, NAME, PRIMITIVES) * np.float32(sensor.z_max)
-    metres = np.clip(made, NEAREST, np.float32(sensor.z_max))
+    z_max = np.float32(sensor.z_max)
+    shares = np.where(valid, np.minimum(views, z_max) / z_max, np.float32(np.nan))
+    made = composed(shares, severity, key, NAME, PRIMITIVES) * z_max
+    metres = np.clip(made, NEAREST, z_max)
     metres = np.where(np.isnan(made), np.float32(sensor.missing), metres).astype(np.float32)
     return np.where(valid, metres, views)

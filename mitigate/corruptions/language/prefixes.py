@@ -158,7 +158,7 @@ _BANK: dict[str, dict[str, tuple[str, ...]]] = {
 
 
 def prefixes(split: str) -> dict[str, tuple[str, ...]]:
-    """Return family -> sentences of ``split`` ("train", "validation" or "test").
+    """Return kind of attack -> sentences of ``split`` ("train", "validation" or "test").
 
     Raises ValueError for another split.
     """

@@ -15,6 +15,7 @@ from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.language import phrases
 from mitigate.corruptions.language.clauses import Clause, clauses
 from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.text import check_text
 
 MANNERS = ("friendly", "novice", "professional", "formal")
 TRIES = 3  # rewrites of one instruction before the original is kept (ours)
@@ -42,12 +43,14 @@ def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) ->
     """Say ``text`` in a manner, and return it with what the fidelity gate found.
 
     ``rewrite`` (text, manner) -> text asks a language model instead; what the gate refuses is
-    replaced by the rewrite by rule.
+    replaced by the rewrite by rule. Raises ValueError for a text without a word.
     """
+    check_text(text)
     refused: list[str] = []
     tries = count = 0
     if rewrite is not None:
-        spoken = rewrite(text, manner).strip()
+        answer = rewrite(text, manner)
+        spoken = answer.strip() if isinstance(answer, str) else ""
         tries, problems = 1, check(text, spoken) if spoken else ["empty answer"]
         if not problems:
             return Restyled(spoken, tries, True, 0, 0, ())

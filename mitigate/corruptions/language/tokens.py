@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeGuard
 
 VOCABULARY = "vocabulary"
 _WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
@@ -46,8 +46,13 @@ class NamedTokenizer:
     """A tokenizer of the transformers package, by folder or hub name."""
 
     def __init__(self, name: str) -> None:
-        from transformers import AutoTokenizer
-
+        try:
+            from transformers import AutoTokenizer
+        except ImportError as error:
+            raise ValueError(
+                f"tokenizer={name} needs transformers, which is not installed ({error}): pip "
+                f"install transformers, or give tokenizer={VOCABULARY} for the file's own."
+            ) from error
         try:
             self._tokenizer = AutoTokenizer.from_pretrained(name, trust_remote_code=False)
         except (OSError, ValueError) as error:
@@ -75,14 +80,21 @@ def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:
     if name != VOCABULARY:
         return NamedTokenizer(name)
     vocabulary = extras.get("instruction_vocab")
-    needed = ("word2idx_dict", "UNK_INDEX", "PAD_INDEX")
-    if not isinstance(vocabulary, Mapping) or any(key not in vocabulary for key in needed):
+    if not _is_vocabulary(vocabulary):
         raise ValueError(
-            "tokenizer=vocabulary needs the key instruction_vocab with word2idx_dict, UNK_INDEX "
-            "and PAD_INDEX in the file, as R2R-CE has it; this file lacks it. Leave the option "
-            "out to have tokens removed, or name the agent's tokenizer."
+            "tokenizer=vocabulary needs the key instruction_vocab with word2idx_dict (words and "
+            "their whole numbers), UNK_INDEX and PAD_INDEX (whole numbers) in the file, as R2R-CE "
+            "has it; this file lacks it. Leave the option out to have tokens removed, or name the "
+            "agent's tokenizer."
         )
     return FileVocabulary(vocabulary)
+
+
+def _is_vocabulary(found: Any) -> TypeGuard[Mapping[str, Any]]:
+    if not isinstance(found, Mapping) or not isinstance(found.get("word2idx_dict"), Mapping):
+        return False
+    numbers = (*found["word2idx_dict"].values(), found.get("UNK_INDEX"), found.get("PAD_INDEX"))
+    return all(type(number) is int for number in numbers)
 
 
 def _fitted(ids: list[int], length: int | None, pad: int) -> tuple[tuple[int, ...], bool]:

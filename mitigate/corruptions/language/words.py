@@ -158,7 +158,7 @@ POSSESSORS = bag("the your a an this that my his her its their our first second 
 # what general taggers misread in instructions (turn, exit, left ...): our tag is kept there
 OVERRIDES = bag("left right turn exit head face stop stand past through walk pass straight forward")
 
-# never masked: words that say where, which way or which one, or that deny
+# never masked: words that say where, which way or which one, or that deny (and all in n't)
 SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | bag(
     """
     left right straight forward forwards ahead back backward backwards up down upstairs downstairs
@@ -167,9 +167,16 @@ SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | ba
     seventh eighth ninth tenth last next other opposite far near nearest closest farthest furthest
     nearby adjacent middle front rear top bottom upper lower inner outer halfway directly
     immediately slightly slight sharp sharply hard diagonally diagonal clockwise counterclockwise
-    perpendicular parallel to until till once before after when where not n't never don't cannot
-    can't no without further farther beyond again twice indoors outdoors inside outside half both
+    northward southward eastward westward same previous preceding following only
+    perpendicular parallel to until till once before after when where not never cannot no neither
+    nor nothing none nobody without further farther beyond again twice indoors outdoors inside
+    outside half both
     all each every another between side end long entire whole full off facing leading central
     immediate
     """
 )
+
+
+def is_kept(word: str) -> bool:
+    """Return whether masks never hide ``word``, in lower case with a straight apostrophe."""
+    return word in SPATIAL or word.endswith("n't")

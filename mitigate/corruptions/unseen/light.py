@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from mitigate.corruptions import masks
+from mitigate.corruptions.cached import cached
 from mitigate.corruptions.eld import GAMMA
 from mitigate.corruptions.keying import Key, digest, field, scramble, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
@@ -53,7 +54,7 @@ def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> 
     return _by_table(views, [_amplified(STOPS * spread * severity)] * 3)
 
 
-@lru_cache(maxsize=16)
+@cached
 def haze_density(value: int, height: int, width: int) -> np.ndarray:
     """float32 [H, W]: the haze over its mean, a fractal field."""
     parts = [
@@ -65,7 +66,7 @@ def haze_density(value: int, height: int, width: int) -> np.ndarray:
     return np.clip(density, np.float32(HAZE_THIN), np.float32(HAZE_THICK))
 
 
-@lru_cache(maxsize=16)
+@cached
 def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the haze, in 1/32768."""
     lost = np.exp(-HAZE_DEPTH * severity * haze_density(value, height, width).astype(np.float64))

@@ -6,12 +6,12 @@ Functions take and give what those of ``corruptions/rgb.py`` do.
 from __future__ import annotations
 
 import math
-from functools import lru_cache
 
 import numpy as np
 from numba import njit
 
 from mitigate.corruptions import masks
+from mitigate.corruptions.cached import cached
 from mitigate.corruptions.keying import Key, digest, field, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
@@ -60,7 +60,7 @@ def displaced(view, down, right, out):
                 out[y, x, c] = (upper * (256 - b) + lower * b + 32768) >> 16
 
 
-@lru_cache(maxsize=16)
+@cached
 def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
     """float32 [H, W] each: slope down and to the right of a random surface, rms 1 together."""
     surface = field(value, height, width, DROPS)[0].astype(np.float64)
@@ -92,7 +92,7 @@ def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray
     return np.abs(across), np.maximum(np.abs(along) - half, 0.0)
 
 
-@lru_cache(maxsize=16)
+@cached
 def scratch_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """int16 [H, 3 W]: the opacity of the scratches that are there, in 1/32768."""
     clear = np.ones((height, width))

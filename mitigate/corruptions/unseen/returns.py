@@ -39,7 +39,7 @@ def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) ->
     """z + 0.06 s z^2 F: waves over walls, another place of one field F in every view and frame."""
     count, height, width = views.shape
     waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
-    moved = np.where(valid(views), views, 0)
+    moved = np.where(valid(views), np.minimum(views, np.float32(sensor.z_max)), 0)
     strength = np.float32(RIPPLE * severity)
     for view, stream in enumerate(view_streams(key, "ripple_offset", count)):
         down, right = (int(uniform(int(stream), i) * n) for i, n in enumerate((height, width)))
