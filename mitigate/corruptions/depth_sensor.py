@@ -65,9 +65,12 @@ def _is_near(pixels, limit):
     """Whether one valid pixel in ``LEAST_NEAR`` is at most ``limit``, or none is valid; of a large
     frame about ``LOOKED_AT`` are looked at, evenly."""
     near = valid = 0
-    for i in range(0, pixels.size, pixels.size // LOOKED_AT + 1):
+    step = pixels.size // LOOKED_AT + 1
+    for i in range(0, pixels.size, step):
         valid += is_valid(pixels[i])
         near += is_valid(pixels[i]) & (pixels[i] <= limit)
+        if LEAST_NEAR * near * step >= pixels.size:  # enough, whatever the others are
+            return True
     return LEAST_NEAR * near >= valid
 
 
