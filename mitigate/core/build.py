@@ -130,7 +130,7 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     weights = str(find(weights))
     if (Path(weights) / LORA).is_file() and hasattr(located(node._target_), "load"):
         return {}  # a language model says itself whose adapter it takes
-    if hardened.adapters_only(weights):
+    if hardened.is_hardened(weights):
         file = Path(weights) / hardened.CONFIG
     else:
         file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
@@ -164,8 +164,7 @@ def build_agent(
             if name not in agent.parts():
                 raise ValueError(unknown("part of the agent", name, agent.parts()))
             checkpoint.load_part(agent.parts()[name], name, weights)
-    elif weights is not None and hardened.adapters_only(weights):
-        hardened.check(Path(weights))
+    elif weights is not None and hardened.is_hardened(weights):
         hardened.fill(agent, weights)
     elif weights is not None:
         checkpoint.load_agent(agent, weights)

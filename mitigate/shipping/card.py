@@ -55,8 +55,9 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
 def reference(weights: str) -> dict[str, str]:
     """Return the path of ``weights`` (below the current folder: relative) and its sha256."""
-    own = find(weights) / adapters.WEIGHTS
-    file = own if own.is_file() else checkpoint.weights_file(find(weights))
+    held = find(weights)
+    own = hardened.adapters_only(held)
+    file = held / adapters.WEIGHTS if own else checkpoint.weights_file(held)
     return {"weights": weights.removeprefix(f"{Path.cwd()}/"), "sha256": sha256(file)}
 
 

@@ -18,19 +18,19 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-import torch
 import yaml
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
 from mitigate.agents import adapters
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import checkpoint, settings
+from mitigate.core import checkpoint
 from mitigate.core.files import find, make_folder, put_folder, sha256
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.rows import Row
 from mitigate.shipping import hardened, others, programs
 from mitigate.shipping.card import facts, metrics, readme, rows_agent, weights_of
+from mitigate.shipping.finished import finished
 from mitigate.shipping.others import Walks
 
 HARDENED = Path("checkpoints/hardened")
@@ -57,23 +57,21 @@ def export(
 
     Args:
         rows: row files or folders with the agent's evaluation; the run folder's own are found.
-        overwrite: replace ``out/name``. onnx: write the two networks as ONNX files too. walks: for
-            an agent of another class than ours, how to make it and what to check it by; its folder
-            holds no programs.
-    Raises FileNotFoundError if ``run`` holds no finished run, ValueError if ``out/name`` exists,
-    if ``rows`` say nothing about this agent, or if the written folder does not reload to the same
-    outputs; then nothing is written.
+        overwrite: replace ``out/name``, if that is a hardened folder. onnx: write the two networks
+            as ONNX files too. walks: for an agent of another class than ours, how to make it and
+            what to check it by; its folder holds no programs.
+    Raises FileNotFoundError if ``run`` holds no finished run, ValueError for a run of what ships as
+    it is, if ``out/name`` exists (with ``overwrite``: as anything else), if ``rows`` say nothing
+    about this agent, or if the written folder does not reload to the same outputs; then nothing is
+    written.
     """
     if not re.fullmatch(r"\w[\w.+-]*", name):
         raise ValueError(f"{name!r} is no name for a folder: use letters, digits and . _ + -")
     target = out / name
-    if target.exists() and not overwrite:
-        raise ValueError(
-            f"{target} exists already: choose another name, or replace it with --overwrite."
-        )
+    _check_free(target, overwrite)
     if onnx and walks is not None:
         raise ValueError("--onnx is for the topological agent: folders of others hold no programs.")
-    cfg, agent = _finished(run, walks)
+    cfg, agent = finished(run, walks)
     make_folder(out)
     with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
         draft = Path(aside) / name
@@ -81,6 +79,25 @@ def export(
         _write(draft, run, cfg, agent, name, list(rows), onnx, walks)
         put_folder(draft, target, Path(aside) / "old")
     return target
+
+
+def _check_free(target: Path, overwrite: bool) -> None:
+    """Raise ValueError unless ``target`` is free, or a folder of ours that may be replaced."""
+    if not os.path.lexists(target):
+        return
+    if not overwrite:
+        raise ValueError(
+            f"{target} exists already: choose another name, or replace it with --overwrite."
+        )
+    try:
+        if target.is_symlink():
+            raise ValueError("it is a link")
+        hardened.read_card(target)
+    except (ValueError, OSError) as error:
+        raise ValueError(
+            f"{target} is not replaced: --overwrite replaces folders that `mitigate export` wrote, "
+            f"and nothing else ({error}). Choose another name, or move it away yourself."
+        ) from error
 
 
 def check_outputs(folder: str, expected: str) -> None:
@@ -99,30 +116,6 @@ def check_outputs(folder: str, expected: str) -> None:
             raise ValueError(
                 f"The reloaded {what} differs by {gap:g}; at most {most:g} is allowed."
             )
-
-
-def _finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any]:
-    """Return the config and the agent of a finished run."""
-    weights, config = run / "agent" / checkpoint.WEIGHTS, run / hardened.CONFIG
-    if not (weights.is_file() and config.is_file()):
-        raise FileNotFoundError(
-            f"{run} holds no finished run: it needs config.yaml and agent/{checkpoint.WEIGHTS}. "
-            "Run `make train` to the end, then name its folder (runs/...)."
-        )
-    kind = hardened.kind_of(config)
-    if walks is None and kind != hardened.TARGET:
-        raise ValueError(
-            f"{run} holds a {kind.rpartition('.')[2]}, of which a folder without programs is "
-            "written: give walks to check it by (on the command line: "
-            f"agent={settings.named(kind)})."
-        )
-    agent = hardened.build(config) if walks is None else walks.make_agent()
-    checkpoint.load_weights(agent, weights)
-    if walks is None and not all(
-        torch.isfinite(value.half()).all() for value in agent.state_dict().values()
-    ):
-        raise ValueError(f"{weights} holds numbers that are not finite in float16.")
-    return settings.read(config), agent.eval()
 
 
 def _write(

@@ -19,12 +19,25 @@ from mitigate.agents import adapters, schema
 from mitigate.core import checkpoint, settings
 from mitigate.core.files import PACKAGE, ROOT, sha256
 from mitigate.core.json_files import read_json
+from mitigate.core.names import short
 
 FORMAT = 1
 CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
 FILES = (CONFIG, README, PROGRAM, INPUTS)  # besides the weights; of an agent of ours
-ENTRIES = ("files", "adapters_only", "base", "vocabulary", "commit")  # what loading reads of a card
+ONNX = ("perceive.onnx", "decide.onnx")
+# all that an export writes: none of these may lie in a folder whose card does not list it
+KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, *ONNX)
+LONGEST = 255  # bytes of a file's name (Linux, NAME_MAX)
+LONGEST_PATH = 1000  # characters of the path of a base (ours; Linux reads 4095)
+ENTRIES = (
+    "files",
+    "adapters_only",
+    "base",
+    "vocabulary",
+    "commit",
+    "agent",
+)  # what loading reads of a card
 TARGET = "mitigate.agents.topological.TopologicalAgent"
 _AGAIN = "Fetch the folder again, or export it again with `make export`."
 
@@ -52,15 +65,28 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
         if agent is not None:
             _check_same(agent, folder / CONFIG)
-            return fill(agent, folder, base=base).eval()
+            return _filled(agent, folder, card, base)
         agent = build(folder / CONFIG)
         if card["vocabulary"] != vocabulary_sha(agent):
-            made = f" (commit {card['commit']})" if card["commit"] else ""
+            made = f" (commit {short(card['commit'])})" if card["commit"] else ""
             raise ValueError(
                 f"{folder} was exported with another vocabulary than its {CONFIG} gives the agent, "
                 f"so its words would be misread. Use the version that made it{made}."
             )
-        return fill(agent, folder, base=base).eval()
+        return _filled(agent, folder, card, base)
+
+
+def _filled(agent: Any, folder: Path, card: dict[str, Any], base: str | Path | None) -> Any:
+    """``agent`` in eval mode with the weights of ``folder``, which must be those of its card."""
+    _fill(agent, folder, card, base)
+    found = checkpoint.weights_sha(agent)
+    if found != card["agent"]:
+        raise ValueError(
+            f"The weights in {folder} make an agent with the hash {found}, but {CARD} is of "
+            f"{short(card['agent'])}. {_AGAIN} An agent of your own must be in float32, or what it "
+            "was exported in: convert it afterwards."
+        )
+    return agent.eval()
 
 
 def _check_same(agent: Any, config: Path) -> None:
@@ -119,28 +145,44 @@ def check_own(held: dict[str, Any]) -> None:
 
 
 def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
-    """Read the weights of a hardened folder into ``agent``, adapters and base alike.
+    """Read the weights of a hardened folder into ``agent``, adapters and base alike. Adapters that
+    ``agent`` has and the folder lacks stay as they are.
 
     Arguments and errors as :func:`load_hardened`; ValueError too if the agent is another one.
     """
     folder = Path(folder)
-    if not adapters_only(folder):
+    _fill(agent, folder, check(folder), base)
+    return agent
+
+
+def _fill(agent: Any, folder: Path, card: dict[str, Any], base: str | Path | None) -> None:
+    if not card["adapters_only"]:
         checkpoint.load_weights(agent, folder)
-        return agent
+        return
     mine = adapters.adapted(agent)
     adapters.remove_adapters(agent)
-    checkpoint.load_weights(agent, _base(folder, read_card(folder)["base"], base))
+    checkpoint.load_weights(agent, _base(folder, card["base"], base))
     if adapters.load_adapters(agent, folder) != mine:
         raise ValueError(
             f"{folder} holds adapters of other modules than agent.adapters names: build the agent "
             f"with its {CONFIG}."
         )
-    return agent
+
+
+def is_hardened(folder: str | Path) -> bool:
+    """Whether ``folder`` has the card of a hardened checkpoint, and not one of another kind.
+
+    Raises ValueError for a card that cannot be read.
+    """
+    file = Path(folder) / CARD
+    card = read_json(file, _AGAIN) if file.is_file() else None
+    return isinstance(card, dict) and "sha256" in card
 
 
 def adapters_only(folder: str | Path) -> bool:
-    """Whether ``folder`` holds adapters and a reference to their base in place of all weights."""
-    return (Path(folder) / adapters.WEIGHTS).is_file() and (Path(folder) / CARD).is_file()
+    """Whether ``folder`` is hardened and, by its card, holds adapters and a reference to their base
+    in place of all weights. Errors as :func:`read_card`."""
+    return is_hardened(folder) and bool(read_card(Path(folder))["adapters_only"])
 
 
 def check(folder: Path) -> dict[str, Any]:
@@ -155,11 +197,17 @@ def check(folder: Path) -> dict[str, Any]:
     for name in (*own, *needed):
         if name not in files:
             raise ValueError(f"{folder / CARD} does not list {name}, which must be there. {_AGAIN}")
+    strays = [name for name in KNOWN if name not in files and os.path.lexists(folder / name)]
+    if strays:
+        raise ValueError(
+            f"{folder / strays[0]} is not listed in {CARD}, so nothing says what it must hold. Do "
+            "not use this folder: fetch it again, or delete that file if you put it there."
+        )
     for name, wanted in files.items():
-        if Path(name).name != name or name in ("", ".", ".."):
+        if not _is_plain(name):
             raise ValueError(
-                f"{folder / CARD} lists {name!r}, which is no plain file name. Do not use this "
-                "folder: its card was not written by `make export`."
+                f"{folder / CARD} lists {short(name)}, which is no plain file name. Do not use "
+                "this folder: its card was not written by `make export`."
             )
         if not (folder / name).is_file():
             raise FileNotFoundError(f"{folder} is incomplete: {name} is missing. {_AGAIN}")
@@ -169,6 +217,17 @@ def check(folder: Path) -> dict[str, Any]:
                 f"cut short. {_AGAIN}"
             )
     return card
+
+
+def _is_plain(name: str) -> bool:
+    """Whether ``name`` is that of a file in its folder."""
+    return Path(name).name == name and name not in ("", ".", "..") and _can_be(name)
+
+
+def _can_be(path: str) -> bool:
+    """Whether a system can hold and show a file of that path."""
+    short_enough = len(path) <= LONGEST_PATH and path.isprintable()
+    return short_enough and all(len(part.encode()) <= LONGEST for part in Path(path).parts)
 
 
 def read_card(folder: Path) -> dict[str, Any]:
@@ -195,9 +254,10 @@ def read_card(folder: Path) -> dict[str, Any]:
     if lacking or not isinstance(card["files"], dict):
         raise ValueError(f"{file} lacks {', '.join(lacking or ['files'])}. {_AGAIN}")
     base = card["base"] if card["adapters_only"] else {"weights": "", "sha256": ""}
-    if not isinstance(base, dict) or not all(
-        isinstance(base.get(name), str) for name in ("weights", "sha256")
-    ):
+    good = isinstance(base, dict) and all(
+        isinstance(base.get(name), str) and _can_be(base[name]) for name in ("weights", "sha256")
+    )
+    if not good:
         raise ValueError(f"{file} does not say to which base its adapters belong. {_AGAIN}")
     return card
 

@@ -177,7 +177,7 @@ def test_a_safetensors_file_that_is_none_is_refused(tmp_path, raw):
 
 def card(**changes) -> dict:
     made = {"format": 1, "files": {}, "adapters_only": False, "base": None, "vocabulary": None}
-    made |= {"commit": "0", **changes}
+    made |= {"commit": "0", "agent": "0", **changes}
     return made | {"sha256": hardened.card_sha(made)}
 
 

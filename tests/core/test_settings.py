@@ -24,6 +24,7 @@ from mitigate.agents.topological.planner import Planner
 from mitigate.core import build, checkpoint, conf, settings
 from mitigate.evaluation import evaluate
 from mitigate.shipping import export, hardened
+from mitigate.shipping.finished import finished
 
 ROOT = Path(__file__).parents[2]
 WORDS = "do not use this folder"
@@ -309,7 +310,7 @@ def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):
     for text in (agent_yaml(), bomb(), yaml.safe_dump({"name": LITERAL, "agent": {}})):
         (run / hardened.CONFIG).write_text(text)
         if text == agent_yaml():
-            assert export._finished(run)[0]["agent"]
+            assert finished(run)[0]["agent"]
         else:
             with pytest.raises(ValueError, match=WORDS):
                 export.export(run, "mine", out=tmp_path / "out")

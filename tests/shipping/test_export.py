@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 import torch
 import yaml
+from omegaconf import DictConfig, OmegaConf
 from safetensors.torch import save_file
 from torch.export.pt2_archive._package import load_pt2
 
@@ -148,6 +149,11 @@ def resign(folder: Path, **changes) -> None:
     (folder / "card.json").write_text(json.dumps({**card, "sha256": hardened.card_sha(card)}))
 
 
+def node_of(settings: dict) -> DictConfig:
+    """The config of a topological agent with ``settings``."""
+    return OmegaConf.create({"_target_": hardened.TARGET, **settings})
+
+
 def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
     folder = place / "hardened/whole"
     card = hardened.check(folder)
@@ -203,15 +209,12 @@ def test_a_folder_of_adapters_holds_no_backbone_and_needs_its_base(place, tmp_pa
 
 
 def test_evaluation_and_training_take_a_folder_of_adapters(place):
-    from omegaconf import OmegaConf
-
     folder = str(place / "hardened/adapted")
-    node = build.settings_of(OmegaConf.create({"_target_": hardened.TARGET}), folder)
+    node = build.settings_of(node_of({}), folder)
     agent = build.build_agent(node, weights=folder, seed=0)
     assert checkpoint.weights_sha(agent) == hardened.check(Path(folder))["run_agent"]
-    plain = OmegaConf.create({"_target_": hardened.TARGET, **TINY})
     with pytest.raises(ValueError, match="other modules"):
-        build.build_agent(plain, weights=folder, seed=0)
+        build.build_agent(node_of(TINY), weights=folder, seed=0)
 
 
 def test_loading_needs_neither_hydra_nor_the_simulator_and_import_stays_light(place, tmp_path):
@@ -344,21 +347,118 @@ def test_another_vocabulary_is_refused(copied):
         hardened.load_hardened(copied)
 
 
+@pytest.mark.parametrize("name", ["adapters.safetensors", "adapters.json", "decide.onnx"])
+def test_a_known_file_that_the_card_does_not_list_is_refused(copied, name):
+    (copied / name).write_bytes(b"x")
+    (copied / ".gitattributes").touch()  # as the hub adds it
+    for read in (
+        lambda: hardened.load_hardened(copied),
+        lambda: hardened.fill(TopologicalAgent(**TINY), copied),
+    ):
+        with pytest.raises(ValueError, match=f"{re.escape(name)} is not listed"):
+            read()
+
+
+def test_adapters_that_the_card_does_not_list_take_no_part(place, copied):
+    """They are other weights than those that the card's sums are of."""
+    for name in (adapters.WEIGHTS, adapters.SETTINGS):
+        shutil.copy(place / "hardened/adapted" / name, copied)
+    resign(copied, base=None)
+    assert hardened.adapters_only(place / "hardened/adapted")
+    assert not hardened.adapters_only(copied)
+    assert cards.reference(str(copied))["sha256"] == sha256(copied / checkpoint.WEIGHTS)
+    with pytest.raises(ValueError, match="not listed"):
+        build.build_agent(node_of(TINY), weights=str(copied), seed=0)
+
+
+def test_evaluation_and_training_refuse_a_changed_folder(copied):
+    assert build.build_agent(node_of(TINY), weights=str(copied), seed=0)
+    checkpoint.save_weights(TopologicalAgent(**TINY), copied)
+    with pytest.raises(ValueError, match="does not have the sha256"):
+        build.build_agent(node_of(TINY), weights=str(copied), seed=0)
+
+
+def test_a_folder_of_another_agent_than_its_card_says_is_refused(copied):
+    resign(copied, agent="0123456789ab")
+    with pytest.raises(ValueError, match=r"card\.json is of '0123456789ab'"):
+        hardened.load_hardened(copied)
+    own = TopologicalAgent(**TINY).eval()
+    assert hardened.fill(own, copied) is own  # to train from: with adapters it is another one
+
+
+@pytest.mark.parametrize(
+    "name", ["n" * 5000, "a\ud800", "a\nb"], ids=["long", "surrogate", "lines"]
+)
+def test_a_card_lists_only_names_that_can_be_held_and_shown(copied, name):
+    files = json.loads((copied / "card.json").read_text())["files"]
+    resign(copied, files={**files, name: "0" * 64})
+    with pytest.raises(ValueError, match="no plain file name") as told:
+        hardened.load_hardened(copied)
+    assert str(told.value).isprintable() and len(str(told.value)) < 500
+
+
+@pytest.mark.parametrize("path", ["n" * 300, "a/" * 3000, "a\ud800"])
+def test_a_card_names_a_base_that_can_be_held_and_shown(place, tmp_path, path):
+    folder = Path(shutil.copytree(place / "hardened/adapted", tmp_path / "adapted"))
+    resign(folder, base={"weights": path, "sha256": "0" * 64})
+    with pytest.raises(ValueError, match="to which base"):
+        hardened.load_hardened(folder)
+
+
 def test_an_unfinished_run_says_what_is_missing(tmp_path):
     with pytest.raises(FileNotFoundError, match="no finished run"):
         export.export(tmp_path, "mine", out=tmp_path / "hardened")
 
 
-def test_an_existing_name_stays_unless_overwrite_is_asked_for(place, tmp_path, monkeypatch):
-    run, out = place / "runs/whole", tmp_path / "hardened"
-    (out / "mine").mkdir(parents=True)
-    (out / "mine/old").touch()
+def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
+    run = place / "runs/whole"
+    with pytest.raises(FileNotFoundError, match=f"Name the run: {re.escape(str(run))}"):
+        export.export(run / "agent", "mine", out=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("target", "page"),
+    [
+        ("mitigate.encoders.model.Encoder", "docs/encoder.md"),
+        ("mitigate.restoration.restorer.Restorer", "docs/restoration.md"),
+        ("mitigate.safeguard.reader.Reader", "docs/safeguard.md"),
+    ],
+)
+@pytest.mark.parametrize("named", ["run", "run/agent"])
+def test_what_ships_as_it_is_needs_no_export(tmp_path, target, page, named):
+    assert (ROOT / page).is_file() and build.located(target)
+    (tmp_path / "run/agent").mkdir(parents=True)
+    config = tmp_path / "run/agent/config.yaml"
+    config.write_text(yaml.safe_dump({"agent": {"_target_": target}}))
+    with pytest.raises(ValueError, match=rf"run/agent ships as it is\. {page}"):
+        export.export(tmp_path / named, "mine", out=tmp_path / "out")
+
+
+def test_an_existing_name_stays_unless_overwrite_is_asked_for(copied, place, monkeypatch):
+    run, out = place / "runs/whole", copied.parent
     with pytest.raises(ValueError, match="--overwrite"):
-        export.export(run, "mine", out=out)
+        export.export(run, "whole", out=out)
     monkeypatch.setattr(export, "_write", lambda draft, *_: (draft / "new").touch())
-    export.export(run, "mine", out=out, overwrite=True)
-    assert [p.name for p in (out / "mine").iterdir()] == ["new"]
-    assert [p.name for p in out.iterdir()] == ["mine"]
+    export.export(run, "whole", out=out, overwrite=True)
+    assert [p.name for p in copied.iterdir()] == ["new"]
+    assert [p.name for p in out.iterdir()] == ["whole"]
+
+
+@pytest.mark.parametrize("kind", ["folder", "foreign card", "file", "link", "link to nothing"])
+def test_overwrite_replaces_nothing_but_a_hardened_folder(place, copied, tmp_path, kind):
+    target = tmp_path / "mine"
+    if kind in ("folder", "foreign card"):
+        target.mkdir()
+        (target / "thesis.tex").write_text("years of work")
+        (target / "card.json").write_text('{"format": 4}' if kind == "foreign card" else "")
+    elif kind == "file":
+        target.write_text("years of work")
+    else:
+        target.symlink_to(copied if kind == "link" else tmp_path / "nowhere")
+    before = sorted(p.name for p in tmp_path.rglob("*"))
+    with pytest.raises(ValueError, match="is not replaced"):
+        export.export(place / "runs/whole", "mine", out=tmp_path, overwrite=True)
+    assert sorted(p.name for p in tmp_path.rglob("*")) == before
 
 
 @pytest.mark.parametrize("name", ["../mine", "", ".hidden", "a/b"])

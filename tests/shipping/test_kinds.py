@@ -10,6 +10,7 @@ from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core import conf
 from mitigate.core.checkpoint import weights_sha
 from mitigate.shipping import export, export_command, others
+from mitigate.shipping.finished import finished
 from mitigate.training import train
 
 SMALL = ["agent.size=16", "env.size=16", "init=null", "trainer.steps=1", "workers=0"]
@@ -37,7 +38,7 @@ def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     assert 'load_hardened("checkpoints/hardened/mine")' in (folder / "README.md").read_text()
     loaded = mitigate.load_hardened(folder)
     assert isinstance(loaded, made)
-    assert weights_sha(loaded) == weights_sha(export._finished(run, walks)[1])
+    assert weights_sha(loaded) == weights_sha(finished(run, walks)[1])
 
 
 def test_options_may_stand_behind_the_rows_and_a_wrong_one_is_explained(monkeypatch, tmp_path):
