@@ -52,12 +52,12 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
 def _refuse_what_ships_as_it_is(run: Path) -> None:
     """Raise ValueError for the run, or its folder ``agent``, of what is no navigation agent."""
-    made = run / "agent" if (run / "agent").is_dir() else run
-    config = made / hardened.CONFIG
+    config = run / hardened.CONFIG
     held = settings.read(config).get("agent") if config.is_file() else None
     target = str(held.get("_target_")) if isinstance(held, dict) else ""
     page = PAGES.get(".".join(target.split(".")[:2]))
     if page:
+        made = run / "agent" if (run / "agent").is_dir() else run
         raise ValueError(
             f"{run} holds no agent that walks but a {target.rpartition('.')[2]}, which needs no "
             f"export: {made} ships as it is. {page} says how it is used."

@@ -428,8 +428,8 @@ def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
 def test_what_ships_as_it_is_needs_no_export(tmp_path, target, page, named):
     assert (ROOT / page).is_file() and build.located(target)
     (tmp_path / "run/agent").mkdir(parents=True)
-    config = tmp_path / "run/agent/config.yaml"
-    config.write_text(yaml.safe_dump({"agent": {"_target_": target}}))
+    for config in ("run/config.yaml", "run/agent/config.yaml"):
+        (tmp_path / config).write_text(yaml.safe_dump({"agent": {"_target_": target}}))
     with pytest.raises(ValueError, match=rf"run/agent ships as it is\. {page}"):
         export.export(tmp_path / named, "mine", out=tmp_path / "out")
 
