@@ -101,8 +101,9 @@ class Restorer(nn.Module):
 
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """A frame of one instant: uint8 [H, W, 3] or [V, H, W, 3], or float32 metres [H, W],
-        [H, W, 1] or [V, H, W, 1]. What the gate takes for clean is returned as it came, else a new
-        array of the same shape and dtype. Raises KeyError for another sensor, TypeError and
+        [H, W, 1] or [V, H, W, 1]. What the gate takes for clean is returned as it came, and so is
+        depth that the network does not know (``frames.py``), else a new array of the same shape and
+        dtype. Raises KeyError for another sensor, TypeError and
         ValueError for what is no array, another dtype or shape, and depth that is no metres."""
         net, views = self._net(sensor), self._views(sensor, frame)
         changed, made = net.judged(torch.from_numpy(views))
@@ -118,11 +119,11 @@ class Restorer(nn.Module):
             )
 
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
-        """How far the gate's logit lies above its threshold; above 0 the frame is restored."""
+        """How far the gate's logit lies above its threshold; above 0 the frame is restored, unless
+        that would move most of its depth far. -inf where nothing reads anything, or most too far.
+        """
         net, views = self._net(sensor), self._views(sensor, frame)
-        with torch.inference_mode():
-            x, valid = net.scaled(torch.from_numpy(views))
-            return float(net.judge(*net.small(x, valid), len(views))[2] - net.threshold)
+        return net.doubt(torch.from_numpy(views))
 
     def _net(self, sensor: str) -> SensorRestorer:
         if sensor not in self.nets:

@@ -50,6 +50,47 @@ def test_before_anything_is_learned_a_frame_hardly_changes(untrained, sensor, sh
         assert moved <= (3.0 if sensor == RGB else 0.1)
 
 
+def wall(metres: float, hole: bool = False) -> np.ndarray:
+    """A camera before a wall, with a sensor's noise of 2 cm; ``hole``: 4 % of it reads nothing."""
+    noise = np.random.default_rng(0).normal(0, 0.02, (96, 96))
+    made = (metres + noise).astype(np.float32)
+    made[40:60, 40:60] *= not hole
+    return made
+
+
+@pytest.mark.filterwarnings("ignore:More than")
+@pytest.mark.parametrize("metres", [9.0, 9.9, 11.0, 20.0])
+@pytest.mark.parametrize("hole", [False, True])
+def test_no_obstacle_is_invented_before_a_wall_far_away(metres, hole):
+    """The shipped network, which knows apartments, would put one at 1.2 m."""
+    frame = wall(metres, hole)
+    assert load_restorer(SHIPPED).restore(DEPTH, frame) is frame
+
+
+def test_a_wall_nearby_with_a_hole_is_filled():
+    made = load_restorer(SHIPPED).restore(DEPTH, wall(3.0, hole=True))
+    assert np.abs(made - 3).max() < 0.5
+
+
+def test_depth_that_is_mostly_too_far_is_left_with_a_warning(untrained):
+    frame = wall(5.0)
+    frame[:9] = 12.0  # 9.4 % of it
+    assert untrained.restore(DEPTH, frame).max() <= 10
+    frame[:10] = 12.0
+    with pytest.warns(UserWarning, match="farther than 10 m"):
+        assert untrained.restore(DEPTH, frame) is frame
+    with pytest.warns(UserWarning, match="farther than 10 m"):
+        assert untrained.doubt(DEPTH, frame) == -np.inf
+
+
+def test_what_reads_nothing_is_in_no_doubt(untrained):
+    for nothing in (0.0, np.nan, np.inf):
+        frame = np.full((40, 48), nothing, np.float32)
+        assert untrained.restore(DEPTH, frame) is frame
+        assert untrained.doubt(DEPTH, frame) == -np.inf
+    assert untrained.doubt(RGB, frames(RGB, 40, 48)) > 0
+
+
 def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
     frame = frames(DEPTH, 40, 48)[..., 0]
     frame[10:20, 10:20], frame[0, 0], frame[1, 1] = 0.0, np.nan, np.inf
