@@ -30,6 +30,7 @@ from mitigate.agents.tokens import TokenAdapter
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
+from mitigate.core.names import short
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
@@ -194,6 +195,10 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         raise ValueError(f"This model has no module called {', '.join(missing)}.")
     made: dict[str, nn.Module] = {}
     try:
+        owners = tuple(f"{_key(name)}." for name in shapes)
+        for name in tensors:
+            if not name.startswith(owners):
+                raise ValueError(f"no adapter has the tensor {short(name)}")
         for name, shape in shapes.items():
             prefix = f"{_key(name)}."
             own = {k.removeprefix(prefix): v for k, v in tensors.items() if k.startswith(prefix)}
@@ -220,6 +225,8 @@ def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> nn.Module:
     wanted = {name: value.shape for name, value in empty.state_dict().items()}
     if wanted != {name: value.shape for name, value in tensors.items()}:
         raise TypeError(f"the tensors are not of the shapes that {SETTINGS} says")
+    if not all(value.is_floating_point() for value in tensors.values()):
+        raise TypeError("the tensors are not all floats")
     adapter = kind(**given)
     adapter.load_state_dict(tensors)
     return adapter

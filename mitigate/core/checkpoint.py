@@ -73,7 +73,8 @@ def unwritten(file: Path, error: Exception) -> OSError:
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
-    """Fill ``module`` from :func:`save_weights`' file; names and shapes must match exactly.
+    """Fill ``module`` from :func:`save_weights`' file; names and shapes must match exactly, and
+    the kinds of numbers: floats of any width for floats, whole numbers for whole ones.
 
     Only adapters may be absent, all of them, from weights that were trained before they came in:
     they stay as they are.
@@ -126,16 +127,30 @@ def _fill(module: nn.Module, found: dict[str, torch.Tensor], file: Path) -> None
     wrong = sorted(
         name
         for name in {*found, *wanted}
-        if name not in found or name not in wanted or found[name].shape != wanted[name].shape
+        if name not in found or name not in wanted or not _fits(found[name], wanted[name])
     )
     if wrong:
         raise ValueError(
             f"The weights {file} do not fit this {type(module).__name__}: {len(wrong)} names are "
-            f"missing, unknown or of another shape ({', '.join(wrong[:4])} ...). Build the agent "
-            "with the config that made them (config.yaml beside them) or choose other weights."
+            f"missing, unknown, of another shape or of other numbers ({', '.join(wrong[:4])} ...). "
+            "Build the agent with the config that made them (config.yaml beside them) or choose "
+            "other weights."
         )
     module.load_state_dict(found, strict=False)
     check_finite(module, f"The weights {file}")
+
+
+def _fits(found: torch.Tensor, wanted: torch.Tensor) -> bool:
+    return found.shape == wanted.shape and _kind(found) == _kind(wanted)
+
+
+def _kind(value: torch.Tensor) -> str:
+    """Which numbers a tensor holds, of whatever width."""
+    if value.dtype == torch.bool:
+        return "truth"
+    if value.is_complex():
+        return "complex"
+    return "float" if value.is_floating_point() else "whole"
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:

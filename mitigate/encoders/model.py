@@ -12,6 +12,7 @@ from torch import Tensor, nn
 
 from mitigate.agents import adapters as inserted
 from mitigate.agents.sites import choose, first, look
+from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.core.progress import say
 from mitigate.corruptions import DepthSensor
@@ -85,6 +86,9 @@ class Encoder(nn.Module):
         if weights is not None:
             loading.load_weights(self.model, weights, prefix)
         self._check()
+        if weights is None and tune == "adapters" and not find(model).is_file():
+            with torch.random.fork_rng(devices=[]):
+                _check_fixed(model, self.model, loading.load_model(model, kwargs))
         if tune == "adapters":
             self.add_adapters(**(adapters or {}))
         elif not any(p.is_floating_point() for p in self.model.parameters()):
@@ -254,3 +258,17 @@ class Encoder(nn.Module):
         from mitigate.encoders import folder as folders
 
         folders.fill(self, folder)
+
+
+def _check_fixed(model: str, made: nn.Module, again: nn.Module) -> None:
+    """Raise ValueError if what the callable ``model`` made twice has other weights each time:
+    adapters fit the weights that they were trained with, and those would be lost."""
+    if inserted.backbone_sha(made) == inserted.backbone_sha(again):
+        return
+    other = again.state_dict()
+    drawn = [n for n, v in made.state_dict().items() if n in other and not v.equal(other[n])]
+    raise ValueError(
+        f"agent.model={model} draws {len(drawn)} of its weights at random "
+        f"({', '.join(drawn[:3])}), so nothing would fit the adapters afterwards. Save its "
+        "state_dict() once, or take the trained one, and name the file: agent.weights=FILE."
+    )

@@ -45,6 +45,10 @@ def attach(model, folder, check=True):
         )
     settings, tensors = read(folder)
     shapes = settings["adapters"]
+    owners = tuple(name.replace(".", "/") + "." for name in shapes)
+    surplus = [name for name in tensors if not name.startswith(owners)]
+    if surplus:
+        raise ValueError(f"{WEIGHTS} in {folder} has tensors of no adapter: {surplus[0]!a:.60}.")
     wrapped = set(shapes) <= {"before", "behind"} and not hasattr(model, "before")
     if wrapped:
         model = _Wrapped(model)
@@ -89,10 +93,12 @@ class _Adapter:
         prefix = name.replace(".", "/") + "."
         own = {k[len(prefix) :]: v for k, v in tensors.items() if k.startswith(prefix)}
         wanted = _shapes(shape)
-        if {k: tuple(v.shape) for k, v in own.items()} != wanted:
+        good = {k: tuple(v.shape) for k, v in own.items()} == wanted
+        good = good and all(v.is_floating_point() for v in own.values())
+        if not good or not all(bool(torch.isfinite(v.float()).all()) for v in own.values()):
             raise ValueError(
-                f"The adapter {name} in {folder} has other tensors than {SETTINGS} says: fetch the "
-                "folder again."
+                f"The adapter {name} in {folder} has other tensors than {SETTINGS} says, or some "
+                "that are not all finite floats: fetch the folder again."
             )
         self.tokens, self.batch = shape.get("kind") == "tokens", shape.get("batch", 0)
         self.pad, self.own = shape.get("kernel", 1) // 2, own

@@ -11,6 +11,7 @@ import signal
 import numpy
 import pytest
 import torch
+from safetensors.torch import save_file
 from torch import nn
 
 from mitigate.core import checkpoint, checksums, files, seeding
@@ -110,6 +111,34 @@ def test_weights_of_another_module_are_refused(tmp_path):
     checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
     with pytest.raises(ValueError, match="weight"):
         checkpoint.load_weights(nn.Linear(4, 2), tmp_path)
+
+
+@pytest.mark.parametrize("width", [torch.float64, torch.float16, torch.bfloat16])
+def test_floats_of_any_width_are_read(tmp_path, width):
+    module = nn.BatchNorm1d(3)
+    save_file({k: v.to(width) if "num" not in k else v for k, v in module.state_dict().items()},
+              tmp_path / "model.safetensors")  # fmt: skip
+    checkpoint.load_weights(module, tmp_path)
+    assert module.weight.dtype == torch.float32 and module.num_batches_tracked.dtype == torch.int64
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"),
+    [
+        ("weight", torch.int64),
+        ("weight", torch.uint8),
+        ("weight", torch.bool),
+        ("weight", torch.complex64),
+        ("num_batches_tracked", torch.float32),
+        ("num_batches_tracked", torch.bool),
+    ],
+)
+def test_numbers_of_another_kind_are_refused_by_name(tmp_path, name, kind):
+    module = nn.BatchNorm1d(3)
+    held = module.state_dict()
+    save_file({**held, name: held[name].to(kind)}, tmp_path / "model.safetensors")
+    with pytest.raises(ValueError, match=rf"of other numbers \({name} "):
+        checkpoint.load_weights(module, tmp_path)
 
 
 def test_truncated_weights_are_refused(tmp_path):

@@ -56,6 +56,32 @@ def test_a_wrong_model_is_explained(model, kwargs, says, monkeypatch):
         load_model(model, kwargs)
 
 
+def drawn(width: int = 8) -> torch.nn.Module:
+    """An encoder whose weights are others each time, but for its classifier."""
+    made = TinyNet(width=width)
+    torch.nn.init.zeros_(made.fc.weight)
+    return made
+
+
+def test_weights_that_the_callable_draws_get_no_adapters(tmp_path):
+    """They would be lost with the process, and no adapters fit other ones."""
+    path, state = f"{__name__}:drawn", torch.random.get_rng_state()
+    with pytest.raises(ValueError, match=r"draws 11 .* at random \(stem.weight.*agent.weights="):
+        encoder(model=path)
+    file = tmp_path / "weights.safetensors"
+    save_file(drawn().state_dict(), file)
+    assert encoder(model=path, weights=str(file))
+    assert encoder(model=path, tune="all")  # whose folder holds all weights
+    torch.random.set_rng_state(state)
+    encoder()
+    after = torch.random.get_rng_state()
+    torch.random.set_rng_state(state)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("mitigate.encoders.model._check_fixed", lambda *_: None)
+        encoder()
+    assert after.equal(torch.random.get_rng_state())
+
+
 BROKEN = {
     "at_import": "1 / 0",
     "no_python": "def make(:",

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import ast
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 import torch
+from safetensors.torch import save_file
 from torch import nn
 
 from mitigate.agents.adapters import insert_adapters, load_adapters, save_adapters
+from mitigate.core.files import sha256
 from mitigate.encoders import plain_adapters
 from mitigate.encoders.loading import Wrapped
 from tests.encoders.test_token_adapters import ENCODERS, answer, shaken
@@ -67,6 +70,36 @@ def test_a_changed_file_is_refused(tmp_path):
     file.write_bytes(data)
     with pytest.raises(ValueError, match="does not have the sha256 beside it"):
         plain_adapters.attach(model, tmp_path)
+
+
+def wrong(folder: Path, name: str, value: torch.Tensor) -> None:
+    """Give the adapters in ``folder`` a tensor that none of ours writes, and fitting sums."""
+    file = folder / plain_adapters.WEIGHTS
+    tensors = plain_adapters.parse(file.read_bytes())
+    save_file({**tensors, name: value}, file)
+    note = folder / (plain_adapters.WEIGHTS + plain_adapters.SUM)
+    note.write_text(f"{sha256(file)}  {file.name}\n")
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("blocks/0.up.bias", lambda v: v.fill_(float("nan"))),
+        ("blocks/0.up.bias", lambda v: v.fill_(float("inf"))),
+        ("blocks/0.up.bias", lambda v: v.long()),
+        ("blocks/9.up.bias", lambda v: v),
+        ("blocks/0.up.more", lambda v: v),
+        ("extra", lambda v: v),
+    ],
+)
+def test_tensors_that_no_adapter_has_are_refused_by_both_readers(tmp_path, name, change):
+    model = saved(tmp_path)
+    tensors = plain_adapters.parse((tmp_path / plain_adapters.WEIGHTS).read_bytes())
+    wrong(tmp_path, name, change(tensors["blocks/0.up.bias"].clone()))
+    for read in (plain_adapters.attach, load_adapters):
+        with pytest.raises(ValueError, match=re.escape(str(tmp_path))):
+            read(model, tmp_path)
+    assert not any(m._forward_hooks for m in model.modules())
 
 
 def test_another_encoder_is_refused_unless_told(tmp_path):
