@@ -30,10 +30,10 @@ class ConvAdapter(nn.Module):
         middle: int | None = None,
     ) -> None:
         super().__init__()
-        if channels < 1 or reduction < 1 or kernel % 2 == 0 or (middle or 1) < 1:
+        if channels < 1 or reduction < 1 or kernel % 2 == 0 or (middle is not None and middle < 1):
             raise ValueError(
-                f"An adapter needs channels ({channels}) and reduction ({reduction}) of at least 1 "
-                f"and an odd kernel ({kernel})."
+                f"An adapter needs channels ({channels}), reduction ({reduction}) and middle "
+                f"({middle}) of at least 1 and an odd kernel ({kernel})."
             )
         self.settings = {"channels": channels, "reduction": reduction, "kernel": kernel}
         self.settings |= further(gate, middle)

@@ -50,7 +50,12 @@ class TokenAdapter(nn.Module):
         middle: int | None = None,
     ) -> None:
         super().__init__()
-        if channels < 1 or reduction < 1 or batch not in (0, 1) or (middle or 1) < 1:
+        if (
+            channels < 1
+            or reduction < 1
+            or batch not in (0, 1)
+            or (middle is not None and middle < 1)
+        ):
             raise ValueError(
                 f"A token adapter needs channels ({channels}), reduction ({reduction}) and middle "
                 f"({middle}) of at least 1, and its frames on axis 0 or 1 ({batch})."

@@ -17,7 +17,7 @@ from mitigate.core.names import unknown
 from mitigate.core.progress import say
 from mitigate.corruptions import DepthSensor
 from mitigate.encoders import loading
-from mitigate.encoders.transform import Transform
+from mitigate.encoders.transform import transform_of
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -34,7 +34,7 @@ class Encoder(nn.Module):
     Args:
         model, kwargs: as :func:`mitigate.encoders.loading.load_model`. weights, prefix: as
             ``load_weights`` there; None: those that the model comes with.
-        sensor: "rgb" or "depth". transform: arguments of :class:`Transform`.
+        sensor: "rgb" or "depth". transform: arguments of ``transform.Transform``.
         output: what is the target: None: what the model returns; a number or a name: that item of
             it (``pooler_output``); else the dotted name of a module, whose output it is.
         pool: how features become a vector for the report: the mean over places or tokens, the first
@@ -75,7 +75,7 @@ class Encoder(nn.Module):
             )
         self.given = {"model": model, "kwargs": kwargs, "weights": weights, "prefix": prefix}
         self.sensor, self.output, self.pool, self.tune = sensor, output, pool, tune
-        self.transform = Transform(**transform)
+        self.transform = transform_of(transform)
         means, channels = len(self.transform.mean), SENSORS[sensor]
         if means not in (1, channels):
             raise ValueError(
@@ -217,8 +217,8 @@ class Encoder(nn.Module):
         """Run it once, so that what does not fit shows before anything is rendered."""
         self.model.requires_grad_(False)
         size, channels = self.transform.size, SENSORS[self.sensor]
-        dtype = torch.uint8 if self.sensor == "rgb" else torch.float32
-        frames = torch.ones(2, size, size, channels, dtype=dtype)
+        drawn = torch.rand(2, size, size, channels, generator=torch.Generator().manual_seed(0))
+        frames = (255 * drawn).to(torch.uint8) if self.sensor == "rgb" else 10 * drawn  # metres
         try:
             given = self.model(self.transform(frames))
         except Exception as error:  # of any kind: it is somebody's code
@@ -236,10 +236,12 @@ class Encoder(nn.Module):
         if isinstance(features, Tensor):
             what = f"{str(features.dtype).removeprefix('torch.')} {tuple(features.shape)}"
             if features.is_floating_point() and features.dim() in (2, 3, 4) and len(features) == 2:
-                return
+                if bool(features.isfinite().all()):
+                    return
+                what += " with NaN or infinity"
         raise ValueError(
-            f"agent.output={self.output} gives {what} for two frames: it must be floats [n, C], "
-            "[n, C, h, w] or [n, T, C]. Name another module or item."
+            f"agent.output={self.output} gives {what} for two frames: it must be finite floats "
+            "[n, C], [n, C, h, w] or [n, T, C]. Name another module or item."
         )
 
     def far(self) -> DepthSensor:

@@ -6,6 +6,7 @@ frames of each scene.
 
 from __future__ import annotations
 
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ import numpy as np
 
 from mitigate.agents.observation import FARTHEST
 from mitigate.core.files import RECORDING, find
-from mitigate.core.names import unknown
+from mitigate.core.names import short, unknown
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.progress import say
 from mitigate.core.seeding import generator
@@ -29,6 +30,8 @@ from mitigate.worlds.world import Placeable
 TRAIN, UNSEEN = "train", "unseen"
 FEWEST_UNSEEN = 5  # blocks of a single folder, so that they show how much scenes differ (ours)
 NEAR = 0.05  # share of a frame's depth that is nearer than ``FARTHEST``, if it is metres (ours)
+NEAREST = 0.02  # metres; of a frame in metres more than a share ``NEAR`` is farther (ours)
+LARGEST = 4096  # pixels of a side (ours)
 
 
 @dataclass(frozen=True)
@@ -126,8 +129,9 @@ class FolderFrames:
         size: pixels of a side to which all are resized when they are read; None: as they are, which
             must then be one size. unit: metres of one count of a 16-bit PNG.
     Says which files are left out. Pixels of depth that are not above 0 or no number become 0.
-    Raises FileNotFoundError if there is no folder or no frame, ValueError for too few, and for a
-    file that cannot be read or holds no depth in metres.
+    Raises FileNotFoundError if there is no folder or no frame, ValueError for other numbers than
+    these can be, for too few frames, and for a file that cannot be read, holds no depth in metres
+    or, with size None, has another size than the first one that was read.
     """
 
     files = True
@@ -143,8 +147,10 @@ class FolderFrames:
     ) -> None:
         if path is None:
             raise FileNotFoundError("Name the folder that holds the frames: env.path=FOLDER.")
+        _check(size, held_out, block, unit)
         self.path, self.sensor, self.size, self.unit = Path(path), sensor, size, unit
         self.held_out, self.block = held_out, block
+        self._first: tuple[Path, tuple[int, ...]] | None = None  # that was read, and its shape
         if not self.path.is_dir():
             raise FileNotFoundError(
                 f"There is no folder {path}: name the one that holds the frames, env.path=FOLDER."
@@ -212,7 +218,35 @@ class FolderFrames:
             kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
             kind = cv2.INTER_NEAREST if frame.shape[-1] == 1 else kind  # holes stay holes
             frame = cv2.resize(frame, (self.size, self.size), interpolation=kind)
-        return frame.reshape(*frame.shape[:2], -1)
+        frame = frame.reshape(*frame.shape[:2], -1)
+        self._first = self._first or (path, frame.shape)
+        first, shape = self._first
+        if frame.shape != shape:
+            raise ValueError(
+                f"{path} has {frame.shape[0]} x {frame.shape[1]} pixels, but {first} has "
+                f"{shape[0]} x {shape[1]}: set env.size=PIXELS, to which all are resized."
+            )
+        return frame
+
+
+def _check(size: int | None, held_out: float, block: int, unit: float) -> None:
+    """Raise ValueError for what no folder can be read with."""
+    for name, value, good, words in (
+        ("size", size, size is None or _is_whole(size, LARGEST), f"1 to {LARGEST} pixels or null"),
+        ("unit", unit, _is_between(unit, np.inf), "metres of one count, such as 0.001 (mm)"),
+        ("world.held_out", held_out, _is_between(held_out, 1), "a share above 0 and below 1"),
+        ("world.block", block, _is_whole(block, sys.maxsize), "a number of frames from 1 on"),
+    ):
+        if not good:
+            raise ValueError(f"env.{name}={short(value)} must be {words}.")
+
+
+def _is_whole(value: object, most: int) -> bool:
+    return type(value) is int and 1 <= value <= most
+
+
+def _is_between(value: object, below: float) -> bool:
+    return isinstance(value, (int, float)) and 0 < value < below
 
 
 def _metres(depth: np.ndarray) -> np.ndarray:
@@ -224,6 +258,12 @@ def _metres(depth: np.ndarray) -> np.ndarray:
             f"is no depth in metres: most of it is farther away than {FARTHEST:g}, the middle "
             f"{np.median(known):g}. Divide NPY by 1000 if it is millimetres; env.unit is the "
             "metres of one count of a PNG"
+        )
+    if len(known) and np.quantile(known, 1 - NEAR) < NEAREST:
+        raise ValueError(
+            f"is no depth in metres: most of it is nearer than {NEAREST:g}, the middle "
+            f"{np.median(known):g}. env.unit is the metres of one count of a PNG, 0.001 if these "
+            "are millimetres"
         )
     return held
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
+from inspect import signature
+from typing import Any
 
 import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from mitigate.core.names import unknown
+from mitigate.core.names import short, unknown
 
 RESIZE = ("bilinear", "bicubic", "area", "nearest")
 FROM_UINT8 = 255.0  # of RGB frames
+MOST = 4096  # pixels of a side (ours)
 
 
 class Transform:
@@ -25,7 +29,7 @@ class Transform:
             (most encoders), 1 for encoders that take 0 to 255. bgr: channels in reverse.
         near, far: metres. Depth is clipped to them and becomes (depth - near) / (far - near), as in
             habitat-lab, and then meets mean and std; far null: metres as they are.
-    Raises ValueError for other values.
+    Raises ValueError for other values, naming the option.
     """
 
     def __init__(
@@ -40,15 +44,7 @@ class Transform:
         near: float = 0.0,
         far: float | None = None,
     ) -> None:
-        if resize not in RESIZE:
-            raise ValueError(unknown("agent.transform.resize", resize, RESIZE))
-        if size < 1 or scale <= 0 or min(std) <= 0 or len(mean) != len(std):
-            raise ValueError(
-                f"agent.transform needs a size ({size}) of at least 1, a scale ({scale}) and std "
-                f"({list(std)}) above 0, and as many means ({list(mean)}) as std."
-            )
-        if far is not None and not near < far:
-            raise ValueError(f"agent.transform: near ({near}) must be less than far ({far}).")
+        _check(locals())
         self.size, self.resize, self.crop, self.bgr = size, resize, crop, bgr
         self.mean, self.std, self.scale, self.near, self.far = mean, std, scale, near, far
 
@@ -82,3 +78,50 @@ class Transform:
         x = F.interpolate(x, size, mode=self.resize, **kind)
         top, left = (size[0] - self.size) // 2, (size[1] - self.size) // 2
         return x[..., top : top + self.size, left : left + self.size]
+
+
+def transform_of(given: Mapping[str, Any]) -> Transform:
+    """The transform with the arguments ``given``. ValueError for a name that it does not have and
+    for a value that it does not take."""
+    known = [*signature(Transform).parameters]
+    for name in given:
+        if name not in known:
+            raise ValueError(unknown("setting of agent.transform", name, known))
+    return Transform(**{"size": None, **given})
+
+
+def _check(given: Mapping[str, Any]) -> None:
+    """Raise ValueError for the first argument of a :class:`Transform` that is none."""
+    if given["resize"] not in RESIZE:
+        raise ValueError(unknown("agent.transform.resize", given["resize"], RESIZE))
+    size, near, far, std = (given[name] for name in ("size", "near", "far", "std"))
+    wanted = {
+        "size": (type(size) is int and 1 <= size <= MOST, f"a whole number of 1 to {MOST} pixels"),
+        "crop": (type(given["crop"]) is bool, "true or false"),
+        "bgr": (type(given["bgr"]) is bool, "true or false"),
+        "scale": (_number(given["scale"]) and given["scale"] > 0, "a number above 0"),
+        "mean": (_numbers(given["mean"]), "a list of numbers, one a channel"),
+        "std": (_numbers(std) and min(std) > 0, "a list of numbers above 0, one a channel"),
+        "near": (_number(near) and near >= 0, "a number of metres, at least 0"),
+        "far": (far is None or _number(far), "null or a number of metres"),
+    }
+    for name, (good, words) in wanted.items():
+        if not good:
+            raise ValueError(f"agent.transform.{name}={short(given[name])} must be {words}.")
+    if len(given["mean"]) != len(std):
+        raise ValueError(
+            f"agent.transform.mean={list(given['mean'])} and agent.transform.std={list(std)} must "
+            "have as many values."
+        )
+    if far is not None and not near < far:
+        raise ValueError(
+            f"agent.transform.near={near} must be less than agent.transform.far={far}."
+        )
+
+
+def _number(value: Any) -> bool:
+    return type(value) in (int, float) and math.isfinite(value)
+
+
+def _numbers(values: Any) -> bool:
+    return isinstance(values, (list, tuple)) and len(values) > 0 and all(map(_number, values))

@@ -97,6 +97,40 @@ def test_frames_of_several_sizes_are_refused_unless_resized(tmp_path):
     assert frames.frames.shape == (3, 8, 8, 3)
 
 
+def test_a_file_of_another_size_is_named_also_where_it_is_of_the_other_split(tmp_path):
+    for number in range(4):
+        write(tmp_path, f"a{number}/0.png", number, 13 if number == 3 else 12)
+    source = FolderFrames(str(tmp_path))
+    collect(source, TRAIN, 3, 0)
+    with pytest.raises(ValueError, match=r"a3/0.png has 13 x 13 .*a0/0.png has 12 x 12.*env.size"):
+        collect(source, UNSEEN, 1, 0)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("size", [0, -3, 2.5, True, "64", 10**6]),
+        ("unit", [0, -1.0, np.nan, np.inf, "mm"]),
+        ("held_out", [0, 1, -1, np.nan, "half"]),
+        ("block", [0, -1, 2.5]),
+    ],
+)
+def test_a_number_that_reads_no_folder_is_told_by_its_option(tmp_path, name, values):
+    for value in values:
+        with pytest.raises(ValueError, match=rf"env\.(world\.)?{name}=.* must be "):
+            FolderFrames(str(tmp_path), **{name: value})
+
+
+def test_a_unit_that_makes_all_depth_too_near_is_told(tmp_path):
+    for number in range(2):
+        (tmp_path / f"s{number}").mkdir()
+        Image.fromarray(np.full((6, 6), 1500, np.uint16)).save(tmp_path / f"s{number}/0.png")
+    with pytest.raises(ValueError, match=r"0\.png is no depth in metres.*nearer.*env\.unit"):
+        collect(FolderFrames(str(tmp_path), "depth", unit=1e-6), TRAIN, 1, 0)
+    near = FolderFrames(str(tmp_path), "depth", unit=1e-4)
+    assert collect(near, TRAIN, 1, 0).frames.max() == np.float32(0.15)  # a wall at 15 cm
+
+
 def test_depth_files_become_metres(tmp_path):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()

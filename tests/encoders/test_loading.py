@@ -82,6 +82,48 @@ def test_weights_that_the_callable_draws_get_no_adapters(tmp_path):
     assert after.equal(torch.random.get_rng_state())
 
 
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("size", [32.5, 0, None, "32", True, 10**6, float("nan")]),
+        ("resize", ["bilinaer", None, 3]),
+        ("crop", ["yes", 1]),
+        ("bgr", [None]),
+        ("scale", [0, float("nan"), float("inf"), "255"]),
+        ("mean", [[], [float("nan")] * 3, 0.5, ["a"], None]),
+        ("std", [[], [float("nan"), 1, 1], [0, 1, 1], [float("inf")] * 3, 1.0]),
+        ("near", [-1, float("nan"), None]),
+        ("far", [float("inf"), float("nan"), 0, -1, "10"]),
+        ("sise", [32]),
+    ],
+)
+def test_a_transform_that_is_none_is_told_by_its_option(name, values):
+    for value in values:
+        with pytest.raises(ValueError, match=rf"agent\.transform.*{name}"):
+            encoder(transform={"size": 32, name: value})
+
+
+class Spoiled(TinyNet):
+    """Whose features are no numbers."""
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        return super().forward(x) * float("nan")
+
+
+class Centred(TinyNet):
+    """Which divides by how much a frame varies: none of constant frames."""
+
+    def forward(self, x: torch.Tensor) -> torch.Tensor:
+        return super().forward(x / x.std((1, 2, 3), keepdim=True))
+
+
+def test_features_must_be_finite_for_frames_that_vary(monkeypatch):
+    monkeypatch.setattr("mitigate.encoders.model._check_fixed", lambda *_: None)
+    assert encoder(model=f"{__name__}:Centred")
+    with pytest.raises(ValueError, match=r"float32 \(2, 5\) with NaN or infinity"):
+        encoder(model=f"{__name__}:Spoiled", output=None)
+
+
 BROKEN = {
     "at_import": "1 / 0",
     "no_python": "def make(:",
@@ -125,7 +167,7 @@ class Gives(TinyNet):
     ("kind", "output", "says"),
     [
         ("number", None, r"gives float32 \(\) for two frames"),
-        ("counts", None, r"gives int64 \(2, 5\) for two frames: it must be floats"),
+        ("counts", None, r"gives int64 \(2, 5\) for two frames: it must be finite floats"),
         ("nothing", None, "it returns a NoneType"),
         ("nothing", 0, "it returns a NoneType"),
         ("deep", None, "it returns a dict"),

@@ -125,3 +125,10 @@ def test_the_shapes_at_full_size_are_those_of_the_agents():
     model = shapes.ddppo().eval()
     with torch.no_grad():
         assert model(torch.rand(1, 1, 256, 256)).shape == (1, 128, 4, 4)
+
+
+@pytest.mark.parametrize("kind", [ConvAdapter, TokenAdapter])
+@pytest.mark.parametrize("middle", [0, -1])
+def test_a_bottleneck_has_channels(kind, middle):
+    with pytest.raises(ValueError, match=rf"middle \({middle}\) of at least 1"):
+        kind(8, middle=middle)
