@@ -112,6 +112,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     agent or is shown too little, FileNotFoundError for missing weights.
     """
     _check(cfg, overrides)
+    where = launcher.chosen(cfg.launcher)
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     met = conditions(names, cfg.severity, cfg.severity_depth)
@@ -148,7 +149,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             split=cfg.split,
             seed=cfg.seed,
             workers=cfg.workers,
-            launcher=launcher.chosen(cfg.launcher),
+            launcher=where,
             safeguard=safeguard,
             restorer=restorer,
         )

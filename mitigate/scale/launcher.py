@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
 from hydra.core.config_store import ConfigStore
@@ -51,14 +53,24 @@ for _kind in (LauncherConfig, RayConfig, SlurmConfig):
 
 
 def chosen(node: DictConfig) -> LauncherConfig:
-    """The launcher that a config names. Raises ValueError for a number that is too small."""
+    """The launcher that a config names. Raises ValueError for a number that is too small, and for
+    what can be seen from here to be missing or misnamed, before any work is done."""
     launcher = OmegaConf.to_object(node)
     assert isinstance(launcher, LauncherConfig)
     for name in ("cpus", "memory", "attempts", "processes", "minutes"):
         value = getattr(launcher, name, None)
-        if value is not None and not value > 0:
-            raise ValueError(f"launcher.{name}={value:g} must be above 0.")
+        if value is not None and not 0 < value < math.inf:
+            raise ValueError(f"launcher.{name}={value:g} must be above 0, and no infinity.")
+    if launcher.name != "local":
+        _kind(launcher).check(launcher)
     return launcher
+
+
+def _kind(launcher: LauncherConfig) -> Any:
+    """The module of a launcher of other machines."""
+    return import_module(
+        "mitigate.scale." + ("ray_actors" if launcher.name == "ray" else "slurm_jobs")
+    )
 
 
 def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -> int:
@@ -71,9 +83,7 @@ def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -
     if wanted is not None:
         return wanted
     if launcher.name == "ray":
-        from mitigate.scale import ray_actors
-
-        return ray_actors.room(launcher)  # type: ignore[arg-type]
+        return _kind(launcher).room(launcher)
     return max(1, jobs // (worth * launcher.processes))  # type: ignore[attr-defined]
 
 
@@ -89,13 +99,7 @@ def results(
     too often, and what a job raises."""
     if launcher.name == "local":
         return workers.results(task, groups, started, progress)
-    if launcher.name == "ray":
-        from mitigate.scale import ray_actors
-
-        return ray_actors.results(task, groups, started, progress, launcher)  # type: ignore[arg-type]
-    from mitigate.scale import slurm_jobs
-
-    return slurm_jobs.results(task, groups, started, progress, launcher)  # type: ignore[arg-type]
+    return _kind(launcher).results(task, groups, started, progress, launcher)
 
 
 def numbered(groups: Sequence[Sequence[Any]]) -> list[list[tuple[int, Any]]]:

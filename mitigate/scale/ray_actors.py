@@ -7,12 +7,15 @@ another.
 
 from __future__ import annotations
 
+import re
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
+from mitigate.core.names import short
 from mitigate.core.progress import Progress
 from mitigate.core.workers import SECOND, STUCK, Task
 from mitigate.scale.launcher import lost, numbered
@@ -39,13 +42,24 @@ class Worker:
         yield from self.task.work(jobs)
 
 
+def check(launcher: RayConfig) -> None:
+    """Raise ValueError if ray is not installed, or for an address of no form that it knows."""
+    if find_spec("ray") is None:
+        raise ValueError("launcher=ray needs ray: pip install -e '.[cluster]'.")
+    address = launcher.address
+    if address is not None and not re.fullmatch(r"auto|local|ray://\S+|\S+:\d+", address):
+        raise ValueError(
+            f"launcher.address={short(address)} must be auto, ray://host:10001, host:6379, or null "
+            "for a cluster on this machine."
+        )
+
+
 def connect(launcher: RayConfig) -> Any:
     """Ray, connected to the cluster of ``launcher``, or to one on this machine that ends with the
-    process. Raises ModuleNotFoundError, saying what to do, without ray."""
-    try:
-        import ray
-    except ModuleNotFoundError as error:
-        raise ValueError("launcher=ray needs ray: pip install -e '.[cluster]'.") from error
+    process. Raises ValueError as :func:`check`, and if there is no cluster."""
+    check(launcher)
+    import ray
+
     if not ray.is_initialized():
         try:
             ray.init(launcher.address, log_to_driver=False, include_dashboard=False)

@@ -15,7 +15,9 @@ import re
 import shutil
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -54,15 +56,17 @@ def results(
     progress: Progress,
     launcher: SlurmConfig,
 ) -> Iterator[tuple[int, Any] | None]:
-    """As ``launcher.results``; ``workers`` is the number of jobs."""
+    """As ``launcher.results``; ``workers`` is the number of jobs. Their folder is removed when all
+    is done; otherwise their logs stay in it, but never the task, with the agent's weights."""
+    check(launcher)
     folder = Path(launcher.folder).resolve() / f"{int(time.time())}-{os.getpid()}"
-    write_bytes(folder / TASK, pickle.dumps(task))
     executor = _executor(launcher, folder)
     given = numbered(groups)
     total, done = sum(map(len, given)), 0
     shares = [given[at::workers] for at in range(min(workers, len(given)))]
     running: list[_Share] = []
     try:
+        write_bytes(folder / TASK, pickle.dumps(task))
         for number, share in enumerate(shares):
             running.append(_submit(executor, folder, launcher, share, 1, number))
         progress.say(f"{len(running)} jobs submitted; their logs are in {folder}")
@@ -90,6 +94,9 @@ def results(
     finally:
         for held in running:
             held.job.cancel()
+        (folder / TASK).unlink(missing_ok=True)
+        with suppress(OSError):  # it has the logs of jobs
+            folder.rmdir()
 
 
 def _end(running: list[_Share], folder: Path) -> None:
@@ -102,12 +109,10 @@ def _end(running: list[_Share], folder: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def _executor(launcher: SlurmConfig, folder: Path) -> Any:
-    try:
-        import submitit
-    except ModuleNotFoundError as error:
-        needed = "launcher=slurm needs submitit: pip install -e '.[cluster]'."
-        raise ValueError(needed) from error
+def check(launcher: SlurmConfig) -> None:
+    """Raise ValueError if submitit is not installed, and for a cluster that cannot be reached."""
+    if find_spec("submitit") is None:
+        raise ValueError("launcher=slurm needs submitit: pip install -e '.[cluster]'.")
     if launcher.cluster not in CLUSTERS:
         raise ValueError(unknown("launcher.cluster", launcher.cluster, CLUSTERS))
     if launcher.cluster == "slurm" and shutil.which("sbatch") is None:
@@ -115,6 +120,11 @@ def _executor(launcher: SlurmConfig, folder: Path) -> Any:
             "There is no SLURM here (no sbatch). Start this on a login node, or try it with "
             "launcher.cluster=local."
         )
+
+
+def _executor(launcher: SlurmConfig, folder: Path) -> Any:
+    import submitit
+
     executor = submitit.AutoExecutor(folder=folder / "logs", cluster=launcher.cluster)
     executor.update_parameters(
         name="mitigate",

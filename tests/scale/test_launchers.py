@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import signal
 import time
@@ -12,12 +13,12 @@ from pathlib import Path
 from typing import ClassVar
 
 import pytest
-from omegaconf import OmegaConf
+from omegaconf import DictConfig, OmegaConf
 
 from mitigate.core.progress import Progress
 from mitigate.core.workers import WorkersDied
-from mitigate.scale import slurm_jobs
-from mitigate.scale.launcher import LauncherConfig, SlurmConfig, chosen, count, results
+from mitigate.scale import ray_actors, slurm_jobs
+from mitigate.scale.launcher import LauncherConfig, RayConfig, SlurmConfig, chosen, count, results
 
 GROUPS = [[(g, i) for i in range(3)] for g in range(6)]
 
@@ -123,6 +124,8 @@ def test_the_rest_of_a_killed_slurm_job_is_submitted_again(slurm_launcher, tmp_p
 def test_a_wrong_job_is_told_at_once_and_not_tried_on_other_nodes(slurm_launcher, tmp_path):
     with pytest.raises(ValueError, match="makes no sense"):
         run(slurm_launcher(attempts=2), Squares(tmp_path, wrong=[(0, 1)]), workers=1)
+    left = [path.name for path in (tmp_path / "slurm").rglob("*")]
+    assert slurm_jobs.TASK not in left and "logs" in left  # to see what went wrong
 
 
 def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_job(
@@ -161,6 +164,7 @@ def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_
             given.append([[number for number, _ in group] for group in groups])
             return Job(groups, lines)
 
+    monkeypatch.setattr(slurm_jobs, "check", lambda launcher: None)
     monkeypatch.setattr(slurm_jobs, "_executor", lambda launcher, folder: Executor())
     launcher = SlurmConfig(folder=str(tmp_path / "slurm"))
     run(launcher, Squares(tmp_path), workers=1)
@@ -170,11 +174,17 @@ def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_
     with pytest.raises(OSError, match="submit limit"):
         run(launcher, Squares(tmp_path), workers=2)
     assert len(cancelled) == 1
+    assert not [*(tmp_path / "slurm").iterdir()]  # nor its task, with the agent's weights
 
 
-@pytest.mark.parametrize("number", [{"processes": 0}, {"attempts": 0}, {"memory": -1.0}], ids=str)
+@pytest.mark.parametrize(
+    "number",
+    [{"processes": 0}, {"attempts": 0}, {"memory": -1.0}, {"memory": math.inf}, {"cpus": math.inf}],
+    ids=str,
+)
 def test_a_launcher_of_nothing_is_refused(number):
-    node = OmegaConf.structured(SlurmConfig(**number))
+    kind = RayConfig if "cpus" in number else SlurmConfig
+    node = OmegaConf.structured(kind(**number))
     with pytest.raises(ValueError, match=f"launcher.{next(iter(number))}=.* must be above 0"):
         chosen(node)
 
@@ -183,8 +193,43 @@ def test_without_slurm_it_says_what_to_do(tmp_path, monkeypatch):
     pytest.importorskip("submitit")
     monkeypatch.setenv("PATH", "")
     launcher = SlurmConfig(folder=str(tmp_path))
-    with pytest.raises(ValueError, match="login node"):
-        run(launcher, Squares(tmp_path))
+    for read in (lambda: run(launcher, Squares(tmp_path)), lambda: chosen(launcher_node(launcher))):
+        with pytest.raises(ValueError, match="login node"):
+            read()
+    assert not [*tmp_path.iterdir()]
+
+
+def launcher_node(launcher: LauncherConfig) -> DictConfig:
+    """``launcher`` as the config that names it."""
+    return OmegaConf.structured(launcher)
+
+
+@pytest.mark.parametrize(
+    ("launcher", "package", "says"),
+    [
+        (SlurmConfig(cluster="foo"), "submitit", "no launcher.cluster 'foo'"),
+        (RayConfig(address="not an address"), "ray", "must be auto, ray://"),
+        (RayConfig(address="host"), "ray", "must be auto, ray://"),
+    ],
+    ids=lambda value: str(value)[:40],
+)
+def test_a_launcher_that_is_none_is_told_when_it_is_chosen(launcher, package, says):
+    pytest.importorskip(package)
+    with pytest.raises(ValueError, match=says):
+        chosen(launcher_node(launcher))
+
+
+@pytest.mark.parametrize("address", [None, "auto", "10.0.0.1:6379", "ray://head:10001"])
+def test_an_address_is_of_a_form_that_ray_knows(address):
+    pytest.importorskip("ray")
+    assert chosen(launcher_node(RayConfig(address=address))).address == address
+
+
+def test_what_is_not_installed_is_told_when_it_is_chosen(monkeypatch):
+    for module, launcher in ((slurm_jobs, SlurmConfig()), (ray_actors, RayConfig())):
+        monkeypatch.setattr(module, "find_spec", lambda name: None)
+        with pytest.raises(ValueError, match=r"pip install -e '.\[cluster\]'"):
+            chosen(launcher_node(launcher))
 
 
 def test_local_is_what_it_was(tmp_path):
