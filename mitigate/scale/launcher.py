@@ -15,6 +15,8 @@ from mitigate.core import workers
 from mitigate.core.progress import Progress
 from mitigate.core.workers import Task
 
+HOMES = {"ray": "ray_actors", "slurm": "slurm_jobs"}  # by the launcher's name
+
 
 @dataclass
 class LauncherConfig:
@@ -62,15 +64,13 @@ def chosen(node: DictConfig) -> LauncherConfig:
         if value is not None and not 0 < value < math.inf:
             raise ValueError(f"launcher.{name}={value:g} must be above 0, and no infinity.")
     if launcher.name != "local":
-        _kind(launcher).check(launcher)
+        _home(launcher).check(launcher)
     return launcher
 
 
-def _kind(launcher: LauncherConfig) -> Any:
+def _home(launcher: LauncherConfig) -> Any:
     """The module of a launcher of other machines."""
-    return import_module(
-        "mitigate.scale." + ("ray_actors" if launcher.name == "ray" else "slurm_jobs")
-    )
+    return import_module(f"mitigate.scale.{HOMES[launcher.name]}")
 
 
 def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -> int:
@@ -83,7 +83,7 @@ def count(launcher: LauncherConfig, wanted: int | None, jobs: int, worth: int) -
     if wanted is not None:
         return wanted
     if launcher.name == "ray":
-        return _kind(launcher).room(launcher)
+        return _home(launcher).room(launcher)
     return max(1, jobs // (worth * launcher.processes))  # type: ignore[attr-defined]
 
 
@@ -99,7 +99,7 @@ def results(
     too often, and what a job raises."""
     if launcher.name == "local":
         return workers.results(task, groups, started, progress)
-    return _kind(launcher).results(task, groups, started, progress, launcher)
+    return _home(launcher).results(task, groups, started, progress, launcher)
 
 
 def numbered(groups: Sequence[Sequence[Any]]) -> list[list[tuple[int, Any]]]:
