@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from mitigate.evaluation.leaderboard.benchmark import benchmark
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
     from mitigate.shipping.hardened import load_hardened
+    from mitigate.shipping.loading import load
 
 # OpenMP reads this when torch is imported. By default a thread that waits for another one spins: as
 # soon as anything else runs beside torch, such as workers that make the next batch, it spins on the
@@ -20,10 +21,11 @@ os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 # ``python -m mitigate.train`` and its like are files of ``commands/``.
 __path__.append(os.path.join(os.path.dirname(__file__), "commands"))
 
-__all__ = ["LeaderboardEntry", "benchmark", "load_hardened"]
+__all__ = ["LeaderboardEntry", "benchmark", "load", "load_hardened"]
 _HOMES = {
     "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
     "benchmark": "mitigate.evaluation.leaderboard.benchmark",
+    "load": "mitigate.shipping.loading",
     "load_hardened": "mitigate.shipping.hardened",
 }
 

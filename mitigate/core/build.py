@@ -130,10 +130,7 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     weights = str(find(weights))
     if (Path(weights) / LORA).is_file() and hasattr(located(node._target_), "load"):
         return {}  # a language model says itself whose adapter it takes
-    if hardened.is_hardened(weights):
-        file = Path(weights) / hardened.CONFIG
-    else:
-        file = checkpoint.weights_file(weights).with_name(hardened.CONFIG)
+    file = hardened.config_of(Path(weights))
     if not file.is_file():
         return {}
     if hardened.is_ours(node._target_):

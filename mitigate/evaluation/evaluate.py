@@ -278,6 +278,16 @@ def hydra_main(cfg: DictConfig) -> None:
     run(cfg, HydraConfig.get().overrides.task)
 
 
+def _complete() -> None:
+    """Check the command line, and add the kind of agent that its weights are of."""
+    check_arguments(sys.argv)
+    weights = [o.partition("=")[2] for o in sys.argv[1:] if o.startswith("checkpoint=")]
+    if weights:
+        from mitigate.shipping.loading import agent_option
+
+        sys.argv += agent_option(sys.argv[1:], weights[-1].strip("\"'"))
+
+
 def main() -> None:
     """Run from the command line."""
-    conf.main(hydra_main, "evaluate", lambda: check_arguments(sys.argv))
+    conf.main(hydra_main, "evaluate", _complete)

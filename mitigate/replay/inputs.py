@@ -5,38 +5,22 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 from omegaconf import DictConfig
-
-from mitigate.core.files import find
 
 
 def load_agents(weights: Sequence[str]) -> dict[str, Any]:
     """The agents of folders of weights, by names that differ."""
     from mitigate.evaluation.columns import name_of
+    from mitigate.shipping.loading import load
 
     if len(set(weights)) < len(weights):
         raise ValueError(f"agents=[{','.join(weights)}] names one folder twice.")
     names = [name_of(folder) for folder in weights]
     if len(set(names)) < len(names):
         names = [folder.rstrip("/") for folder in weights]
-    return {name: _agent(find(folder)) for name, folder in zip(names, weights, strict=True)}
-
-
-def _agent(folder: Path) -> Any:
-    from mitigate.core import checkpoint
-    from mitigate.shipping import hardened
-
-    if (folder / hardened.CARD).is_file():
-        return hardened.load_hardened(folder)
-    config = checkpoint.weights_file(folder).with_name(hardened.CONFIG)
-    if not config.is_file():
-        raise FileNotFoundError(f"{config} is missing, so nobody knows what agent {folder} is of.")
-    agent = hardened.build(config)
-    checkpoint.load_agent(agent, folder)
-    return agent.eval()
+    return {name: load(folder) for name, folder in zip(names, weights, strict=True)}
 
 
 def load_recordings(

@@ -117,6 +117,14 @@ def build(config: Path) -> Any:
         raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
 
 
+def config_of(weights: Path) -> Path:
+    """Where the settings are of the agent that ``weights`` (a file, or a folder) belong to, whether
+    there are any or not. Raises FileNotFoundError if there are no weights."""
+    if is_hardened(weights):
+        return weights / CONFIG
+    return checkpoint.weights_file(weights).with_name(CONFIG)
+
+
 def kind_of(config: Path) -> str:
     """Return which of ``schema.KINDS`` the agent in ``config`` is; the first if it does not say."""
     held = settings.read(config).get("agent")
@@ -236,7 +244,8 @@ def read_card(folder: Path) -> dict[str, Any]:
     if not file.is_file():
         raise FileNotFoundError(
             f"{folder} is no hardened checkpoint: {CARD} is missing. Name a folder such as "
-            "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`."
+            "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`; "
+            "mitigate.load(folder) reads weights without a card, too."
         )
     card = read_json(file, _AGAIN)
     if isinstance(card, dict) and "format" in card and "sha256" not in card:

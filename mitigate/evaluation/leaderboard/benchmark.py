@@ -33,6 +33,7 @@ from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.evaluation.rows import ROWS
 from mitigate.scale.launcher import count
+from mitigate.shipping.loading import agent_option
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
@@ -64,7 +65,8 @@ def benchmark(
     It says first how long that takes. The rows are in ``out``; the same call goes on with them.
 
     Args:
-        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
+        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights,
+            which say which of ours they are of.
         name: heading of the entry; None: of the weights' folder, or the agent's class.
         split: list of episodes of the world; None: its own first. episodes: how many, spread over
             the list; None: all, as entries of the leaderboard have.
@@ -79,6 +81,8 @@ def benchmark(
     Raises ValueError for what is no agent, unknown names, numbers out of range and texts that an
     entry cannot hold, FileNotFoundError for missing weights.
     """
+    if isinstance(agent, (str, Path)):
+        options = [*options, *agent_option(options, str(agent))]
     cfg, met = _conditions(suite, severity, seed, options)
     agent, name = _agent(agent, name, cfg, seed)
     check_texts(name=name, training_data=training_data, link=link)

@@ -1,0 +1,60 @@
+"""The agent in a folder, whatever wrote it: an export, a training, or this project.
+
+Which kind it is stands, as data, in ``config.yaml``; only kinds of ours are built, and nothing else
+in the folder is run.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from mitigate.core import checkpoint, settings
+from mitigate.core.files import find
+from mitigate.shipping import hardened
+
+
+def load(folder: str | Path) -> Any:
+    """Return the agent in ``folder`` on the CPU, in eval mode, ready for ``reset``.
+
+    Args:
+        folder: a hardened one (as :func:`hardened.load_hardened`), shipped weights
+            (``checkpoints/recurrent/base``), or the folder ``agent`` of a run; looked for from
+            here, then in this project.
+    Raises FileNotFoundError or ValueError, naming the file, for weights that are missing, damaged
+    or do not say what agent they are of, and for an agent that is not ours; TypeError for a folder
+    that is no path.
+    """
+    if not isinstance(folder, (str, os.PathLike)):
+        raise TypeError(
+            f"folder must be the path of an agent's weights, not {folder!r:.60}: name one, such as "
+            "checkpoints/base."
+        )
+    place = find(folder)
+    if (place / hardened.CARD).is_file():
+        return hardened.load_hardened(place)
+    config = hardened.config_of(place)
+    if not config.is_file():
+        raise FileNotFoundError(f"{config} is missing, so nobody knows what agent {folder} is of.")
+    with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
+        agent = hardened.build(config)
+    checkpoint.load_agent(agent, place)
+    return agent.eval()
+
+
+def agent_option(options: Sequence[str], weights: str) -> list[str]:
+    """The option ``agent=`` of the kind of agent that ``weights`` are of, with which what it asks
+    of the world comes. None where ``options`` choose one, and where that kind is the usual one,
+    none of ours, or not to be known."""
+    if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
+        return []
+    try:
+        kind = hardened.kind_of(hardened.config_of(find(weights)))
+    except (OSError, ValueError):  # told where they are loaded
+        return []
+    name = "" if kind == hardened.TARGET else settings.named(kind)
+    return [f"agent={name}"] if name else []

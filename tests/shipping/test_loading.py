@@ -1,0 +1,83 @@
+"""One call loads an agent from whatever wrote its folder, and tools take its kind from there."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+import torch
+import yaml
+
+import mitigate
+from mitigate.core import checkpoint, conf
+from mitigate.evaluation import evaluate
+from mitigate.shipping.loading import agent_option
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = {
+    "checkpoints/base": "TopologicalAgent",
+    "checkpoints/hardened/conv_adapter": "TopologicalAgent",
+    "checkpoints/recurrent/base": "RecurrentAgent",
+    "checkpoints/recurrent_rgb/base/model.safetensors": "RecurrentAgent",
+    "checkpoints/frontier/base": "FrontierAgent",
+}
+
+
+@pytest.mark.parametrize("folder", SHIPPED)
+def test_an_agent_of_ours_is_loaded_from_its_folder_alone(folder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # found in the project
+    state = torch.random.get_rng_state()
+    agent = mitigate.load(folder)
+    assert type(agent).__name__ == SHIPPED[folder] and not agent.training
+    assert torch.equal(state, torch.random.get_rng_state())
+    agent.reset("walk past the red sofa")
+
+
+def test_what_says_nothing_of_its_agent_or_is_of_another_is_refused(tmp_path):
+    with pytest.raises(FileNotFoundError, match="There are no weights at"):
+        mitigate.load(tmp_path)
+    checkpoint.save_weights(torch.nn.Linear(2, 2), tmp_path)
+    with pytest.raises(FileNotFoundError, match=r"config\.yaml is missing"):
+        mitigate.load(tmp_path)
+    (tmp_path / "config.yaml").write_text(yaml.safe_dump({"agent": {"_target_": "os.system"}}))
+    with pytest.raises(ValueError, match=r"is of the agent os\.system"):
+        mitigate.load(tmp_path)
+    with pytest.raises(TypeError, match="not None"):
+        mitigate.load(None)
+
+
+def test_a_changed_hardened_folder_is_refused(tmp_path):
+    folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/stacked", tmp_path / "stacked"))
+    with open(folder / "model.safetensors", "ab") as file:
+        file.write(b"x")
+    with pytest.raises(ValueError, match="does not have the sha256"):
+        mitigate.load(folder)
+
+
+def test_options_get_the_kind_of_agent_that_weights_are_of():
+    assert agent_option([], "checkpoints/recurrent_rgb/base") == ["agent=recurrent"]
+    assert agent_option(["split=val_seen"], "checkpoints/frontier/base") == ["agent=frontier"]
+    assert agent_option(["agent=frontier"], "checkpoints/recurrent/base") == []
+    for usual in ("checkpoints/base", "checkpoints/topological_imagenet/base", "runs/nothing"):
+        assert agent_option([], usual) == []
+
+
+def test_evaluate_asks_of_the_world_what_the_agent_of_the_checkpoint_needs(monkeypatch):
+    seen = []
+    monkeypatch.setattr(evaluate, "run", lambda cfg, options: seen.append((cfg, options)))
+    monkeypatch.chdir(ROOT)
+    for words in (["checkpoint=checkpoints/frontier/base"], ["checkpoint=checkpoints/base"]):
+        monkeypatch.setattr("sys.argv", ["evaluate", *words])
+        evaluate.main()
+    (found, options), (usual, _) = seen
+    assert found == conf.load_config("evaluate", ["agent=frontier", *options])
+    assert found.split == "val_unseen_ogn" and found.env.views == 1
+    assert usual.split == "val_unseen"
+
+
+def test_benchmark_takes_the_kind_of_agent_from_the_weights(tmp_path, capsys):
+    entry = mitigate.benchmark(
+        "checkpoints/frontier/base", episodes=1, suite=["spatter"], out=tmp_path
+    )
+    assert entry.split == "val_unseen_ogn"
