@@ -141,6 +141,22 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     return settings.read_agent(file, node._target_, names)
 
 
+def agent_option(options: Sequence[str], weights: str) -> list[str]:
+    """The option ``agent=`` of the kind of agent that ``weights`` are of, with which what it asks
+    of the world comes. None where ``options`` choose one, and where that kind is the usual one,
+    none of ours, or not to be known."""
+    if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
+        return []
+    from mitigate.shipping import hardened
+
+    try:
+        kind = hardened.kind_of(hardened.config_of(find(weights)))
+    except (OSError, ValueError):  # told where they are loaded
+        return []
+    name = "" if kind == hardened.TARGET else settings.named(kind)
+    return [f"agent={name}"] if name else []
+
+
 def build_agent(
     node: DictConfig, *, weights: str | None, seed: int, parts: Sequence[str] | None = None
 ) -> nn.Module:

@@ -283,7 +283,7 @@ def _complete() -> None:
     check_arguments(sys.argv)
     weights = [o.partition("=")[2] for o in sys.argv[1:] if o.startswith("checkpoint=")]
     if weights:
-        from mitigate.shipping.loading import agent_option
+        from mitigate.core.build import agent_option
 
         sys.argv += agent_option(sys.argv[1:], weights[-1].strip("\"'"))
 

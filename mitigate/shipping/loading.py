@@ -7,13 +7,12 @@ in the folder is run.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import torch
 
-from mitigate.core import checkpoint, settings
+from mitigate.core import checkpoint
 from mitigate.core.files import find
 from mitigate.shipping import hardened
 
@@ -44,17 +43,3 @@ def load(folder: str | Path) -> Any:
         agent = hardened.build(config)
     checkpoint.load_agent(agent, place)
     return agent.eval()
-
-
-def agent_option(options: Sequence[str], weights: str) -> list[str]:
-    """The option ``agent=`` of the kind of agent that ``weights`` are of, with which what it asks
-    of the world comes. None where ``options`` choose one, and where that kind is the usual one,
-    none of ours, or not to be known."""
-    if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
-        return []
-    try:
-        kind = hardened.kind_of(hardened.config_of(find(weights)))
-    except (OSError, ValueError):  # told where they are loaded
-        return []
-    name = "" if kind == hardened.TARGET else settings.named(kind)
-    return [f"agent={name}"] if name else []

@@ -11,8 +11,8 @@ import yaml
 
 import mitigate
 from mitigate.core import checkpoint, conf
+from mitigate.core.build import agent_option
 from mitigate.evaluation import evaluate
-from mitigate.shipping.loading import agent_option
 
 ROOT = Path(__file__).parents[2]
 SHIPPED = {

@@ -16,7 +16,7 @@ from omegaconf.errors import OmegaConfBaseException
 from torch import nn
 
 from mitigate.core import conf, seeding
-from mitigate.core.build import maker
+from mitigate.core.build import agent_option, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
@@ -33,7 +33,6 @@ from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.evaluation.rows import ROWS
 from mitigate.scale.launcher import count
-from mitigate.shipping.loading import agent_option
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
@@ -65,8 +64,7 @@ def benchmark(
     It says first how long that takes. The rows are in ``out``; the same call goes on with them.
 
     Args:
-        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights,
-            which say which of ours they are of.
+        agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
         name: heading of the entry; None: of the weights' folder, or the agent's class.
         split: list of episodes of the world; None: its own first. episodes: how many, spread over
             the list; None: all, as entries of the leaderboard have.
@@ -81,9 +79,7 @@ def benchmark(
     Raises ValueError for what is no agent, unknown names, numbers out of range and texts that an
     entry cannot hold, FileNotFoundError for missing weights.
     """
-    if isinstance(agent, (str, Path)):
-        options = [*options, *agent_option(options, str(agent))]
-    cfg, met = _conditions(suite, severity, seed, options)
+    cfg, met = _conditions(agent, suite, severity, seed, options)
     agent, name = _agent(agent, name, cfg, seed)
     check_texts(name=name, training_data=training_data, link=link)
     split, made = split or cfg.split, world or maker(cfg.env.world)
@@ -109,10 +105,13 @@ def benchmark(
 
 
 def _conditions(
-    suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
+    agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[Any, list[Corruption]]:
-    """Return the config of an evaluation, and the conditions of the suite, clean first."""
+    """Return the config of an evaluation, for the kind of agent that a path of weights is of, and
+    the conditions of the suite, clean first."""
     seeding.check(seed)
+    if isinstance(agent, (str, Path)):
+        options = [*options, *agent_option(options, str(agent))]
     named = [f"suite={suite}"] if isinstance(suite, str) else []
     try:
         cfg = conf.load_config("evaluate", [*options, *named])
