@@ -84,7 +84,7 @@ def test_the_table_pairs_before_and_after(tmp_path, capsys):
     }
     report.write(report.with_mean(scores), tmp_path, "made")
     text = (tmp_path / "features.md").read_text()
-    assert "| Spatter | 0.40" in text and "+0.30 [+0.30, +0.30] |" in text  # the noise is shared
+    assert "| Spatter | 0.40" in text and "+0.30 [–] |" in text  # the noise is shared
     rows = [json.loads(line) for line in (tmp_path / "features.jsonl").read_text().splitlines()]
     assert [row["condition"] for row in rows] == ["clean", "spatter", report.MEAN]
     assert rows[1]["gain"] == [0.3, 0.3, 0.3]
