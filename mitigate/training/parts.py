@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from torch import nn
+from torch.nn.modules.batchnorm import _NormBase
 
 from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
 from mitigate.agents.adapters import adapter_parameters, adapters_of, remove_adapters
@@ -83,6 +84,17 @@ def freeze(agent: nn.Module) -> None:
         for parameter in module.parameters():
             if id(parameter) not in adapters:
                 parameter.requires_grad_(False)
+
+
+def hold_statistics(module: nn.Module) -> None:
+    """Put the frozen normalisations with running statistics (BatchNorm) below ``module`` in eval
+    mode: in training mode every batch moves these, though no weight trains. One without weights of
+    its own is frozen with the module that it is in."""
+    for child in module.children():
+        hold_statistics(child)
+        if isinstance(child, _NormBase):
+            own = [*child.parameters()] or [*module.parameters()]
+            child.train(child.training and any(p.requires_grad for p in own))
 
 
 def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:

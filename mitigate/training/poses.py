@@ -13,6 +13,7 @@ from mitigate.core.observation import RGB, VIEWS
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.training.parts import hold_statistics
 from mitigate.training.success import measure
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
@@ -89,7 +90,7 @@ class Poses:
                     workers=workers,
                 )
             )
-            self.agent.train()
+            hold_statistics(self.agent.train())
         pieces = -(-self.panoramas // PIECE)
         counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
         state = self.schedule.state_dict()

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import torch
 from torch import Tensor, nn
 
 from mitigate.core.precision import computing
+from mitigate.training.parts import hold_statistics
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 
 class Recipe(nn.Module):
@@ -32,6 +36,12 @@ class Recipe(nn.Module):
         before the first stage of a run begins."""
         lacking = [name for name in cls.needs if not hasattr(agent, name)]
         return f"it has no {', '.join(lacking)}. {cls.otherwise}" if lacking else ""
+
+    def train(self, mode: bool = True) -> Self:
+        """As a module's; frozen normalisations keep their statistics (``hold_statistics``)."""
+        super().train(mode)
+        hold_statistics(self)
+        return self
 
     def start(self) -> None:
         """Make what must be there before the first batch, such as a cache of features; called once,

@@ -16,6 +16,7 @@ from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
+from mitigate.training.parts import hold_statistics
 from mitigate.training.success import measure, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
@@ -122,4 +123,4 @@ class Rollouts:
                 workers=workers,
             )
         )
-        self.agent.train()
+        hold_statistics(self.agent.train())

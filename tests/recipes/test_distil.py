@@ -12,7 +12,7 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import DEPTH, Schedule
-from mitigate.recipes.adapt import AdaptViews, differ
+from mitigate.recipes.adapt import Adapt, AdaptViews, differ
 from mitigate.recipes.distil import Distil, DistilViews, policy_kl
 from mitigate.recipes.imitate import Imitate
 from mitigate.training.states import checkpoints
@@ -177,6 +177,59 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
     assert 0 <= values["clean_opened"] < 1 and 0 <= values["corrupted_opened"] <= 1
     with pytest.raises(ValueError, match="touched=0 is a share"):
         AdaptViews(agent, modality="rgb", **VIEWS, touched=0)
+
+
+def with_statistics(**options) -> TopologicalAgent:
+    """An agent whose encoders normalise by running statistics, with and without weights."""
+    agent = small(**options)
+    for encoder, affine in ((agent.rgb_encoder, True), (agent.depth_encoder, False)):
+        block = encoder.stages[0]
+        norm = torch.nn.BatchNorm2d(block.norm1.num_channels, affine=affine)
+        block.norm1 = torch.nn.Sequential(block.norm1, norm)
+    return agent
+
+
+def statistics(agent) -> dict[str, torch.Tensor]:
+    return {name: value.clone() for name, value in agent.named_buffers() if "running" in name}
+
+
+@pytest.mark.parametrize(
+    ("kind", "learning"),
+    [
+        ("adapters on episodes", set()),
+        ("adapters on views", set()),
+        ("one encoder on episodes", {"rgb_encoder"}),
+        ("one encoder on views", {"depth_encoder"}),
+    ],
+)
+def test_frozen_normalisations_keep_their_statistics(kind, learning, tmp_path):
+    agent = with_statistics(adapters=ADAPTERS if kind.startswith("adapters") else None)
+    before, own = statistics(agent), {"schedule": missing_data(), **EPISODES}
+    made = {
+        "adapters on episodes": lambda: Adapt(agent, **own),
+        "adapters on views": lambda: AdaptViews(agent, modality="depth", held=1, **VIEWS),
+        "one encoder on episodes": lambda: Distil(
+            agent, teacher="start", train_parts=["rgb_encoder"], **own
+        ),
+        "one encoder on views": lambda: DistilViews(
+            agent, modality="depth", teacher="start", **VIEWS
+        ),
+    }[kind]()
+    Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
+    after = statistics(agent)
+    moved = {name.partition(".")[0] for name in before if not before[name].equal(after[name])}
+    assert moved == learning
+
+
+def test_a_backbone_that_changed_is_no_result_of_adapters(tmp_path):
+    agent = small(adapters=ADAPTERS)
+    agent.rgb_encoder.register_buffer("count", torch.zeros(1))
+    agent.rgb_encoder.register_forward_hook(
+        lambda encoder, *_: setattr(encoder, "count", encoder.count + 1)
+    )
+    made = Adapt(agent, schedule=missing_data(), **EPISODES)
+    with pytest.raises(ValueError, match=r"The backbone of TopologicalAgent is another.*anew"):
+        Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
 
 
 def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
