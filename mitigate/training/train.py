@@ -117,7 +117,8 @@ def run(cfg: DictConfig) -> Path:
     check(cfg)
     with Ranks.of_environment() as ranks:
         cfg.folder = cfg.folder or default_folder(cfg)  # what refers to it finds it
-        with FolderLock(cfg.folder) if ranks.first else nullcontext():
+        within = ("agent", *cfg.stages)
+        with FolderLock(cfg.folder, within) if ranks.first else nullcontext():
             return _run(cfg, Path(cfg.folder), ranks)
 
 
