@@ -21,6 +21,7 @@ from mitigate.agents.gate import FrameGate
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import Distil, DistilViews
+from mitigate.training import limits
 from mitigate.training.parts import ADAPTERS, START
 from mitigate.worlds.world import TrainingEpisodes, World
 
@@ -111,6 +112,7 @@ class AdaptViews(DistilViews):
             raise ValueError(
                 f"touched={touched} is a share from 0 to 1, and held={held} at least 1."
             )
+        limits.check_weights(w_gate=w_gate)
         super().__init__(
             agent,
             world,

@@ -70,6 +70,10 @@ class Pretrain(Recipe):
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         return self.poses.collate(pieces)
 
+    def weight(self, batch: dict[str, Any]) -> float:
+        """Panoramas, or views of one camera."""
+        return float(len(batch["frames"]))
+
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])
         return {"loss": out.losses["labels"], **out.figures}

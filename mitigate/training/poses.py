@@ -30,7 +30,8 @@ class Poses:
     of a panorama, only every second one is learned from (2), since neighbours overlap, or all (1).
     own: draw corruptions of this sensor alone; else those of the other leave its frames clean.
 
-    Raises ValueError for an unknown sensor and for a world that cannot look from anywhere.
+    Raises ValueError for an unknown sensor, for no panoramas, and for a world that cannot look from
+    anywhere.
     """
 
     def __init__(
@@ -50,6 +51,8 @@ class Poses:
     ) -> None:
         if sensor not in ("rgb", "depth"):
             raise ValueError(f"modality={sensor!r} is unknown; choose 'rgb' or 'depth'.")
+        if panoramas < 1:
+            raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")
         self.agent, self.make_world, self.training = agent, world, training
         self.schedule = schedule.only(sensor) if own else schedule
         self.sensor, self.label, self.panoramas, self.every = sensor, label, panoramas, every

@@ -16,6 +16,7 @@ from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
+from mitigate.training import limits
 from mitigate.training.parts import hold_statistics
 from mitigate.training.success import measure, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
@@ -36,7 +37,7 @@ class Rollouts:
     clean: keep what there was to see before the corruption; ``teachers`` compute from it what does
     not change.
 
-    Raises ValueError for no episodes, and as ``prior_rates`` does.
+    Raises ValueError for no episodes, for a share that is none, and as ``prior_rates`` does.
     """
 
     def __init__(
@@ -57,6 +58,7 @@ class Rollouts:
     ) -> None:
         if episodes < 1:
             raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
+        limits.check_share("follow_oracle", expert_share)
         self.agent, self.world, self.training, self.schedule = agent, world, training, schedule
         self.episodes, self.expert_share, self.seed = episodes, expert_share, seed
         self.prior, self.refresh_every = prior, refresh_every

@@ -298,6 +298,33 @@ def test_an_unknown_feature_is_refused(teacher):
         made(made.batch(0))
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"temperature": 0.0}, "recipe.temperature=0 must be above 0"),
+        ({"w_kl": -1.0}, "recipe.w_kl=-1 must be a number from 0"),
+        ({"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0}, "learned: w_il, w_kl and w_feat are 0"),
+    ],
+)
+def test_weights_that_make_no_sense_are_refused_as_what_they_are(options, words):
+    with pytest.raises(ValueError, match=words):
+        Distil(small(), teacher="start", schedule=missing_data(), **EPISODES, **options)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [({"w_feat": -1.0}, "recipe.w_feat=-1"), ({"panoramas": 0}, "recipe.panoramas=0 a step")],
+)
+def test_views_without_panoramas_or_with_negative_weights_are_refused(options, words):
+    with pytest.raises(ValueError, match=words):
+        DistilViews(small(), modality="depth", teacher="start", **{**VIEWS, **options})
+
+
+def test_of_two_ranks_the_one_with_more_panoramas_counts_more():
+    made = DistilViews(small(), modality="depth", teacher="start", **{**VIEWS, "panoramas": 3})
+    assert made.weight(made.batch(0)) == 3.0
+
+
 def test_adapters_are_asked_for_where_there_are_none():
     with pytest.raises(ValueError, match="no adapters there"):
         AdaptViews(small(), modality="rgb", **VIEWS)
