@@ -169,6 +169,13 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     key = _first(r"Could not (?:override|delete from config\.) '([^']+)'", text)
     if key is not None:
         return _unknown_key(key, _chosen_by(options, primary), primary)
+    missing = _first(r"Interpolation key '([^']+)' not found", text)
+    if missing is not None:
+        key = _first(r"full_key: (\S+)", text)
+        return (
+            f"{key} is what {missing} is, which is not there. Set {key}=VALUE, or leave {missing} "
+            "in its place."
+        )
     override = _first(r"Error merging override ([^=\s]+=.*)", text)
     value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
     if value is not None:

@@ -21,8 +21,9 @@ from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality, names
 from mitigate.training import states
 from mitigate.training.parts import POLICY, policy_parts
-from mitigate.training.stages import IDENTITY, named, plain
+from mitigate.training.stages import IDENTITY, named, plain, trainer_settings
 
+SEVERITIES = {"severity": 0.6, "severity_depth": None}  # of conf/train.yaml
 OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
 
 
@@ -65,14 +66,37 @@ def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
 
 
 def tell_of_schedule(cfg: DictConfig) -> None:
-    """Say so if there is a ``schedule`` of corruptions, and no stage draws any of it."""
+    """Say so if there is a ``schedule`` of corruptions, and no stage draws any of it, or if a
+    severity that was asked for does not reach it."""
     mode = OmegaConf.select(cfg, "schedule.mode")
-    if mode in (None, "clean") or _holds(plain(cfg.stages), cfg.schedule._target_):
+    if mode in (None, "clean"):
+        return
+    if _holds(plain(cfg.stages), cfg.schedule._target_):
+        for key in ("severity", "severity_depth"):
+            asked, drawn = (OmegaConf.select(cfg, name) for name in (key, f"schedule.{key}"))
+            if asked not in (None, SEVERITIES[key], drawn):
+                whole = "as schedule.severity" if drawn is None else drawn
+                say(
+                    f"{key}={asked:g} is of the evaluation alone: recipe={cfg.name} trains at "
+                    f"schedule.{key}, which is {whole}"
+                )
         return
     say(
         f"the schedule (mode {mode}) has no effect: recipe={cfg.name} draws no corruptions in "
         f"{', '.join(cfg.stages)}. One that trains under corruptions is recipe=da_per_episode"
     )
+
+
+def tell_of_warmup(cfg: DictConfig) -> None:
+    """Say so if a stage ends before its learning rate has risen to what it is set to."""
+    for name, stage in cfg.stages.items():
+        settings = {} if stage is None else trainer_settings(cfg, stage)
+        steps, warmup = settings.get("steps", 0), settings.get("warmup", 0)
+        if 0 < steps <= warmup:
+            say(
+                f"{name}: its {steps} steps are over before the learning rate has risen, for which "
+                f"it takes {warmup}: set trainer.warmup below trainer.steps"
+            )
 
 
 def _holds(node: Any, target: str) -> bool:

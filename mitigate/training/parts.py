@@ -107,8 +107,8 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
     if weights is None:
         raise ValueError(
             f"No teacher is shipped for {type(agent).__name__}: train one, such as by `make train "
-            "RECIPE=da_per_episode`, and name its folder (stages.views_rgb.recipe.teacher=runs/..."
-            "/agent), or name the agent as it is now: start."
+            "RECIPE=da_per_episode`, and name its folder (teacher=runs/.../agent), or "
+            "name the agent as it is now: start."
         )
     if (find(weights) / ADAPTERS_FILE).is_file():
         raise ValueError(
@@ -122,8 +122,7 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
         except FileNotFoundError as error:
             raise FileNotFoundError(
                 f"There is no teacher at {weights}. Train one with `make train "
-                "RECIPE=da_per_episode` and name its folder "
-                "(stages.views_rgb.recipe.teacher=runs/.../agent: the other stages follow)."
+                "RECIPE=da_per_episode` and name its folder (teacher=runs/.../agent)."
             ) from error
     return teacher.requires_grad_(False).eval()
 

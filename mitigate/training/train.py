@@ -88,6 +88,7 @@ class TrainConfig:
     severity_depth: float | None = None
     init: str | None = None
     init_parts: list[str] | None = None
+    teacher: str | None = None
     rollouts: int = 24
     refresh_episodes: int = 8
     runs: str = "runs"
@@ -130,6 +131,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
     fitting.tell_of_schedule(cfg)
     fitting.leave_out(cfg, agent)
+    fitting.tell_of_warmup(cfg)
     fitting.draw_what_is_read(cfg, agent)
     fitting.check(cfg, agent, folder)
     if ranks.first:

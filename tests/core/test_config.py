@@ -13,6 +13,7 @@ from dataclasses import replace
 import pytest
 from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf
 from mitigate.corruptions import NAMES
@@ -347,3 +348,11 @@ def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path)
         evaluate.main()
     assert "There is no split" in str(stop.value.code)
     assert "Error executing job" not in capsys.readouterr().err
+
+
+def test_what_an_entry_refers_to_and_is_not_there_is_named():
+    cfg = OmegaConf.create({"stages": {"first": None, "second": {"teacher": "${stages.first.t}"}}})
+    with pytest.raises(OmegaConfBaseException) as found:
+        OmegaConf.resolve(cfg)
+    said = conf.explain(found.value, "train")
+    assert said.startswith("stages.second.teacher is what stages.first.t is, which is not there.")

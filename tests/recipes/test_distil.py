@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 import pytest
 import torch
+from omegaconf import OmegaConf
 
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
@@ -260,9 +261,18 @@ def test_adapters_alone_are_no_teacher():
 
 def test_one_option_names_the_teacher_of_all_stages():
     for recipe in ("ts_distill", "stacked"):
-        options = [f"recipe={recipe}", "stages.views_rgb.recipe.teacher=mine"]
-        cfg = conf.load_config("train", options)
+        cfg = conf.load_config("train", [f"recipe={recipe}", "teacher=mine"])
         assert {stage.recipe.teacher for stage in cfg.stages.values()} == {"mine"}
+
+
+@pytest.mark.parametrize(
+    ("recipe", "teacher"), [("ts_distill", "checkpoints/teacher"), ("stacked", "checkpoints/base")]
+)
+def test_any_stage_of_a_distillation_can_be_left_out(recipe, teacher):
+    for left_out in ("views_rgb", "views_depth", "episodes"):
+        cfg = conf.load_config("train", [f"recipe={recipe}", f"stages.{left_out}=null"])
+        OmegaConf.resolve(cfg.stages)
+        assert [stage.recipe.teacher for stage in cfg.stages.values() if stage] == [teacher] * 2
 
 
 def test_frozen_views_are_no_part_of_the_loss(teacher):

@@ -80,6 +80,45 @@ def test_a_recipe_of_ones_own_may_hold_the_schedule_where_it_likes(capsys):
     assert not capsys.readouterr().out
 
 
+@pytest.mark.parametrize("recipe", ["harden", "replan", "stacked"])
+def test_severities_of_the_options_act_on_the_evaluation_alone_where_a_range_is_drawn(
+    recipe, capsys
+):
+    options = [f"recipe={recipe}", "severity=0.9", "severity_depth=0.8"]
+    cfg = conf.load_config("train", options)
+    assert build(cfg.schedule) == build(conf.load_config("train", options[:1]).schedule)
+    fitting.tell_of_schedule(cfg)
+    said = capsys.readouterr().out
+    assert "severity=0.9 is of the evaluation alone" in said and "which is [0.3, 1.0]" in said
+    assert "severity_depth=0.8 is of the evaluation alone" in said
+    fitting.tell_of_schedule(conf.load_config("train", options[:1]))
+    fitting.tell_of_schedule(conf.load_config("train", ["recipe=da_per_frame", *options[1:]]))
+    assert not capsys.readouterr().out
+
+
+@pytest.mark.parametrize("recipe", ["base", "dagger", "replan", "swap_encoder"])
+def test_the_oracles_share_falls_over_the_steps_that_are_taken(recipe):
+    for options, steps in (
+        (["trainer.steps=7"], 7),
+        (["stages.{}.trainer.steps=9"], 9),
+        ([], None),
+    ):
+        stage = "policy" if recipe == "dagger" else "planner"
+        given = [option.format(stage) for option in options]
+        own = conf.load_config("train", [f"recipe={recipe}", *given]).stages[stage]
+        assert own.recipe.steps == (steps or own.trainer.steps)
+
+
+def test_a_stage_that_ends_in_its_warmup_is_told(capsys):
+    fitting.tell_of_warmup(conf.load_config("train", ["trainer.steps=40"]))
+    assert capsys.readouterr().out == (
+        "perception_rgb: its 40 steps are over before the learning rate has risen, for which it "
+        "takes 50: set trainer.warmup below trainer.steps\n"
+    )
+    fitting.tell_of_warmup(conf.load_config("train", ["trainer.steps=40", "debug=smoke"]))
+    assert not capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     "options",
     [
