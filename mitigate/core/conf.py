@@ -171,10 +171,9 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
         return _unknown_key(key, _chosen_by(options, primary), primary)
     missing = _first(r"Interpolation key '([^']+)' not found", text)
     if missing is not None:
-        key = _first(r"full_key: (\S+)", text)
+        key = _first(r"full_key: (\S+)", text) or "another entry"
         return (
-            f"{key} is what {missing} is, which is not there. Set {key}=VALUE, or leave {missing} "
-            "in its place."
+            f"There is no {missing}, and {key} is what that is: leave it in its place, or set both."
         )
     override = _first(r"Error merging override ([^=\s]+=.*)", text)
     value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
