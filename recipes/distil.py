@@ -106,6 +106,9 @@ class Distil(Recipe):
     def jobs(self, step: int) -> list[tuple]:
         return self.rollouts.jobs(step, self.workers)
 
+    def pieces(self) -> int:
+        return self.rollouts.pieces
+
     def work(self, job: tuple) -> Any:
         return self.rollouts.work(job)
 
@@ -219,6 +222,9 @@ class DistilViews(Recipe):
 
     def jobs(self, step: int) -> list[tuple]:
         return self.poses.jobs(step, self.workers)
+
+    def pieces(self) -> int:
+        return self.poses.pieces
 
     def work(self, job: tuple) -> Any:
         return self.poses.work(job)

@@ -80,6 +80,9 @@ class Imitate(Recipe):
     def jobs(self, step: int) -> list[tuple]:
         return self.rollouts.jobs(step, self.workers)
 
+    def pieces(self) -> int:
+        return self.rollouts.pieces
+
     def work(self, job: tuple) -> Any:
         return self.rollouts.work(job)
 

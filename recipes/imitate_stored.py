@@ -75,8 +75,11 @@ class ImitateStored(Recipe):
 
     def jobs(self, step: int) -> list[tuple]:
         """(step, piece, of how many, episodes) of each piece."""
-        parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
+        parts = np.array_split(np.arange(self.episodes), self.pieces())
         return [(step, i, len(parts), len(part)) for i, part in enumerate(parts)]
+
+    def pieces(self) -> int:
+        return min(PIECES, self.episodes)
 
     def work(self, job: tuple) -> Any:
         step, piece, pieces, count = job

@@ -64,6 +64,9 @@ class Pretrain(Recipe):
     def jobs(self, step: int) -> list[tuple]:
         return self.poses.jobs(step, self.workers)
 
+    def pieces(self) -> int:
+        return self.poses.pieces
+
     def work(self, job: tuple) -> Any:
         return self.poses.work(job)
 

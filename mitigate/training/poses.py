@@ -77,6 +77,11 @@ class Poses:
             self._world = made
         return self._world
 
+    @property
+    def pieces(self) -> int:
+        """How many jobs every step has."""
+        return -(-self.panoramas // PIECE)
+
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
         """(step, piece, of how many, panoramas, the schedule's state) of each piece; ``workers``:
         processes that measure success rates where there are none."""
@@ -94,7 +99,7 @@ class Poses:
                 )
             )
             hold_statistics(self.agent.train())
-        pieces = -(-self.panoramas // PIECE)
+        pieces = self.pieces
         counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
         state = self.schedule.state_dict()
         return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]

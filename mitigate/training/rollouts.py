@@ -67,6 +67,11 @@ class Rollouts:
         if prior is not None:
             schedule.refresh(prior_rates(prior))
 
+    @property
+    def pieces(self) -> int:
+        """How many jobs every step has."""
+        return min(PIECES, self.episodes)
+
     def identity(self) -> dict[str, str]:
         """Hashes of the files that the batches are made of."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
@@ -79,7 +84,7 @@ class Rollouts:
         due = due and not (step == 0 and self.prior)
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
             self.refresh(step, workers)
-        parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
+        parts = np.array_split(np.arange(self.episodes), self.pieces)
         state = self.schedule.state_dict()
         return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
 

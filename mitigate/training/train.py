@@ -133,7 +133,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     fitting.leave_out(cfg, agent)
     fitting.tell_of_warmup(cfg)
     fitting.draw_what_is_read(cfg, agent)
-    fitting.check(cfg, agent, folder)
+    fitting.check(cfg, agent, folder, ranks)
     if ranks.first:
         say(plan(cfg, folder))
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:

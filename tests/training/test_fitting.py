@@ -22,9 +22,19 @@ from mitigate.recipes.imitate_stored import ImitateStored
 from mitigate.recipes.pretrain import Pretrain
 from mitigate.recipes.restore import Restore
 from mitigate.training import fitting, train
+from mitigate.training.ranks import Ranks
 from tests.tiny import TinyAgent, TinyRecipe
 
 OFF = "evaluation.enabled=false"
+
+
+class NoAgent(TinyRecipe):
+    def __init__(self):
+        super().__init__()
+
+
+def no_recipe(agent):
+    return agent
 
 
 def refusal(folder, *options: str) -> str:
@@ -174,6 +184,71 @@ def test_a_later_stage_with_other_settings_is_refused_before_the_first_trains(tm
         train.run(tiny(tmp_path, "two", "first", "second", width=16))
     assert not (tmp_path / "first").exists()
     train.run(tiny(tmp_path, "three", "second"))  # the same goes on
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["stages.imitation.recipe.train_parts=[planer]"], "part of the agent 'planer'"),
+        (["recipe=da_success", "stages.imitation.recipe.prior=nowhere.jsonl"], "nowhere.jsonl"),
+        (["recipe=ts_distill", "stages.episodes.recipe.teacher=nowhere"], "no teacher at nowhere"),
+        (["recipe=ts_distill", "+stages.episodes.recipe.temperature=0"], "must be above 0"),
+        (["stages.imitation.trainer.schedule=cosin"], "cosine, constant, linear"),
+    ],
+)
+def test_a_mistake_in_the_last_stage_shows_before_the_first_trains(
+    tmp_path, options, words, monkeypatch
+):
+    monkeypatch.setattr(train, "train_stage", lambda *_: pytest.fail("a stage was trained"))
+    options = ["debug=smoke", "workers=0", f"folder={tmp_path}", OFF, *options]
+    with pytest.raises((ValueError, FileNotFoundError), match=words):
+        train.run(conf.load_config("train", options))
+
+
+def test_looking_at_all_stages_leaves_the_agent_as_it_is_and_says_nothing(tmp_path, capsys):
+    cfg = conf.load_config("train", ["recipe=stacked", "debug=smoke"])
+    OmegaConf.resolve(cfg.stages)
+    agent = build(cfg.agent)
+    before = checkpoint.weights_sha(agent), [p.requires_grad for p in agent.parameters()]
+    fitting.check(cfg, agent, tmp_path)
+    assert before == (
+        checkpoint.weights_sha(agent),
+        [p.requires_grad for p in agent.parameters()],
+    )
+    assert not capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("recipe", "agent", "count", "words"),
+    [
+        ("dagger", "recurrent", 2, "stage policy of recipe=dagger has 1 piece, too few for 2"),
+        ("da_per_episode", "topological", 3, "stage perception_depth .* has 2 pieces, .*NPROC=2"),
+        ("restore", "restorer", 2, "stage .*gate.* has 1 piece"),
+    ],
+)
+def test_ranks_that_a_later_stage_has_no_pieces_for_are_refused_at_once(
+    tmp_path, recipe, agent, count, words
+):
+    cfg = conf.load_config("train", [f"recipe={recipe}", f"agent={agent}", "init=null"])
+    OmegaConf.resolve(cfg.stages)
+    with pytest.raises(ValueError, match=words):
+        fitting.check(cfg, build(cfg.agent), tmp_path, Ranks(0, count))
+
+
+@pytest.mark.parametrize(
+    ("target", "words"),
+    [
+        ("tests.tiny.TinyAgent", "tests.tiny.TinyAgent is no recipe: make it a subclass"),
+        ("tests.training.test_fitting.NoAgent", "takes no agent: give its constructor"),
+        ("tests.training.test_fitting.no_recipe", "no_recipe is no recipe"),
+        ("tests.tiny.Nope", "tests.tiny.Nope.* A _target_ is module.Name"),
+    ],
+)
+def test_a_target_that_is_no_recipe_for_an_agent_is_told_as_that(tmp_path, target, words):
+    cfg = tiny(tmp_path, "own", "first")
+    cfg.stages.first.recipe._target_ = target
+    with pytest.raises(ValueError, match=words):
+        train.run(cfg)
 
 
 @pytest.mark.parametrize(
