@@ -75,7 +75,9 @@ class Ranks:
         self, parameters: Iterable[nn.Parameter], values: dict[str, Tensor], weight: float = 1.0
     ) -> None:
         """Replace gradients, and the figures to log, by their means over the ranks, each counting
-        as its ``weight`` (``Recipe.weight``): what one process would have on all their pieces."""
+        as its ``weight`` (``Recipe.weight``). For a loss that is a mean by that weight this is what
+        one process would have on all their pieces; others, such as the distillation's KL, an
+        agent's auxiliary losses and errors in units of a batch's variance, are means of ranks."""
         if self.count == 1:
             return
         held: list[Any] = [None] * self.count
