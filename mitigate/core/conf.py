@@ -265,7 +265,7 @@ def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
 def _arguments(node: DictConfig) -> list[str]:
     """What a ``_target_`` of this project takes beside what ``node`` sets; those of others are not
     imported."""
-    target = str(OmegaConf.to_container(node).get("_target_", ""))
+    target = str(node.get("_target_", ""))
     if not target.startswith(f"{PACKAGE.name}."):
         return []
     given = ("agent", *map(str, node))
