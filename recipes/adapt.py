@@ -21,6 +21,7 @@ from mitigate.agents.gate import FrameGate
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import Distil, DistilViews
+from mitigate.training import limits
 from mitigate.training.parts import ADAPTERS, START
 from mitigate.worlds.world import TrainingEpisodes, World
 
@@ -70,6 +71,10 @@ class Adapt(Distil):
         )
         self.backbone = backbone_sha(agent)
 
+    def finish(self) -> None:
+        """Raise ValueError if the backbone is another than it was."""
+        check_backbone(self.agent, self.backbone)
+
     def evaluate(self, step: int) -> dict[str, float]:
         """1 if the backbone is what it was when the adapters came in."""
         return {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
@@ -107,6 +112,7 @@ class AdaptViews(DistilViews):
             raise ValueError(
                 f"touched={touched} is a share from 0 to 1, and held={held} at least 1."
             )
+        limits.check_weights(w_gate=w_gate)
         super().__init__(
             agent,
             world,
@@ -145,7 +151,8 @@ class AdaptViews(DistilViews):
         return values
 
     def finish(self) -> None:
-        """Set the gates' thresholds."""
+        """Set the gates' thresholds. Raises ValueError if the backbone is another than it was."""
+        check_backbone(self.agent, self.backbone)
         for gate in self.gates:
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
 
@@ -184,6 +191,17 @@ def differ(frames: Tensor, clean: Tensor) -> Tensor:
 def share(values: Tensor, where: Tensor) -> Tensor:
     """Mean of ``values`` [n] over those of ``where`` [n]; 0 of none."""
     return (values * where).sum() / where.sum().clamp(min=1)
+
+
+def check_backbone(agent: nn.Module, wanted: str) -> None:
+    """Raise ValueError unless all of ``agent`` but its adapters has the sha256 ``wanted``."""
+    if backbone_sha(agent) != wanted:
+        raise ValueError(
+            f"The backbone of {type(agent).__name__} is another than before the training, though "
+            "only its adapters train: something in it changes in training mode, such as a count or "
+            "a mean of its own. Keep that still where its weights are frozen (requires_grad is "
+            "False), and train anew in another folder (folder=...)."
+        )
 
 
 def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:

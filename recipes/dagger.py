@@ -74,6 +74,10 @@ class Dagger(Imitate):
         expert, jobs = falling_share(step, self.steps, self.least), super().jobs(step)
         return [(*job, expert) for job in jobs]
 
+    def pieces(self) -> int:
+        """1: a step learns from walks that its own process has kept."""
+        return 1
+
     def work(self, job: tuple) -> Any:
         *own, self.rollouts.expert_share = job
         return self.rollouts.work(tuple(own))
@@ -84,17 +88,14 @@ class Dagger(Imitate):
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         for number, (piece, _) in enumerate(pieces):
             self._keep(step, number, piece)
-        size = -(-self.rollouts.episodes // self._pieces)  # walks of a piece
+        size = -(-self.rollouts.episodes // self.rollouts.pieces)  # walks of a piece
         again = self._drawn(step, -(-self.walks // size) - len(pieces))
         return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
 
-    @property
-    def _pieces(self) -> int:
-        return len(self.rollouts.jobs(1))
-
     def _drawn(self, step: int, count: int) -> list[Any]:
         """Kept pieces, drawn from those of earlier steps."""
-        known = [(s, n) for s in range(0, step, self.every) for n in range(self._pieces)]
+        pieces = range(self.rollouts.pieces)
+        known = [(s, n) for s in range(0, step, self.every) for n in pieces]
         rng = generator(self.rollouts.seed, "kept walks", step)
         count = max(0, min(count, len(known)))
         chosen: Iterable[int] = rng.choice(len(known), count, replace=False) if count else []

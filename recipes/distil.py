@@ -21,8 +21,9 @@ from torch import Tensor
 
 from mitigate.core import checkpoint
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import batch_of, imitation, loss_weights, masked
+from mitigate.recipes.imitate import batch_of, check_losses, imitation, loss_weights, masked
 from mitigate.recipes.pretrain import VIEWS_ALONE, views_to_learn
+from mitigate.training import limits
 from mitigate.training.parts import OWN, SEEING, TRAINABLE, load_teacher, refuse_gates, train_only
 from mitigate.training.poses import Poses
 from mitigate.training.recipe import Recipe
@@ -39,7 +40,7 @@ class Distil(Recipe):
     matched, None: all. A feature that no trained weight makes is not.
 
     With ``w_kl = w_feat = 0`` this is imitation, bit for bit. Raises FileNotFoundError for a
-    missing teacher; ValueError as imitation does.
+    missing teacher; ValueError as imitation does, and for a negative weight.
     """
 
     needs = TRAINABLE
@@ -67,6 +68,13 @@ class Distil(Recipe):
         refresh_episodes: int = 8,
     ) -> None:
         super().__init__()
+        limits.check_weights(w_il=w_il, w_kl=w_kl, w_feat=w_feat)
+        if not temperature > 0:
+            raise ValueError(f"recipe.temperature={temperature:g} must be above 0, as 2.")
+        if not (w_il or w_kl or w_feat):
+            raise ValueError(
+                "Nothing would be learned: w_il, w_kl and w_feat are 0. Set one of them above 0."
+            )
         self.agent, self.losses = agent, loss_weights(agent, losses)
         self.teacher: Any = load_teacher(agent, teacher)
         train_only(agent, train_parts)
@@ -98,6 +106,9 @@ class Distil(Recipe):
     def jobs(self, step: int) -> list[tuple]:
         return self.rollouts.jobs(step, self.workers)
 
+    def pieces(self) -> int:
+        return self.rollouts.pieces
+
     def work(self, job: tuple) -> Any:
         return self.rollouts.work(job)
 
@@ -107,6 +118,7 @@ class Distil(Recipe):
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
         out = self.agent.decide(decisions)
+        check_losses(self.agent, self.losses, out)
         values = imitation(out, decisions, self.losses)
         with torch.no_grad():
             wanted = self.teacher.decide(decisions, clean=True)
@@ -116,8 +128,9 @@ class Distil(Recipe):
         if self.w_kl:
             loss = loss + self.w_kl * self.temperature**2 * values["kl"]
         features = {n: f for n, f in out.features.items() if n in wanted.features}
+        features = matched(features, self.match)
         self._check(features)
-        for name, feature in matched(features, self.match).items():
+        for name, feature in features.items():
             values[f"feat_{name}"] = feature_loss(feature, wanted.features[name])
             if self.w_feat and (feature.requires_grad or not torch.is_grad_enabled()):
                 loss = loss + self.w_feat * values[f"feat_{name}"]
@@ -126,11 +139,12 @@ class Distil(Recipe):
     def _check(self, features: Mapping[str, Tensor]) -> None:
         """Raise ValueError if nothing of the loss depends on a trained weight."""
         learned = any(feature.requires_grad for feature in features.values())
-        if torch.is_grad_enabled() and not (self.w_il or self.w_kl or (self.w_feat and learned)):
+        if torch.is_grad_enabled() and not (self.w_il or self.w_kl or learned):
             raise ValueError(
                 f"Nothing would be learned: decide() of {type(self.agent).__name__} returns no "
-                f"features that a trained weight makes (it has {', '.join(features) or 'none'}), "
-                "and w_il and w_kl are 0. Name them in Output.features, or set w_il."
+                "features to match that a trained weight makes (it has "
+                f"{', '.join(features) or 'none'}), and w_il and w_kl are 0. Name them in "
+                "Output.features, or set w_il."
             )
 
     def evaluate(self, step: int) -> dict[str, float]:
@@ -179,6 +193,7 @@ class DistilViews(Recipe):
         own: bool = False,
     ) -> None:
         super().__init__()
+        limits.check_weights(w_labels=w_labels, w_feat=w_feat)
         if not self.teaches_gates:
             for name in agent.encoders.get(modality, ()):
                 refuse_gates(agent.parts()[name])
@@ -208,11 +223,18 @@ class DistilViews(Recipe):
     def jobs(self, step: int) -> list[tuple]:
         return self.poses.jobs(step, self.workers)
 
+    def pieces(self) -> int:
+        return self.poses.pieces
+
     def work(self, job: tuple) -> Any:
         return self.poses.work(job)
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         return self.poses.collate(pieces)
+
+    def weight(self, batch: dict[str, Any]) -> float:
+        """Panoramas, or views of one camera."""
+        return float(len(batch["frames"]))
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])

@@ -30,7 +30,7 @@ from mitigate.corruptions.registry import modality
 from mitigate.encoders.frames import Frames, collect, corrupted
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
-from mitigate.training import success
+from mitigate.training import limits, success
 from mitigate.training.parts import without_adapters
 from mitigate.training.recipe import Recipe
 
@@ -79,6 +79,7 @@ class HardenEncoder(Recipe):
                 f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.batch ({batch}), and "
                 f"recipe.frames ({frames}) at least 1."
             )
+        limits.check_weights(w_feat=w_feat, w_gate=w_gate)
         success.refuse(schedule)
         self.agent, self.batch_size, self.micro = agent, batch, micro_batch
         agent.requires_grad_(False)  # of parameters of TorchScript that train there is no copy

@@ -18,6 +18,7 @@ from torch import Tensor
 
 from mitigate.agents.agent import Decisions, Output
 from mitigate.corruptions import Schedule
+from mitigate.training import limits
 from mitigate.training.parts import OWN, TRAINABLE, train_only
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import Rollouts
@@ -79,6 +80,9 @@ class Imitate(Recipe):
     def jobs(self, step: int) -> list[tuple]:
         return self.rollouts.jobs(step, self.workers)
 
+    def pieces(self) -> int:
+        return self.rollouts.pieces
+
     def work(self, job: tuple) -> Any:
         return self.rollouts.work(job)
 
@@ -87,7 +91,9 @@ class Imitate(Recipe):
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
-        return imitation(self.agent.decide(decisions), decisions, self.losses)
+        out = self.agent.decide(decisions)
+        check_losses(self.agent, self.losses, out)
+        return imitation(out, decisions, self.losses)
 
     def evaluate(self, step: int) -> dict[str, float]:
         """The schedule's weights, for the log."""
@@ -140,8 +146,22 @@ def masked(logits: Tensor, mask: Tensor | None) -> Tensor:
 
 
 def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, float]:
-    """Weights of an agent's auxiliary losses by name: its own, and in their place those given."""
+    """Weights of an agent's auxiliary losses by name: its own, and in their place those given.
+    Raises ValueError for one below 0."""
+    limits.check_weights(**{f"losses.{name}": value for name, value in (given or {}).items()})
     return {**getattr(agent, "loss_weights", {}), **(given or {})}
+
+
+def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
+    """Raise ValueError for weights of a loss that ``agent`` neither returned in ``out`` nor names
+    itself."""
+    known = [*out.losses, *(n for n in getattr(agent, "loss_weights", {}) if n not in out.losses)]
+    for name in weights:
+        if name not in known:
+            raise ValueError(
+                f"recipe.losses weights {name!r}, which decide() of {type(agent).__name__} does "
+                f"not return: its losses are {', '.join(known) or 'none'}."
+            )
 
 
 def batch_of(decisions: Decisions) -> dict[str, Any]:

@@ -14,8 +14,8 @@ from torch import Tensor
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import batch_of, falling_share, imitation, loss_weights
-from mitigate.training import success
+from mitigate.recipes.imitate import batch_of, check_losses, falling_share, imitation, loss_weights
+from mitigate.training import limits, success
 from mitigate.training.parts import TRAINABLE, train_only
 from mitigate.training.recipe import Recipe
 from mitigate.training.rollouts import PIECES
@@ -53,6 +53,7 @@ class ImitateStored(Recipe):
         super().__init__()
         if episodes < 1:
             raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
+        limits.check_share("follow_oracle", follow_oracle)
         success.refuse(schedule if variants else None)
         train_only(agent, agent.stored_parts)
         self.agent, self.world, self.source, self.folder = agent, world, training, folder
@@ -74,8 +75,11 @@ class ImitateStored(Recipe):
 
     def jobs(self, step: int) -> list[tuple]:
         """(step, piece, of how many, episodes) of each piece."""
-        parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
+        parts = np.array_split(np.arange(self.episodes), self.pieces())
         return [(step, i, len(parts), len(part)) for i, part in enumerate(parts)]
+
+    def pieces(self) -> int:
+        return min(PIECES, self.episodes)
 
     def work(self, job: tuple) -> Any:
         step, piece, pieces, count = job
@@ -89,4 +93,6 @@ class ImitateStored(Recipe):
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
-        return imitation(self.agent.decide(decisions), decisions, self.losses)
+        out = self.agent.decide(decisions)
+        check_losses(self.agent, self.losses, out)
+        return imitation(out, decisions, self.losses)

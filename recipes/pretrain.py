@@ -64,11 +64,18 @@ class Pretrain(Recipe):
     def jobs(self, step: int) -> list[tuple]:
         return self.poses.jobs(step, self.workers)
 
+    def pieces(self) -> int:
+        return self.poses.pieces
+
     def work(self, job: tuple) -> Any:
         return self.poses.work(job)
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         return self.poses.collate(pieces)
+
+    def weight(self, batch: dict[str, Any]) -> float:
+        """Panoramas, or views of one camera."""
+        return float(len(batch["frames"]))
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])

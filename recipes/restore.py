@@ -27,7 +27,7 @@ from mitigate.corruptions import Schedule
 from mitigate.restoration.frames import RIGHT, SensorRestorer
 from mitigate.restoration.pairs import pairs_of
 from mitigate.restoration.restorer import Restorer
-from mitigate.training import success
+from mitigate.training import limits, success
 from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes
 
@@ -69,6 +69,7 @@ class Restore(Recipe):
                 f"recipe.single ({single}) is a share from 0 to 1, and recipe.panoramas "
                 f"({panoramas}) at least 1."
             )
+        limits.check_weights(w_grad=w_grad, w_right=w_right, w_far=w_far)
         success.refuse(schedule)
         self.agent, self.modality, self.single, self.seed = agent, modality, single, seed
         self.w_grad, self.w_right, self.w_far = w_grad, w_right, w_far

@@ -112,6 +112,10 @@ class RestoreGate(Recipe):
         kinds = [True, False] if self.pairs.ring else [False]
         self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
 
+    def pieces(self) -> int:
+        """1: a step is not shared."""
+        return 1
+
     def batch(self, step: int) -> dict[str, Any]:
         assert self.learned, "start() collects the maps"
         rng = generator(self.seed, "gate batch", step)

@@ -22,6 +22,7 @@ from mitigate.safeguard.metrics import token_f1
 from mitigate.safeguard.reader import Reader
 from mitigate.safeguard.report import voices
 from mitigate.safeguard.tagger import Encoded, Tagger
+from mitigate.training import limits
 from mitigate.training.recipe import Recipe
 
 IGNORED = -100
@@ -59,6 +60,7 @@ class SafeguardTagger(Recipe):
                 f"recipe.forget ({forget}) from 0 to below 1, recipe.attacked ({attacked}) from 0 "
                 "to 1."
             )
+        limits.check_weights(phrases=phrases)
         if banks not in (*trials.SPLITS, trials.ALL):
             raise ValueError(unknown("split of the banks", banks, (*trials.SPLITS, trials.ALL)))
         if isinstance(agent, Reader):

@@ -15,7 +15,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from mitigate.core.conf import said
+from mitigate.core.errors import said
 from mitigate.core.files import put_folder, sha256
 from mitigate.evaluation.rows import Row, gather
 from mitigate.shipping import hardened

@@ -24,6 +24,7 @@ import numpy as np
 from mitigate.bridge.cameras import Camera, Rig
 from mitigate.bridge.episodes import stem_of
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
+from mitigate.core.locks import is_alive
 from mitigate.core.observation import DEPTH, RGB
 
 CAMERAS = "cameras.json"
@@ -115,19 +116,8 @@ def delete_left(folder: Path) -> None:
     """Delete the episodes in a recording that processes were in which are no more."""
     for path in folder.glob("*/.*.tmp"):
         found = _LEFT.fullmatch(path.name)
-        if found and not _is_alive(int(found[1])):
+        if found and not is_alive(int(found[1])):
             shutil.rmtree(path, ignore_errors=True)
-
-
-def _is_alive(pid: int) -> bool:
-    """Whether there is such a process, of any user."""
-    try:
-        os.kill(pid, 0)
-    except (ProcessLookupError, OverflowError):
-        return False
-    except PermissionError:
-        return True
-    return True
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:

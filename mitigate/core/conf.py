@@ -5,7 +5,6 @@ Set ``HYDRA_FULL_ERROR=1`` to see the whole traceback instead.
 
 from __future__ import annotations
 
-import errno
 import os
 import re
 import shlex
@@ -16,6 +15,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr
 from importlib import import_module
+from inspect import signature
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, TextIO
@@ -23,12 +23,14 @@ from typing import Any, TextIO
 from hydra import compose, initialize_config_dir
 from hydra.core.global_hydra import GlobalHydra
 from hydra.errors import HydraException, MissingConfigException, OverrideParseException
+from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.core.errors import said, too_much
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
-from mitigate.core.options import check_dashes, config_folder, notices
+from mitigate.core.options import check_dashes, config_folder, flags_first, notices
 from mitigate.core.signals import raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
@@ -83,6 +85,7 @@ def main(
         if check is not None:
             check()
         check_dashes(sys.argv[1:])
+        sys.argv[1:] = flags_first(sys.argv[1:])
         for told in notices(primary, sys.argv[1:]):
             print(told, file=sys.stderr)
         with _without_hydras_line():
@@ -92,7 +95,7 @@ def main(
     except (ValueError, OSError) as error:
         sys.exit(f"error: {said(error)}")
     except (MemoryError, RuntimeError, OverflowError) as error:
-        told = _too_much(error)
+        told = too_much(error)
         if not told:
             raise
         sys.exit(f"error: {told}")
@@ -126,35 +129,6 @@ class _Quieter:
         return getattr(self._stream, name)
 
 
-def said(error: ValueError | OSError) -> str:
-    """An error in one paragraph: ours as it is; of the system's what it said, of which file, and
-    what may help."""
-    if not isinstance(error, OSError) or error.strerror is None:
-        return str(error)
-    told = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
-    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
-        told += (
-            ". What was finished is kept whole: free some room, and the same command goes on from "
-            "there."
-        )
-    return told
-
-
-def _too_much(error: Exception) -> str:
-    """What is said of an error that a setting or a file brings about; empty for any other."""
-    cause = " ".join(str(error).split())[:200]
-    memory = isinstance(error, MemoryError) or "allocate memory" in cause
-    nested = isinstance(error, RecursionError)
-    if not (memory or nested or isinstance(error, OverflowError)):
-        return ""
-    what = "more memory than there is" if memory else "too many levels" if nested else ""
-    return (
-        f"A setting or a file asks for {what or 'too great a number'} ("
-        f"{cause or type(error).__name__}). Look at "
-        "the last option or file that you changed; HYDRA_FULL_ERROR=1 shows where it was used."
-    )
-
-
 def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     """Return one paragraph for an error of composing ``conf/<primary>.yaml`` with ``options``."""
     text = f"{error}\n{error.__cause__ or ''}"
@@ -169,6 +143,12 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     key = _first(r"Could not (?:override|delete from config\.) '([^']+)'", text)
     if key is not None:
         return _unknown_key(key, _chosen_by(options, primary), primary)
+    missing = _first(r"Interpolation key '([^']+)' not found", text)
+    if missing is not None:
+        key = _first(r"full_key: (\S+)", text) or "another entry"
+        return (
+            f"There is no {missing}, and {key} is what that is: leave it in its place, or set both."
+        )
     override = _first(r"Error merging override ([^=\s]+=.*)", text)
     value = _first(r"Value '(.*)' (?:of type '\w+' could not be|is not a valid)", text)
     if value is not None:
@@ -274,9 +254,22 @@ def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
     if not parent:
         return unknown("option", key, {*map(str, cfg), *_chosen(primary)})
     held = OmegaConf.select(cfg, parent)
+    taken = [f"+{parent}.{name}" for name in _arguments(held)]
+    if f"+{key}" in taken:
+        return f"{key} is not set so far: to add it, write +{key}=VALUE."
     if not held:
         return f"There is no option {key!r}: {parent} is empty. To add one, write +{key}=VALUE."
-    return unknown("option", key, [f"{parent}.{name!s}" for name in held])
+    return unknown("option", key, [*(f"{parent}.{name!s}" for name in held), *taken])
+
+
+def _arguments(node: DictConfig) -> list[str]:
+    """What a ``_target_`` of this project takes beside what ``node`` sets; those of others are not
+    imported."""
+    target = str(node.get("_target_", ""))
+    if not target.startswith(f"{PACKAGE.name}."):
+        return []
+    given = ("agent", *map(str, node))
+    return [name for name in signature(get_object(target)).parameters if name not in given]
 
 
 def _misfit(key: str, value: str, cfg: DictConfig) -> str:

@@ -10,20 +10,22 @@ import shlex
 import shutil
 import socket
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import IO
 
 from mitigate.core.files import make_folder, writing
 
 NAME = ".lock"
-_LEFT = re.compile(r"\..+\.\d+\.tmp")  # as mitigate/core/files.py names what is not yet whole
+_LEFT = re.compile(r"\..+\.(\d+)\.tmp")  # as mitigate/core/files.py names what is not yet whole
 # by this process, which a record lock would let in twice, and which would lose it with any file of
 # that path that it closes
 _held: dict[Path, IO[str]] = {}
 
 
 class FolderLock:
-    """Use it as a context manager around all that is written to ``folder``, which it makes.
+    """Use it as a context manager around all that is written to ``folder``, which it makes, and to
+    the folders of the names ``within`` it.
 
     It is a record lock of the system (``fcntl``) on a file in the folder: it ends with its process,
     however that ends, is not inherited by workers, and holds for other machines where the file
@@ -33,8 +35,8 @@ class FolderLock:
     be written.
     """
 
-    def __init__(self, folder: str | Path) -> None:
-        self.folder = Path(folder)
+    def __init__(self, folder: str | Path, within: Iterable[str] = ()) -> None:
+        self.folder, self.within = Path(folder), tuple(within)
         self.path = self.folder.resolve() / NAME
         self._file: IO[str] | None = None
 
@@ -62,7 +64,7 @@ class FolderLock:
         file.truncate(0)
         json.dump({"pid": os.getpid(), "host": socket.gethostname(), "command": _command()}, file)
         file.flush()
-        delete_leftovers(self.folder)
+        delete_leftovers(self.folder, self.within)
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -85,15 +87,29 @@ class FolderLock:
         )
 
 
-def delete_leftovers(folder: Path) -> list[Path]:
-    """Delete what processes that were killed in mid-write left below ``folder``; return it."""
-    left = [path for path in folder.rglob(".*.tmp") if _LEFT.fullmatch(path.name)]
+def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
+    """Delete what processes that are no more left in mid-write in ``folder``, and in those of the
+    names ``within`` it that are no run of their own; return it. Nothing further below is theirs."""
+    inside = [folder / name for name in within if not (folder / name / NAME).exists()]
+    found = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
+    left = [p for p in found if (own := _LEFT.fullmatch(p.name)) and not is_alive(int(own[1]))]
     for path in left:
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path, ignore_errors=True)
         else:
             path.unlink(missing_ok=True)
     return left
+
+
+def is_alive(pid: int) -> bool:
+    """Whether there is such a process on this machine, of any user."""
+    try:
+        os.kill(pid, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        return True
+    return pid > 0
 
 
 def _same(file: IO[str], path: Path) -> bool:

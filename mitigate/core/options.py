@@ -12,6 +12,8 @@ from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+MULTIRUN = ("-m", "--multirun")
+
 
 def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
     """A command line's words without "=" (paths), and Hydra's options."""
@@ -37,6 +39,13 @@ def check_dashes(options: Sequence[str]) -> None:
         shown = behind if behind and not behind.startswith("-") and "=" not in behind else "VALUE"
         key = flag[2:].replace("-", "_")
         raise ValueError(f"{flag} is no option: options are written {key}={shown}, without dashes.")
+
+
+def flags_first(words: Sequence[str]) -> list[str]:
+    """``words`` of a command line with Hydra's flag of many runs in front, which it does not read
+    behind options."""
+    flags = [word for word in words if word in MULTIRUN]
+    return [*flags[:1], *(word for word in words if word not in MULTIRUN)]
 
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:

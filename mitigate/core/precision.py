@@ -41,6 +41,14 @@ class Probe:
     bf16: float | None
 
 
+def check(precision: str) -> None:
+    """Raise ValueError unless ``precision`` is one of ``CHOICES``."""
+    if precision not in CHOICES:
+        raise ValueError(
+            f"trainer.precision={precision} is unknown; choose one of {', '.join(CHOICES)}."
+        )
+
+
 def choose(precision: str, device: torch.device) -> str:
     """Return "fp32" or "bf16" for ``precision``, one of ``CHOICES``.
 
@@ -48,10 +56,7 @@ def choose(precision: str, device: torch.device) -> str:
     no slower; elsewhere bf16 is emulated, 3 to 10 times slower than fp32 (measured with AVX2).
     Raises ValueError for another name.
     """
-    if precision not in CHOICES:
-        raise ValueError(
-            f"trainer.precision={precision} is unknown; choose one of {', '.join(CHOICES)}."
-        )
+    check(precision)
     if precision != "auto":
         return precision
     if device.type == "cuda":

@@ -36,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         check_paths(options.rows, "--out DIR")
         written = run(options.rows, options.out)
     except (OSError, ValueError) as error:
-        from mitigate.core.conf import said
+        from mitigate.core.errors import said
 
         print(f"table: {said(error)}", file=sys.stderr)
         return 2

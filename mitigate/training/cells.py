@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,15 +10,19 @@ from pathlib import Path
 from omegaconf import DictConfig, ListConfig
 
 from mitigate.core import build, conf
+from mitigate.core.files import atomic_text
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.rows import ROWS
 from mitigate.safeguard import choices
 from mitigate.scale import programs
+from mitigate.training import train
 
-LOG = "log.txt"
+LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
 CELLS = ("agent", "checkpoint", "name", "seed", "out")  # a further evaluation does not say these
+PLACES = ("seed", "folder", "out")  # nor a column these
+MEASURED = ("split", "episodes", "conditions", "severity")  # nor, if it does not train, these
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,18 @@ class Cell:
         return self.options
 
     @property
+    def training(self) -> list[str]:
+        """The options of its training."""
+        return [
+            *self.options,
+            *self.train,
+            f"seed={self.seed}",
+            f"folder={self.folder / 'run'}",
+            "evaluation.enabled=false",
+            "workers=0",  # a cell has one core
+        ]
+
+    @property
     def evaluation(self) -> Path:
         """The folder of the cell's result rows."""
         return self.further("")
@@ -65,20 +82,7 @@ class Cell:
         ``python -m``)."""
         found = []
         if self.trains:
-            found.append(
-                (
-                    "train",
-                    [
-                        "mitigate.train",
-                        *self.options,
-                        *self.train,
-                        f"seed={self.seed}",
-                        f"folder={self.folder / 'run'}",
-                        "evaluation.enabled=false",
-                        "workers=0",  # a cell has one core
-                    ],
-                )
-            )
+            found.append(("train", ["mitigate.train", *self.training]))
         main = [f"conditions=[{','.join(measured(cfg))}]"]
         for name, options in {"": main, **listed(cfg, "evaluations")}.items():
             kind = f"evaluate {name}" if name else "evaluate"
@@ -108,6 +112,26 @@ class Cell:
             Path.cwd(),
             {"OMP_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"},
         )
+
+    def keep(self) -> None:
+        """Write down what the agent of its rows is made by."""
+        with atomic_text(self.folder / OPTIONS) as file:
+            json.dump(self._made_by, file)
+
+    def check_kept(self) -> None:
+        """Raise ValueError if its folder holds the rows of another agent."""
+        file = self.folder / OPTIONS
+        held = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else self._made_by
+        if held != self._made_by:
+            raise ValueError(
+                f"{self.folder} holds rows of an agent that was made by {held}, and the column is "
+                f"{self._made_by}: they would stand beside each other. Choose another out=, give "
+                "the column another name, or delete that folder."
+            )
+
+    @property
+    def _made_by(self) -> list[str]:
+        return [*self.options, *(self.train if self.trains else ())]
 
 
 def _at_most(most: int | None, option: str) -> str:
@@ -152,14 +176,20 @@ def measured(cfg: DictConfig) -> list[str]:
 
 
 def check(made: Sequence[Cell], cfg: DictConfig) -> None:
-    """Raise ValueError for options of a column or a further evaluation, a split and conditions that
-    there are not."""
+    """Raise ValueError for seeds that come twice, for options of a column or a further evaluation,
+    a split and conditions that there are not, and for a cell that holds another agent's rows."""
+    if len({*cfg.seeds}) < len(cfg.seeds):
+        raise ValueError(f"seeds={list(cfg.seeds)} names one twice: two cells would be one folder.")
+    _check_own(cfg.train, PLACES, "which has them from seeds= and out=.")
     conditions(measured(cfg), cfg.severity, None)
     for cell in made:
+        cell.check_kept()
         if cell.seed == cfg.seeds[0]:
             try:
+                taken = PLACES if cell.trains else (*PLACES, *MEASURED)
+                _check_own(cell.options, taken, "for all columns alike.")
                 if cell.trains:
-                    conf.composed("train", [*cell.options, *cell.train])
+                    train.check(conf.composed("train", cell.training))
                 node = conf.composed("evaluate", cell.agent)
                 episodes(node.env, cfg.split, cfg.episodes)
                 _check_fronts(node)
@@ -167,7 +197,13 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
                 raise ValueError(f"Column {cell.column}: {error}") from error
     for name, options in listed(cfg, "evaluations").items():
         try:
-            _check_own(options)
+            _check_own(
+                options,
+                CELLS,
+                f"which has {', '.join(CELLS)} from its columns and seeds. A further evaluation "
+                "may have suite, conditions, severity, severity_depth, split, episodes, safeguard, "
+                "restore and entries of env and agent.",
+            )
             node = conf.composed("evaluate", made[0].measurement(cfg, name, options))
             chosen = node.suite.conditions if node.conditions is None else node.conditions
             conditions(list(chosen), node.severity, node.severity_depth)
@@ -177,16 +213,12 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
             raise ValueError(f"Evaluation {name}: {error}") from error
 
 
-def _check_own(options: Sequence[str]) -> None:
-    """Raise ValueError for options of a further evaluation that make its rows another agent's, or
-    put them where the table does not look."""
+def _check_own(options: Sequence[str], taken: Sequence[str], why: str) -> None:
+    """Raise ValueError for options that the table sets: they would do nothing, make rows another
+    agent's, or put them where the table does not look."""
     for option in options:
-        if option.lstrip("+~").partition("=")[0] in CELLS:
-            raise ValueError(
-                f"{option} is for the table to say, which has {', '.join(CELLS)} from its columns "
-                "and seeds. A further evaluation may have suite, conditions, severity, "
-                "severity_depth, split, episodes, safeguard, restore and entries of env and agent."
-            )
+        if option.lstrip("+~").partition("=")[0] in taken:
+            raise ValueError(f"{option} is for the table to say, {why}")
 
 
 def _check_fronts(node: DictConfig) -> None:

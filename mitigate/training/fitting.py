@@ -6,8 +6,11 @@ corruption of what one does not read is not drawn.
 
 from __future__ import annotations
 
+import copy
 import json
+from contextlib import redirect_stdout
 from inspect import signature
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +24,19 @@ from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality, names
 from mitigate.training import states
 from mitigate.training.parts import POLICY, policy_parts
-from mitigate.training.stages import IDENTITY, named, plain
+from mitigate.training.ranks import Ranks
+from mitigate.training.recipe import Recipe
+from mitigate.training.stages import (
+    IDENTITY,
+    named,
+    not_a_recipe,
+    plain,
+    recipe_of,
+    trainer_settings,
+)
 
+OURS = "mitigate.recipes."
+SEVERITIES = {"severity": 0.6, "severity_depth": None}  # of conf/train.yaml
 OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
 
 
@@ -65,14 +79,37 @@ def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
 
 
 def tell_of_schedule(cfg: DictConfig) -> None:
-    """Say so if there is a ``schedule`` of corruptions, and no stage draws any of it."""
+    """Say so if there is a ``schedule`` of corruptions, and no stage draws any of it, or if a
+    severity that was asked for does not reach it."""
     mode = OmegaConf.select(cfg, "schedule.mode")
-    if mode in (None, "clean") or _holds(plain(cfg.stages), cfg.schedule._target_):
+    if mode in (None, "clean"):
+        return
+    if _holds(plain(cfg.stages), cfg.schedule._target_):
+        for key in ("severity", "severity_depth"):
+            asked, drawn = (OmegaConf.select(cfg, name) for name in (key, f"schedule.{key}"))
+            if asked not in (None, SEVERITIES[key], drawn):
+                whole = "as schedule.severity" if drawn is None else drawn
+                say(
+                    f"{key}={asked:g} is of the evaluation alone: recipe={cfg.name} trains at "
+                    f"schedule.{key}, which is {whole}"
+                )
         return
     say(
         f"the schedule (mode {mode}) has no effect: recipe={cfg.name} draws no corruptions in "
         f"{', '.join(cfg.stages)}. One that trains under corruptions is recipe=da_per_episode"
     )
+
+
+def tell_of_warmup(cfg: DictConfig) -> None:
+    """Say so if a stage ends before its learning rate has risen to what it is set to."""
+    for name, stage in cfg.stages.items():
+        settings = {} if stage is None else trainer_settings(cfg, stage)
+        steps, warmup = settings.get("steps", 0), settings.get("warmup", 0)
+        if 0 < steps <= warmup:
+            say(
+                f"{name}: its {steps} steps are over before the learning rate has risen, for which "
+                f"it takes {warmup}: set trainer.warmup below trainer.steps"
+            )
 
 
 def _holds(node: Any, target: str) -> bool:
@@ -115,12 +152,14 @@ def draw_what_is_read(cfg: DictConfig, agent: nn.Module) -> None:
         say(f"{cause}: the schedule leaves out {', '.join(undrawn)}")
 
 
-def check(cfg: DictConfig, agent: nn.Module, folder: Path) -> None:
+def check(cfg: DictConfig, agent: nn.Module, folder: Path, ranks: Ranks | None = None) -> None:
     """Raise ValueError, before a step is taken, for a stage that cannot train ``agent``, for a
-    world that shows it another number of views, and for a ``folder`` with another run."""
+    world that shows it another number of views, for a ``folder`` with another run, and for more
+    ``ranks`` than a step has pieces."""
     _check_settings(cfg.agent, agent)
     for name, stage in cfg.stages.items():
         recipe = None if stage is None else located(stage.recipe._target_)
+        _check_kind(recipe, stage)
         misfit = getattr(recipe, "misfit", lambda _: "")(agent)
         if misfit:
             raise ValueError(
@@ -129,6 +168,42 @@ def check(cfg: DictConfig, agent: nn.Module, folder: Path) -> None:
             )
     _check_views(cfg, agent)
     _check_folder(cfg, folder)
+    _check_stages(cfg, agent, ranks or Ranks())
+
+
+def _check_kind(recipe: Any, stage: DictConfig | None) -> None:
+    """Raise ValueError for a class that is no recipe, or takes no agent."""
+    if not isinstance(recipe, type) or stage is None:
+        return
+    if not issubclass(recipe, Recipe):
+        raise ValueError(not_a_recipe(stage.recipe._target_))
+    taken = signature(recipe).parameters
+    if "agent" not in taken and not any(p.kind is p.VAR_KEYWORD for p in taken.values()):
+        raise ValueError(
+            f"{stage.recipe._target_} takes no agent: give its constructor a parameter agent, the "
+            "module that it trains."
+        )
+
+
+def _check_stages(cfg: DictConfig, agent: nn.Module, ranks: Ranks) -> None:
+    """Build our recipes of all stages on a copy of ``agent``: a mistake in the last one must not
+    show only after the others have trained. Those of a user may need what a stage leaves.
+
+    Raises ValueError or FileNotFoundError as they do, and for more ``ranks`` than pieces.
+    """
+    stages = {name: stage for name, stage in cfg.stages.items() if stage is not None}
+    if len(stages) < 2 and ranks.count == 1:  # the first one is built next
+        return
+    try:
+        copied = copy.deepcopy(agent)
+    except Exception:  # of any kind: what cannot be copied may still be trained
+        return
+    for name, stage in stages.items():
+        if stage.recipe._target_.startswith(OURS):
+            with redirect_stdout(StringIO()):
+                pieces = recipe_of(stage, copied).pieces()
+            if pieces is not None:
+                ranks.check(pieces, f"the stage {name} of recipe={cfg.name}")
 
 
 def _check_settings(node: DictConfig, agent: nn.Module) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from torch import nn
+from torch.nn.modules.batchnorm import _NormBase
 
 from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
 from mitigate.agents.adapters import adapter_parameters, adapters_of, remove_adapters
@@ -85,6 +86,17 @@ def freeze(agent: nn.Module) -> None:
                 parameter.requires_grad_(False)
 
 
+def hold_statistics(module: nn.Module) -> None:
+    """Put the frozen normalisations with running statistics (BatchNorm) below ``module`` in eval
+    mode: in training mode every batch moves these, though no weight trains. One without weights of
+    its own is frozen with the module that it is in."""
+    for child in module.children():
+        hold_statistics(child)
+        if isinstance(child, _NormBase):
+            own = [*child.parameters()] or [*module.parameters()]
+            child.train(child.training and any(p.requires_grad for p in own))
+
+
 def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
     """A frozen copy of ``agent`` without its adapters, with ``weights``: a file or folder, or
     "start" for those that ``agent`` has now.
@@ -95,8 +107,8 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
     if weights is None:
         raise ValueError(
             f"No teacher is shipped for {type(agent).__name__}: train one, such as by `make train "
-            "RECIPE=da_per_episode`, and name its folder (stages.views_rgb.recipe.teacher=runs/..."
-            "/agent), or name the agent as it is now: start."
+            "RECIPE=da_per_episode`, and name its folder (teacher=runs/.../agent), or "
+            "name the agent as it is now: start."
         )
     if (find(weights) / ADAPTERS_FILE).is_file():
         raise ValueError(
@@ -110,8 +122,7 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
         except FileNotFoundError as error:
             raise FileNotFoundError(
                 f"There is no teacher at {weights}. Train one with `make train "
-                "RECIPE=da_per_episode` and name its folder "
-                "(stages.views_rgb.recipe.teacher=runs/.../agent: the other stages follow)."
+                "RECIPE=da_per_episode` and name its folder (teacher=runs/.../agent)."
             ) from error
     return teacher.requires_grad_(False).eval()
 

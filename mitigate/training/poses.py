@@ -13,6 +13,7 @@ from mitigate.core.observation import RGB, VIEWS
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.training.parts import hold_statistics
 from mitigate.training.success import measure
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
@@ -29,7 +30,8 @@ class Poses:
     of a panorama, only every second one is learned from (2), since neighbours overlap, or all (1).
     own: draw corruptions of this sensor alone; else those of the other leave its frames clean.
 
-    Raises ValueError for an unknown sensor and for a world that cannot look from anywhere.
+    Raises ValueError for an unknown sensor, for no panoramas, and for a world that cannot look from
+    anywhere.
     """
 
     def __init__(
@@ -49,6 +51,8 @@ class Poses:
     ) -> None:
         if sensor not in ("rgb", "depth"):
             raise ValueError(f"modality={sensor!r} is unknown; choose 'rgb' or 'depth'.")
+        if panoramas < 1:
+            raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")
         self.agent, self.make_world, self.training = agent, world, training
         self.schedule = schedule.only(sensor) if own else schedule
         self.sensor, self.label, self.panoramas, self.every = sensor, label, panoramas, every
@@ -73,6 +77,11 @@ class Poses:
             self._world = made
         return self._world
 
+    @property
+    def pieces(self) -> int:
+        """How many jobs every step has."""
+        return -(-self.panoramas // PIECE)
+
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
         """(step, piece, of how many, panoramas, the schedule's state) of each piece; ``workers``:
         processes that measure success rates where there are none."""
@@ -89,8 +98,8 @@ class Poses:
                     workers=workers,
                 )
             )
-            self.agent.train()
-        pieces = -(-self.panoramas // PIECE)
+            hold_statistics(self.agent.train())
+        pieces = self.pieces
         counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
         state = self.schedule.state_dict()
         return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]

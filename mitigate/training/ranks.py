@@ -17,6 +17,8 @@ import torch.distributed as dist
 from torch import Tensor, nn
 from torch.distributed.distributed_c10d import _set_pg_timeout
 
+from mitigate.core.names import counted
+
 FIND = timedelta(seconds=40)  # until all ranks have found each other (ours)
 WAIT = timedelta(hours=2)  # for a rank that makes a cache, or evaluates (ours)
 
@@ -57,18 +59,25 @@ class Ranks:
 
     def share(self, jobs: list[Any]) -> list[Any]:
         """The jobs of this rank. Raises ValueError if there are fewer than ranks."""
-        if self.count > 1 and len(jobs) < self.count:
-            raise ValueError(
-                f"A step of this recipe has {len(jobs)} pieces, too few for {self.count} ranks: "
-                f"start torchrun with --nproc-per-node {max(1, len(jobs))} or fewer."
-            )
+        self.check(len(jobs))
         return jobs[self.number :: self.count]
+
+    def check(self, pieces: int, stage: str = "this recipe") -> None:
+        """Raise ValueError if a step of ``stage`` has fewer pieces than there are ranks."""
+        if self.count > 1 and pieces < self.count:
+            held, most = counted(pieces, "piece"), max(1, pieces)
+            raise ValueError(
+                f"A step of {stage} has {held}, too few for {self.count} ranks: start "
+                f"torchrun with --nproc-per-node {most} or fewer (make train NPROC={most})."
+            )
 
     def average(
         self, parameters: Iterable[nn.Parameter], values: dict[str, Tensor], weight: float = 1.0
     ) -> None:
         """Replace gradients, and the figures to log, by their means over the ranks, each counting
-        as its ``weight`` (``Recipe.weight``): what one process would have on all their pieces."""
+        as its ``weight`` (``Recipe.weight``). For a loss that is a mean by that weight this is what
+        one process would have on all their pieces; others, such as the distillation's KL, an
+        agent's auxiliary losses and errors in units of a batch's variance, are means of ranks."""
         if self.count == 1:
             return
         held: list[Any] = [None] * self.count

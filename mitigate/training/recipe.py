@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+import math
+from numbers import Real
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 import torch
 from torch import Tensor, nn
 
 from mitigate.core.precision import computing
+from mitigate.training.parts import hold_statistics
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 
 class Recipe(nn.Module):
@@ -32,6 +38,12 @@ class Recipe(nn.Module):
         before the first stage of a run begins."""
         lacking = [name for name in cls.needs if not hasattr(agent, name)]
         return f"it has no {', '.join(lacking)}. {cls.otherwise}" if lacking else ""
+
+    def train(self, mode: bool = True) -> Self:
+        """As a module's; frozen normalisations keep their statistics (``hold_statistics``)."""
+        super().train(mode)
+        hold_statistics(self)
+        return self
 
     def start(self) -> None:
         """Make what must be there before the first batch, such as a cache of features; called once,
@@ -61,6 +73,12 @@ class Recipe(nn.Module):
         piece's number and the schedule's state; it is pickled, as is the recipe.
         """
         return []
+
+    def pieces(self) -> int | None:
+        """Return how many jobs every step has, of which ranks have shares; asked before the first
+        stage of a run begins. 1: one process alone can train so. None: it shows at the first step.
+        """
+        return None
 
     def work(self, job: Any) -> Any:
         """Return what ``job`` asks for, picklable: a pure function of job, seed and weights.
@@ -141,9 +159,31 @@ def accumulate(
     values: dict[str, Tensor] = {}
     for part in recipe.micro_batches(batch):
         with computing(kind, device):
-            found = recipe(part)
+            found = _checked(recipe, recipe(part))
         if torch.isfinite(found["loss"]):
             found["loss"].backward()
         fresh = {name: torch.as_tensor(value).detach() for name, value in found.items()}
         values = {name: values.get(name, 0) + value for name, value in fresh.items()}
     return values
+
+
+def _checked(recipe: Recipe, found: Any) -> dict[str, Any]:
+    """What ``forward`` gave. Raises ValueError unless these are numbers with a loss to learn by."""
+    wrong = ""
+    if not isinstance(found, dict) or "loss" not in found:
+        given = ", ".join(map(repr, found)) if isinstance(found, dict) else type(found).__name__
+        wrong = f'returned no "loss", but {given or "nothing"}'
+    else:
+        for name, value in found.items():
+            if not isinstance(value, (Tensor, np.ndarray, Real)):
+                wrong = f"returned {name!r} as {type(value).__name__}"
+            elif isinstance(value, (Tensor, np.ndarray)) and math.prod(value.shape) != 1:
+                wrong = f"returned {name!r} of shape {list(value.shape)}"
+    if not wrong and not (isinstance(found["loss"], Tensor) and found["loss"].requires_grad):
+        wrong = 'returned a "loss" that depends on no weight that trains (is it detached?)'
+    if wrong:
+        raise ValueError(
+            f"forward() of {type(recipe).__name__} {wrong}: it returns a dict of single numbers, "
+            'of which "loss" is a tensor to go backward from (recipes/README.md, "A new one").'
+        )
+    return found

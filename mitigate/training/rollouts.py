@@ -16,6 +16,8 @@ from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
+from mitigate.training import limits
+from mitigate.training.parts import hold_statistics
 from mitigate.training.success import measure, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
@@ -35,7 +37,7 @@ class Rollouts:
     clean: keep what there was to see before the corruption; ``teachers`` compute from it what does
     not change.
 
-    Raises ValueError for no episodes, and as ``prior_rates`` does.
+    Raises ValueError for no episodes, for a share that is none, and as ``prior_rates`` does.
     """
 
     def __init__(
@@ -56,6 +58,7 @@ class Rollouts:
     ) -> None:
         if episodes < 1:
             raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
+        limits.check_share("follow_oracle", expert_share)
         self.agent, self.world, self.training, self.schedule = agent, world, training, schedule
         self.episodes, self.expert_share, self.seed = episodes, expert_share, seed
         self.prior, self.refresh_every = prior, refresh_every
@@ -63,6 +66,11 @@ class Rollouts:
         self.picture: np.ndarray | None = None
         if prior is not None:
             schedule.refresh(prior_rates(prior))
+
+    @property
+    def pieces(self) -> int:
+        """How many jobs every step has."""
+        return min(PIECES, self.episodes)
 
     def identity(self) -> dict[str, str]:
         """Hashes of the files that the batches are made of."""
@@ -76,7 +84,7 @@ class Rollouts:
         due = due and not (step == 0 and self.prior)
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
             self.refresh(step, workers)
-        parts = np.array_split(np.arange(self.episodes), min(PIECES, self.episodes))
+        parts = np.array_split(np.arange(self.episodes), self.pieces)
         state = self.schedule.state_dict()
         return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
 
@@ -122,4 +130,4 @@ class Rollouts:
                 workers=workers,
             )
         )
-        self.agent.train()
+        hold_statistics(self.agent.train())

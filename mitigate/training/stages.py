@@ -15,11 +15,21 @@ from mitigate.core.build import build
 from mitigate.core.files import atomic_text
 from mitigate.training import states
 from mitigate.training.ranks import Ranks
+from mitigate.training.recipe import Recipe
 from mitigate.training.trainer import Trainer
 from mitigate.training.workers import Workers
 
 IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
 NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
+
+
+def either(first: Any, second: Any) -> Any:
+    """What ``${either:${trainer.steps},${stages.policy.trainer.steps}}`` is in a config: the first
+    value, or the second where that is null."""
+    return second if first is None else first
+
+
+OmegaConf.register_new_resolver("either", either, replace=True)
 
 
 def train_stage(
@@ -35,9 +45,7 @@ def train_stage(
     finished stage is loaded from ``folder``."""
     seeding.seed_everything(cfg.seed, "stage", name)
     start = checkpoint.weights_sha(agent)
-    for parameter in agent.parameters():
-        parameter.requires_grad_(parameter.is_floating_point())  # weights in 8 bits never learn
-    recipe = build(stage.recipe, agent=agent)
+    recipe = recipe_of(stage, agent)
     recipe.workers = cfg.workers
     identity = {"start": start, **named(cfg, stage), **recipe.identity()}
     ranks = ranks or Ranks()
@@ -48,6 +56,27 @@ def train_stage(
     trainer = Trainer(recipe, folder=folder, seed=cfg.seed, config=identity, **settings)
     trainer.fit()
     return trainer.precision
+
+
+def recipe_of(stage: DictConfig, agent: nn.Module) -> Recipe:
+    """The recipe of a stage for ``agent``, of which it chooses what trains.
+
+    Raises ValueError for what is no recipe, beside what its constructor raises.
+    """
+    for parameter in agent.parameters():
+        parameter.requires_grad_(parameter.is_floating_point())  # weights in 8 bits never learn
+    made = build(stage.recipe, agent=agent)
+    if not isinstance(made, Recipe):
+        raise ValueError(not_a_recipe(stage.recipe._target_))
+    return made
+
+
+def not_a_recipe(target: str) -> str:
+    """What is said of a ``target`` that is no recipe."""
+    return (
+        f"{target} is no recipe: make it a subclass of mitigate.training.recipe.Recipe "
+        '(recipes/README.md, "A new one").'
+    )
 
 
 def named(cfg: DictConfig, stage: DictConfig) -> dict[str, Any]:

@@ -58,6 +58,7 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
     if cfg.jobs < 1:
         raise ValueError(f"jobs={cfg.jobs} is none: give 1 or more runs at a time.")
     made = combinations(options)
+    _check_own(options)
     for chosen in made:
         conf.composed(cfg.command, chosen)
     chains, problems = [chain(cfg, chosen) for chosen in made], []
@@ -78,6 +79,16 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
             f"{len(problems)} of {len(chains)} runs failed. {again} {cfg.runs}/{LOGS}. "
             + " ".join(problems)
         )
+
+
+def _check_own(options: Sequence[str]) -> None:
+    """Raise ValueError for an option that would put all runs into one folder."""
+    for option in options:
+        if option.lstrip("+~").partition("=")[0] in ("out", "folder"):
+            raise ValueError(
+                f"{option} is one folder, and every run of a sweep has its own: set runs=FOLDER, "
+                "in which they are."
+            )
 
 
 def combinations(options: Sequence[str]) -> list[list[str]]:

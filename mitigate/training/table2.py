@@ -22,7 +22,7 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
-from mitigate.core.progress import Progress
+from mitigate.core.progress import Progress, say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.rows import ROWS, Row, read
@@ -87,6 +87,8 @@ def run(cfg: DictConfig) -> Path:
 def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
     """Train and evaluate all cells, ``cfg.jobs`` at a time; return what went wrong with which."""
     chains, problems = [cell.chain(cfg) for cell in made], []
+    for cell in made:
+        cell.keep()
     before = [
         {kind: cell.left(kind) for kind, _ in chain.programs}
         for cell, chain in zip(made, chains, strict=True)
@@ -169,7 +171,10 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     from mitigate.safeguard.guard import open_safeguard
 
     held = {cell.column: cell for cell in cells(cfg) if cell.seed == cfg.seeds[0]}
-    if not cfg.walks or not held.keys() >= {*cfg.walks}:
+    missing = [column for column in cfg.walks if column not in held]
+    if missing:
+        say(f"no pictures of walks: {', '.join(missing)} of walks= is no column")
+    if not cfg.walks or missing:
         return []
     made = {_named(held[column].folder): held[column] for column in cfg.walks}
     nodes = {name: conf.load_config("evaluate", cell.agent) for name, cell in made.items()}

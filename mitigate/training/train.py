@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Mapping
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ from mitigate.core import checkpoint, conf, precision, seeding
 from mitigate.core.build import OWN_CONFIG_ONLY, begun_from, build_agent, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.locks import FolderLock
+from mitigate.core.names import unknown
 from mitigate.core.progress import say
 from mitigate.core.workers import cores
 from mitigate.evaluation.conditions import check_sensors, conditions
@@ -37,14 +39,13 @@ from mitigate.evaluation.evaluate import (
     WeightsConfig,
     load,
 )
-from mitigate.training import fitting, limits
+from mitigate.training import fitting, limits, optimization
 from mitigate.training.estimate import REPORT, has_base, plan
 from mitigate.training.ranks import Ranks
 from mitigate.training.stages import plain, train_stage, trainer_settings
 from mitigate.training.workers import MOST, Workers
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
-MOST_ROLLOUTS, MOST_WORKERS = 100_000, 256  # (ours)
 
 
 @dataclass
@@ -87,6 +88,7 @@ class TrainConfig:
     severity_depth: float | None = None
     init: str | None = None
     init_parts: list[str] | None = None
+    teacher: str | None = None
     rollouts: int = 24
     refresh_episodes: int = 8
     runs: str = "runs"
@@ -117,7 +119,8 @@ def run(cfg: DictConfig) -> Path:
     check(cfg)
     with Ranks.of_environment() as ranks:
         cfg.folder = cfg.folder or default_folder(cfg)  # what refers to it finds it
-        with FolderLock(cfg.folder) if ranks.first else nullcontext():
+        within = ("agent", *cfg.stages)
+        with FolderLock(cfg.folder, within) if ranks.first else nullcontext():
             return _run(cfg, Path(cfg.folder), ranks)
 
 
@@ -128,8 +131,9 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
     fitting.tell_of_schedule(cfg)
     fitting.leave_out(cfg, agent)
+    fitting.tell_of_warmup(cfg)
     fitting.draw_what_is_read(cfg, agent)
-    fitting.check(cfg, agent, folder)
+    fitting.check(cfg, agent, folder, ranks)
     if ranks.first:
         say(plan(cfg, folder))
     with Workers(min(MOST, cores()) if cfg.workers is None else cfg.workers) as workers:
@@ -154,40 +158,11 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
 
 def check(cfg: DictConfig) -> None:
     """Raise ValueError for settings that are well typed but make no sense."""
-    for key in ("severity", "severity_depth"):
-        value = cfg[key]
-        if value is not None and not 0.0 <= value <= 1.0:
-            raise ValueError(
-                f"{key}={value:g} is out of range: a severity is a number from 0 (clean) to 1 "
-                f"(strongest). Write, for instance, {key}=0.6."
-            )
+    limits.check_options(cfg)
     seeding.check(cfg.seed)
-    if not 1 <= cfg.rollouts <= MOST_ROLLOUTS:
-        raise ValueError(
-            f"rollouts={cfg.rollouts} must be a number of episodes a step, from 1 to "
-            f"{MOST_ROLLOUTS}, as rollouts=24."
-        )
-    if not 1 <= cfg.refresh_episodes <= MOST_ROLLOUTS:
-        raise ValueError(
-            f"refresh_episodes={cfg.refresh_episodes} must be a number of episodes that a success "
-            f"rate is measured on, from 1 to {MOST_ROLLOUTS}, as refresh_episodes=8."
-        )
-    if cfg.workers is not None and not 0 <= cfg.workers <= MOST_WORKERS:
-        raise ValueError(
-            f"workers={cfg.workers}: give a number of processes that make batches, 0 for none "
-            f"beside this one and {MOST_WORKERS} at most, or null for one a core ({MOST} at most)."
-        )
-    measuring = cfg.evaluation.workers
-    if measuring is not None and not 1 <= measuring <= MOST_WORKERS:
-        raise ValueError(
-            f"evaluation.workers={measuring}: give a number of processes that walk, from 1 to "
-            f"{MOST_WORKERS}, or null for one a core."
-        )
     for stage in cfg.stages.values():
         if stage is not None:
-            settings = trainer_settings(cfg, stage)
-            limits.check(settings)
-            precision.device_of(settings.get("device", "auto"))
+            check_trainer(trainer_settings(cfg, stage))
     if not any(cfg.stages.values()):
         raise ValueError(f"The recipe {cfg.name} has no stages: its YAML must list at least one.")
     if OmegaConf.select(cfg, "env.training") is None and cfg.report == REPORT:
@@ -209,6 +184,21 @@ def check(cfg: DictConfig) -> None:
         met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
         if cfg.report == REPORT:
             check_sensors(met, maker(cfg.env.world)().sensors, cfg.env.name)
+
+
+def check_trainer(settings: Mapping[str, Any]) -> None:
+    """Raise ValueError for settings of a trainer that are unknown, or that it would not take."""
+    known = [entry.name for entry in fields(TrainerConfig)]
+    for name in settings:
+        if name not in known:
+            raise ValueError(
+                unknown("setting of a trainer", f"trainer.{name}", [f"trainer.{n}" for n in known])
+            )
+    limits.check(settings)
+    if "schedule" in settings:
+        optimization.check(settings["schedule"])
+    precision.check(settings.get("precision", "auto"))
+    precision.device_of(settings.get("device", "auto"))
 
 
 def default_folder(cfg: DictConfig, variant: str = "") -> str:

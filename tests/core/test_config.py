@@ -13,6 +13,7 @@ from dataclasses import replace
 import pytest
 from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
+from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf
 from mitigate.corruptions import NAMES
@@ -347,3 +348,29 @@ def test_hydras_own_line_goes_before_no_paragraph(monkeypatch, capsys, tmp_path)
         evaluate.main()
     assert "There is no split" in str(stop.value.code)
     assert "Error executing job" not in capsys.readouterr().err
+
+
+def test_what_an_entry_refers_to_and_is_not_there_is_named():
+    cfg = OmegaConf.create({"first": "${stages.mine.teacher}", "stages": {}})
+    with pytest.raises(OmegaConfBaseException) as found:
+        OmegaConf.resolve(cfg)
+    assert "There is no stages.mine.teacher, and" in conf.explain(found.value, "train")
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        ("stages.episodes.recipe.temperature=3", "To add it, write +stages.episodes.recipe.temp"),
+        ("stages.episodes.recipe.temperatur=3", "Did you mean +stages.episodes.recipe.temperature"),
+        ("stages.episodes.recipe.w_kll=3", "+stages.episodes.recipe.w_kl, +stages"),
+        ("stages.episodes.recipe.episods=3", "Did you mean stages.episodes.recipe.episodes?"),
+    ],
+)
+def test_arguments_of_a_recipe_that_its_config_leaves_out_are_named(option, said):
+    with pytest.raises(ValueError, match="(?i)" + re.escape(said)):
+        conf.composed("train", ["recipe=ts_distill", option])
+
+
+def test_no_class_of_others_is_imported_for_a_message(monkeypatch):
+    monkeypatch.setattr(conf, "get_object", lambda target: pytest.fail(f"{target} was imported"))
+    assert not conf._arguments(OmegaConf.create({"_target_": "mine.Recipe", "a": 1}))

@@ -16,6 +16,7 @@ from mitigate.core.locks import NAME, FolderLock, delete_leftovers
 from mitigate.evaluation import evaluate
 from mitigate.training import train
 
+DEAD = 2**30  # above any process id (Linux: at most 2**22)
 HOLD = (
     "import sys; from mitigate.core.locks import FolderLock; lock = FolderLock(sys.argv[1])\n"
     "lock.__enter__(); print('in', flush=True); sys.stdin.read()"
@@ -74,18 +75,23 @@ def test_a_worker_does_not_inherit_the_lock(tmp_path):
 
 
 def test_what_was_not_yet_whole_is_deleted_and_nothing_else(tmp_path):
-    left = [".step-00000100.pt.4711.tmp", "agent/.model.safetensors.1.tmp", "a/b/.rows.jsonl.9.tmp"]
+    dead, alive = DEAD, os.getppid()
+    left = [f".step-00000100.pt.{dead}.tmp", f"agent/.model.safetensors.{dead}.tmp"]
     kept = ["step-00000050.pt", ".step-00000100.pt", "notes.tmp", ".mine.tmp", "agent/.x.tmp.5"]
+    kept += [f".rows.jsonl.{alive}.tmp", f"agent/.model.safetensors.{alive}.tmp"]  # being written
+    kept += [f"mine/.notes.{dead}.tmp", f"agent/b/.x.{dead}.tmp"]  # of others
+    kept += ["locked/.lock", f"locked/.rows.jsonl.{dead}.tmp"]
     for name in (*left, *kept):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("x")
     (tmp_path / ".adapter-abc.0.tmp").mkdir()
-    (tmp_path / ".away.7.tmp").symlink_to(tmp_path / "agent")
-    with FolderLock(tmp_path):
+    (tmp_path / f".away.{dead}.tmp").symlink_to(tmp_path / "agent")
+    within = ("agent", "locked", "not there")
+    with FolderLock(tmp_path, within):
         pass
     assert all((tmp_path / name).is_file() for name in kept)
     assert not any((tmp_path / name).exists() for name in left)
-    assert not delete_leftovers(tmp_path) and (tmp_path / "agent").is_dir()
+    assert not delete_leftovers(tmp_path, within) and (tmp_path / "agent").is_dir()
 
 
 @pytest.mark.parametrize("name", ["train", "evaluate"])

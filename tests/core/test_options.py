@@ -54,3 +54,16 @@ def test_dashes_are_answered_with_how_the_option_is_written(line, shown):
 
 def test_hydras_own_flags_and_values_with_dashes_pass():
     options.check_dashes(["--multirun", "--config-dir=mine", "-m", "--cfg", "job", "name=--x"])
+
+
+@pytest.mark.parametrize("flag", ["-m", "--multirun"])
+def test_many_runs_may_be_asked_for_behind_other_options(flag):
+    given = ["recipe=stacked", flag, "seed=0,1", "--config-dir", "mine"]
+    assert options.flags_first(given) == [
+        flag,
+        "recipe=stacked",
+        "seed=0,1",
+        "--config-dir",
+        "mine",
+    ]
+    assert options.flags_first(["seed=0"]) == ["seed=0"]

@@ -7,12 +7,13 @@ from functools import partial
 import numpy as np
 import pytest
 import torch
+from omegaconf import OmegaConf
 
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import DEPTH, Schedule
-from mitigate.recipes.adapt import AdaptViews, differ
+from mitigate.recipes.adapt import Adapt, AdaptViews, differ
 from mitigate.recipes.distil import Distil, DistilViews, policy_kl
 from mitigate.recipes.imitate import Imitate
 from mitigate.training.states import checkpoints
@@ -179,6 +180,59 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
         AdaptViews(agent, modality="rgb", **VIEWS, touched=0)
 
 
+def with_statistics(**options) -> TopologicalAgent:
+    """An agent whose encoders normalise by running statistics, with and without weights."""
+    agent = small(**options)
+    for encoder, affine in ((agent.rgb_encoder, True), (agent.depth_encoder, False)):
+        block = encoder.stages[0]
+        norm = torch.nn.BatchNorm2d(block.norm1.num_channels, affine=affine)
+        block.norm1 = torch.nn.Sequential(block.norm1, norm)
+    return agent
+
+
+def statistics(agent) -> dict[str, torch.Tensor]:
+    return {name: value.clone() for name, value in agent.named_buffers() if "running" in name}
+
+
+@pytest.mark.parametrize(
+    ("kind", "learning"),
+    [
+        ("adapters on episodes", set()),
+        ("adapters on views", set()),
+        ("one encoder on episodes", {"rgb_encoder"}),
+        ("one encoder on views", {"depth_encoder"}),
+    ],
+)
+def test_frozen_normalisations_keep_their_statistics(kind, learning, tmp_path):
+    agent = with_statistics(adapters=ADAPTERS if kind.startswith("adapters") else None)
+    before, own = statistics(agent), {"schedule": missing_data(), **EPISODES}
+    made = {
+        "adapters on episodes": lambda: Adapt(agent, **own),
+        "adapters on views": lambda: AdaptViews(agent, modality="depth", held=1, **VIEWS),
+        "one encoder on episodes": lambda: Distil(
+            agent, teacher="start", train_parts=["rgb_encoder"], **own
+        ),
+        "one encoder on views": lambda: DistilViews(
+            agent, modality="depth", teacher="start", **VIEWS
+        ),
+    }[kind]()
+    Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
+    after = statistics(agent)
+    moved = {name.partition(".")[0] for name in before if not before[name].equal(after[name])}
+    assert moved == learning
+
+
+def test_a_backbone_that_changed_is_no_result_of_adapters(tmp_path):
+    agent = small(adapters=ADAPTERS)
+    agent.rgb_encoder.register_buffer("count", torch.zeros(1))
+    agent.rgb_encoder.register_forward_hook(
+        lambda encoder, *_: setattr(encoder, "count", encoder.count + 1)
+    )
+    made = Adapt(agent, schedule=missing_data(), **EPISODES)
+    with pytest.raises(ValueError, match=r"The backbone of TopologicalAgent is another.*anew"):
+        Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
+
+
 def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
     clean = torch.ones(2, 2, 4, 4, 1)
     clean[0, 0, 0] = torch.nan
@@ -207,9 +261,18 @@ def test_adapters_alone_are_no_teacher():
 
 def test_one_option_names_the_teacher_of_all_stages():
     for recipe in ("ts_distill", "stacked"):
-        options = [f"recipe={recipe}", "stages.views_rgb.recipe.teacher=mine"]
-        cfg = conf.load_config("train", options)
+        cfg = conf.load_config("train", [f"recipe={recipe}", "teacher=mine"])
         assert {stage.recipe.teacher for stage in cfg.stages.values()} == {"mine"}
+
+
+@pytest.mark.parametrize(
+    ("recipe", "teacher"), [("ts_distill", "checkpoints/teacher"), ("stacked", "checkpoints/base")]
+)
+def test_any_stage_of_a_distillation_can_be_left_out(recipe, teacher):
+    for left_out in ("views_rgb", "views_depth", "episodes"):
+        cfg = conf.load_config("train", [f"recipe={recipe}", f"stages.{left_out}=null"])
+        OmegaConf.resolve(cfg.stages)
+        assert [stage.recipe.teacher for stage in cfg.stages.values() if stage] == [teacher] * 2
 
 
 def test_frozen_views_are_no_part_of_the_loss(teacher):
@@ -243,6 +306,33 @@ def test_an_unknown_feature_is_refused(teacher):
             small(), teacher=teacher, match=("logits",), schedule=missing_data(), **EPISODES
         )
         made(made.batch(0))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"temperature": 0.0}, "recipe.temperature=0 must be above 0"),
+        ({"w_kl": -1.0}, "recipe.w_kl=-1 must be a number from 0"),
+        ({"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0}, "learned: w_il, w_kl and w_feat are 0"),
+    ],
+)
+def test_weights_that_make_no_sense_are_refused_as_what_they_are(options, words):
+    with pytest.raises(ValueError, match=words):
+        Distil(small(), teacher="start", schedule=missing_data(), **EPISODES, **options)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [({"w_feat": -1.0}, "recipe.w_feat=-1"), ({"panoramas": 0}, "recipe.panoramas=0 a step")],
+)
+def test_views_without_panoramas_or_with_negative_weights_are_refused(options, words):
+    with pytest.raises(ValueError, match=words):
+        DistilViews(small(), modality="depth", teacher="start", **{**VIEWS, **options})
+
+
+def test_of_two_ranks_the_one_with_more_panoramas_counts_more():
+    made = DistilViews(small(), modality="depth", teacher="start", **{**VIEWS, "panoramas": 3})
+    assert made.weight(made.batch(0)) == 3.0
 
 
 def test_adapters_are_asked_for_where_there_are_none():

@@ -5,13 +5,15 @@ from __future__ import annotations
 from functools import partial
 
 import pytest
+import torch
 
 from mitigate.agents.adapters import backbone_sha
+from mitigate.agents.agent import Output
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
-from mitigate.recipes.imitate import Imitate
+from mitigate.recipes.imitate import Imitate, check_losses
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -55,6 +57,28 @@ def test_a_prior_is_one_agents_evaluation(tmp_path):
 def test_an_unknown_part_is_refused():
     with pytest.raises(ValueError, match="adapters"):
         recipe(TopologicalAgent(16, SMALL), "encoder")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"losses": {"waypoints": -1.0}}, r"recipe.losses.waypoints=-1 must be a number from 0"),
+        ({"losses": {"waypoints": float("nan")}}, "recipe.losses.waypoints=nan"),
+        ({"follow_oracle": 1.5}, "recipe.follow_oracle=1.5 must be a share from 0 to 1"),
+        ({"follow_oracle": -0.1}, "recipe.follow_oracle=-0.1"),
+    ],
+)
+def test_weights_and_shares_that_make_no_sense_are_refused(options, words):
+    with pytest.raises(ValueError, match=words):
+        Imitate(TopologicalAgent(16, SMALL), **SOURCES, schedule=Schedule("clean", 0.0), **options)
+
+
+def test_the_weight_of_a_loss_that_the_agent_does_not_return_is_refused():
+    agent = TopologicalAgent(16, SMALL)
+    out = Output(losses={"waypoints": torch.ones(())})
+    check_losses(agent, {**agent.loss_weights, "waypoints": 0.5}, out)
+    with pytest.raises(ValueError, match=r"weights 'waypoint', which decide.* are waypoints"):
+        check_losses(agent, {"waypoint": 0.5}, out)
 
 
 def test_a_step_needs_an_episode():

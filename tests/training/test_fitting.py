@@ -22,9 +22,19 @@ from mitigate.recipes.imitate_stored import ImitateStored
 from mitigate.recipes.pretrain import Pretrain
 from mitigate.recipes.restore import Restore
 from mitigate.training import fitting, train
+from mitigate.training.ranks import Ranks
 from tests.tiny import TinyAgent, TinyRecipe
 
 OFF = "evaluation.enabled=false"
+
+
+class NoAgent(TinyRecipe):
+    def __init__(self):
+        super().__init__()
+
+
+def no_recipe(agent):
+    return agent
 
 
 def refusal(folder, *options: str) -> str:
@@ -77,6 +87,45 @@ def test_a_recipe_of_ones_own_may_hold_the_schedule_where_it_likes(capsys):
         {"name": "own", "schedule": draws, "stages": {"one": {"recipe": {"parts": [draws]}}}}
     )
     fitting.tell_of_schedule(cfg)
+    assert not capsys.readouterr().out
+
+
+@pytest.mark.parametrize("recipe", ["harden", "replan", "stacked"])
+def test_severities_of_the_options_act_on_the_evaluation_alone_where_a_range_is_drawn(
+    recipe, capsys
+):
+    options = [f"recipe={recipe}", "severity=0.9", "severity_depth=0.8"]
+    cfg = conf.load_config("train", options)
+    assert build(cfg.schedule) == build(conf.load_config("train", options[:1]).schedule)
+    fitting.tell_of_schedule(cfg)
+    said = capsys.readouterr().out
+    assert "severity=0.9 is of the evaluation alone" in said and "which is [0.3, 1.0]" in said
+    assert "severity_depth=0.8 is of the evaluation alone" in said
+    fitting.tell_of_schedule(conf.load_config("train", options[:1]))
+    fitting.tell_of_schedule(conf.load_config("train", ["recipe=da_per_frame", *options[1:]]))
+    assert not capsys.readouterr().out
+
+
+@pytest.mark.parametrize("recipe", ["base", "dagger", "replan", "swap_encoder"])
+def test_the_oracles_share_falls_over_the_steps_that_are_taken(recipe):
+    for options, steps in (
+        (["trainer.steps=7"], 7),
+        (["stages.{}.trainer.steps=9"], 9),
+        ([], None),
+    ):
+        stage = "policy" if recipe == "dagger" else "planner"
+        given = [option.format(stage) for option in options]
+        own = conf.load_config("train", [f"recipe={recipe}", *given]).stages[stage]
+        assert own.recipe.steps == (steps or own.trainer.steps)
+
+
+def test_a_stage_that_ends_in_its_warmup_is_told(capsys):
+    fitting.tell_of_warmup(conf.load_config("train", ["trainer.steps=40"]))
+    assert capsys.readouterr().out == (
+        "perception_rgb: its 40 steps are over before the learning rate has risen, for which it "
+        "takes 50: set trainer.warmup below trainer.steps\n"
+    )
+    fitting.tell_of_warmup(conf.load_config("train", ["trainer.steps=40", "debug=smoke"]))
     assert not capsys.readouterr().out
 
 
@@ -135,6 +184,71 @@ def test_a_later_stage_with_other_settings_is_refused_before_the_first_trains(tm
         train.run(tiny(tmp_path, "two", "first", "second", width=16))
     assert not (tmp_path / "first").exists()
     train.run(tiny(tmp_path, "three", "second"))  # the same goes on
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["stages.imitation.recipe.train_parts=[planer]"], "part of the agent 'planer'"),
+        (["recipe=da_success", "stages.imitation.recipe.prior=nowhere.jsonl"], "nowhere.jsonl"),
+        (["recipe=ts_distill", "stages.episodes.recipe.teacher=nowhere"], "no teacher at nowhere"),
+        (["recipe=ts_distill", "+stages.episodes.recipe.temperature=0"], "must be above 0"),
+        (["stages.imitation.trainer.schedule=cosin"], "cosine, constant, linear"),
+    ],
+)
+def test_a_mistake_in_the_last_stage_shows_before_the_first_trains(
+    tmp_path, options, words, monkeypatch
+):
+    monkeypatch.setattr(train, "train_stage", lambda *_: pytest.fail("a stage was trained"))
+    options = ["debug=smoke", "workers=0", f"folder={tmp_path}", OFF, *options]
+    with pytest.raises((ValueError, FileNotFoundError), match=words):
+        train.run(conf.load_config("train", options))
+
+
+def test_looking_at_all_stages_leaves_the_agent_as_it_is_and_says_nothing(tmp_path, capsys):
+    cfg = conf.load_config("train", ["recipe=stacked", "debug=smoke"])
+    OmegaConf.resolve(cfg.stages)
+    agent = build(cfg.agent)
+    before = checkpoint.weights_sha(agent), [p.requires_grad for p in agent.parameters()]
+    fitting.check(cfg, agent, tmp_path)
+    assert before == (
+        checkpoint.weights_sha(agent),
+        [p.requires_grad for p in agent.parameters()],
+    )
+    assert not capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("recipe", "agent", "count", "words"),
+    [
+        ("dagger", "recurrent", 2, "stage policy of recipe=dagger has 1 piece, too few for 2"),
+        ("da_per_episode", "topological", 3, "stage perception_depth .* has 2 pieces, .*NPROC=2"),
+        ("restore", "restorer", 2, "stage .*gate.* has 1 piece"),
+    ],
+)
+def test_ranks_that_a_later_stage_has_no_pieces_for_are_refused_at_once(
+    tmp_path, recipe, agent, count, words
+):
+    cfg = conf.load_config("train", [f"recipe={recipe}", f"agent={agent}", "init=null"])
+    OmegaConf.resolve(cfg.stages)
+    with pytest.raises(ValueError, match=words):
+        fitting.check(cfg, build(cfg.agent), tmp_path, Ranks(0, count))
+
+
+@pytest.mark.parametrize(
+    ("target", "words"),
+    [
+        ("tests.tiny.TinyAgent", "tests.tiny.TinyAgent is no recipe: make it a subclass"),
+        ("tests.training.test_fitting.NoAgent", "takes no agent: give its constructor"),
+        ("tests.training.test_fitting.no_recipe", "no_recipe is no recipe"),
+        ("tests.tiny.Nope", "tests.tiny.Nope.* A _target_ is module.Name"),
+    ],
+)
+def test_a_target_that_is_no_recipe_for_an_agent_is_told_as_that(tmp_path, target, words):
+    cfg = tiny(tmp_path, "own", "first")
+    cfg.stages.first.recipe._target_ = target
+    with pytest.raises(ValueError, match=words):
+        train.run(cfg)
 
 
 @pytest.mark.parametrize(

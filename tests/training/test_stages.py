@@ -60,10 +60,11 @@ def test_every_kind_of_agent_says_what_it_asks_of_the_world(kind):
 
 
 def test_a_stage_may_name_one_that_is_left_out(tmp_path, capsys):
-    """The teacher of all stages of ts_distill is named by its first, which learns RGB."""
     small = ["agent.size=16", "env.size=16", "agent.depth_width=8", "init=null", "trainer.steps=1"]
     options = ["agent=recurrent", "agent.sensors=[depth]", *small, "evaluation.enabled=false"]
     cfg = conf.load_config("train", ["recipe=ts_distill", "debug=smoke", "rollouts=1", *options])
     cfg.runs, cfg.stages.views_rgb.recipe.teacher = str(tmp_path), "start"
+    for other in ("views_depth", "episodes"):
+        cfg.stages[other].recipe.teacher = "${stages.views_rgb.recipe.teacher}"
     assert (train.run(cfg) / "episodes").is_dir()
     assert "views_rgb: left out, RecurrentAgent has no rgb encoder" in capsys.readouterr().out

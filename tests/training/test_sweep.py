@@ -55,8 +55,17 @@ def test_without_options_to_combine_it_shows_how_and_runs_nothing(given, monkeyp
     monkeypatch.setattr(sys, "argv", ["mitigate sweep", *given])
     assert sweep.main() == 2 and not fake
     shown = capsys.readouterr()
-    assert "mitigate.sweep recipe=imitation,stacked seed=0,1" in shown.out
+    assert "mitigate sweep recipe=imitation,stacked seed=0,1" in shown.out
     assert "jobs: 1  # runs at a time" in shown.out and "give options to combine" in shown.err
+
+
+@pytest.mark.parametrize(
+    ("command", "option"), [("evaluate", "out=x"), ("train", "folder=x"), ("train", "+out=x")]
+)
+def test_one_folder_for_all_runs_is_refused(tmp_path, fake, command, option):
+    with pytest.raises(ValueError, match=r"is one folder, .* set runs=FOLDER"):
+        sweep.run(config(tmp_path, f"command={command}"), ["seed=0,1", option])
+    assert not fake
 
 
 def test_options_to_combine_are_run(monkeypatch, fake, tmp_path):

@@ -114,6 +114,15 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
         ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
+        ('+columns.mine=["recipe=harden","severity=7"]', "Column mine: severity=7 must be from 0"),
+        ('+columns.mine=["recipe=harden","trainer.schedule=cosin"]', "Column mine: .*cosine"),
+        ('+columns.mine=["recipe=harden","seed=3"]', "Column mine: seed=3 is for the table"),
+        (
+            '+columns.mine=["severity=0.9"]',
+            "Column mine: severity=0.9 is for the table to say, for",
+        ),
+        ('train=["folder=x"]', "folder=x is for the table to say, which has them from seeds="),
+        ("seeds=[0,1,0]", r"seeds=\[0, 1, 0\] names one twice"),
         ("split=val_unsen", "no split 'val_unsen'. Did you mean val_unseen?"),
         ("conditions=[clen]", "no condition 'clen'. Did you mean clean?"),
     ],
@@ -124,6 +133,23 @@ def test_a_mistake_is_told_once_and_before_any_cell_is_run(tmp_path, monkeypatch
     with pytest.raises(ValueError, match=said):
         table2.run(cfg)
     assert not (tmp_path / "out").exists()
+
+
+def test_a_column_of_other_options_is_refused_where_it_has_rows(tmp_path, quick):
+    cfg = config(tmp_path, seeds=[0])
+    finished(cfg)
+    table2.run(cfg)
+    table2.run(cfg)
+    changed = config(tmp_path, seeds=[0], columns={"base": ["checkpoint=checkpoints/teacher"]})
+    with pytest.raises(ValueError, match=r"base-seed0 holds rows of an agent .* another out="):
+        table2.run(changed)
+    with pytest.raises(ValueError, match=r"da_per_frame-seed0 holds rows"):
+        table2.run(config(tmp_path, seeds=[0], train=["severity=0.4"]))
+
+
+def test_walks_of_what_is_no_column_are_told(tmp_path, capsys):
+    assert table2.draw_walks(config(tmp_path, walks=["base", "stacked"]), tmp_path) == []
+    assert "no pictures of walks: stacked of walks= is no column" in capsys.readouterr().out
 
 
 def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick):

@@ -113,18 +113,38 @@ def test_a_negative_number_of_workers_is_refused(tmp_path):
     with pytest.raises(ValueError, match="or null for one a core"):
         train.run(config(tmp_path, "workers=-1"))
     for wrong in (0, -3):  # which showed only after the training
-        with pytest.raises(ValueError, match=f"evaluation.workers={wrong}: give a number"):
+        with pytest.raises(ValueError, match=f"evaluation.workers={wrong} must be from 1 to 256"):
             train.run(config(tmp_path, f"evaluation.workers={wrong}"))
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("severity=1.5", "severity=1.5 must be from 0 to 1: it is a severity"),
+        ("severity_depth=nan", "severity_depth=nan must be"),
+        ("rollouts=0", "rollouts=0 must be from 1 to 100000"),
+        ("refresh_episodes=0", "refresh_episodes=0 must be"),
+        ("trainer.schedule=cosin", "cosine, constant, linear"),
+        ("trainer.precision=fp8", "auto, fp32, bf16"),
+        ("+trainer.warmpu=3", "no setting of a trainer 'trainer.warmpu'.*mean trainer.warmup"),
+    ],
+)
+def test_a_setting_that_makes_no_sense_is_refused_before_anything_is_built(
+    tmp_path, option, words, monkeypatch
+):
+    monkeypatch.setattr(train, "build_agent", lambda *_, **__: pytest.fail("was built"))
+    with pytest.raises(ValueError, match=words):
+        train.run(config(tmp_path, option))
 
 
 def test_a_run_says_first_what_it_will_do_and_how_long_that_takes(tmp_path, capsys):
     cfg = config(tmp_path)
     cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
     train.run(cfg)
-    said = capsys.readouterr().out.splitlines()[0]
+    said = capsys.readouterr().out.splitlines()[1]  # the first is of a schedule that none draws
     assert said.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in said
     train.run(cfg)  # what is done takes no time
-    assert "about 0 s" in capsys.readouterr().out.splitlines()[0]
+    assert "about 0 s" in capsys.readouterr().out.splitlines()[1]
 
 
 def test_trainer_options_go_before_a_stages_own(tmp_path):

@@ -230,6 +230,27 @@ def test_a_setting_out_of_range_names_the_allowed_values(tmp_path, setting, word
         trained(tmp_path, **setting)
 
 
+@pytest.mark.parametrize(
+    ("returned", "words"),
+    [
+        (lambda loss: loss, 'returned no "loss", but Tensor: it returns a dict'),
+        (lambda loss: {"los": loss}, "returned no \"loss\", but 'los'"),
+        (lambda loss: {}, 'returned no "loss", but nothing'),
+        (lambda loss: {"loss": loss.expand(8)}, "'loss' of shape \\[8\\]"),
+        (lambda loss: {"loss": loss.detach()}, "depends on no weight that trains"),
+        (lambda loss: {"loss": float(loss.detach())}, "depends on no weight that trains"),
+        (lambda loss: {"loss": loss, "note": "text"}, "returned 'note' as str"),
+    ],
+)
+def test_what_forward_must_return_is_said(tmp_path, returned, words):
+    class Own(TinyRecipe):
+        def forward(self, batch):
+            return returned(super().forward(batch)["loss"])
+
+    with pytest.raises(ValueError, match=f"forward\\(\\) of Own .*{words}"):
+        Trainer(Own(), steps=1, folder=tmp_path).fit()
+
+
 def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
     class Poisoned(TinyRecipe):
         def forward(self, batch):

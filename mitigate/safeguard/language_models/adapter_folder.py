@@ -37,7 +37,7 @@ def write_adapter(
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(".0.tmp", ".adapter-", folder) as temporary:
+    with tempfile.TemporaryDirectory(f".{os.getpid()}.tmp", ".adapter-", folder) as temporary:
         network.save_pretrained(temporary, state_dict=tensors, save_embedding_layers=False)
         (Path(temporary) / CARD).write_text(json.dumps(card, indent=1) + "\n", "utf-8")
         shutil.copymode(Path(temporary) / CARD, Path(temporary) / ADAPTER)  # which was private

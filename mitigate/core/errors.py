@@ -1,0 +1,34 @@
+"""Errors that a setting, a file or the system brings about, in one paragraph each."""
+
+from __future__ import annotations
+
+import errno
+
+
+def said(error: ValueError | OSError) -> str:
+    """An error in one paragraph: ours as it is; of the system's what it said, of which file, and
+    what may help."""
+    if not isinstance(error, OSError) or error.strerror is None:
+        return str(error)
+    told = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
+    if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+        told += (
+            ". What was finished is kept whole: free some room, and the same command goes on from "
+            "there."
+        )
+    return told
+
+
+def too_much(error: Exception) -> str:
+    """What is said of an error that a setting or a file brings about; empty for any other."""
+    cause = " ".join(str(error).split())[:200]
+    memory = isinstance(error, MemoryError) or "allocate memory" in cause
+    nested = isinstance(error, RecursionError)
+    if not (memory or nested or isinstance(error, OverflowError)):
+        return ""
+    what = "more memory than there is" if memory else "too many levels" if nested else ""
+    return (
+        f"A setting or a file asks for {what or 'too great a number'} ("
+        f"{cause or type(error).__name__}). Look at "
+        "the last option or file that you changed; HYDRA_FULL_ERROR=1 shows where it was used."
+    )

@@ -1,0 +1,25 @@
+"""The recipe that recipes/README.md shows trains, from outside the package."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+from mitigate.core import conf
+from mitigate.training import states, train
+
+PAGE = (Path(__file__).parents[2] / "recipes/README.md").read_text(encoding="utf-8")
+
+
+def test_the_example_of_a_new_recipe_trains(tmp_path, monkeypatch):
+    (tmp_path / "recipe").mkdir()
+    for kind, name in (("python", "steady.py"), ("yaml", "recipe/steady.yaml")):
+        text = re.search(rf"```{kind}\n(.*?)```", PAGE, re.DOTALL)[1]
+        (tmp_path / name).write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    options = ["recipe=steady", "debug=smoke", "workers=0", "evaluation.enabled=false"]
+    cfg = conf.load_config("train", [*options, f"folder={tmp_path / 'run'}"], further=tmp_path)
+    train.run(cfg)
+    assert states.checkpoints(tmp_path / "run/views")[-1].name == "step-00000002.pt"
+    del sys.modules["steady"]
