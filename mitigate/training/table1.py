@@ -2,7 +2,7 @@
 
 ``table=routes`` and ``table=objects`` are the paper's Table I: plain and hardened agents under
 everything. ``routes_ablations`` and ``objects_ablations`` blank their senses one by one. The same
-command again goes on where the last one stopped (``table2.py`` makes these tables, too).
+command again goes on where the last one stopped.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import hydra
 from omegaconf import DictConfig
 
 from mitigate.core import conf
-from mitigate.training.table2 import run
+from mitigate.training.tables import run
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table1")

@@ -13,7 +13,7 @@ from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import plots, rows, trajectories
 from mitigate.scale import programs
-from mitigate.training import cells, table2
+from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 
 ALL = dict.fromkeys((*RGB, *DEPTH), 4)
@@ -30,7 +30,7 @@ def config(out: Path, **changes):
 
 def finished(cfg) -> None:
     """Rows of every cell, as an evaluation leaves them; seed 1 fares worse than seed 0."""
-    for cell in table2.cells(cfg):
+    for cell in tables.cells(cfg):
         agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
         made = column(8 - 2 * cell.seed, ALL, name=cell.column, seed=cell.seed, agent=agent)
         rows.write(cell.folder / "evaluation" / "rows.jsonl", made)
@@ -47,18 +47,18 @@ def no_plots(monkeypatch):
 def quick(monkeypatch):
     """Cells whose processes do nothing, but are processes."""
     monkeypatch.setattr(
-        table2.Cell, "commands", lambda self, cfg: [("train", ["timeit", "-n", "1", "pass"])]
+        tables.Cell, "commands", lambda self, cfg: [("train", ["timeit", "-n", "1", "pass"])]
     )
 
 
 def test_a_partial_run_holds_every_column_of_the_first_seed(tmp_path):
-    order = [(cell.column, cell.seed) for cell in table2.cells(config(tmp_path))]
+    order = [(cell.column, cell.seed) for cell in tables.cells(config(tmp_path))]
     assert order == [("base", 0), ("da_per_frame", 0), ("base", 1), ("da_per_frame", 1)]
 
 
 def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
     cfg = config(tmp_path, episodes=5)
-    base, trained = table2.cells(cfg)[0], table2.cells(cfg)[-1]
+    base, trained = tables.cells(cfg)[0], tables.cells(cfg)[-1]
     assert [kind for kind, _ in base.commands(cfg)] == ["evaluate"]
     (_, train), (_, evaluate) = trained.commands(cfg)
     assert train[0] == "mitigate.train" and f"folder={trained.folder / 'run'}" in train
@@ -69,7 +69,7 @@ def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
 def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
     more = '+columns.recurrent_mine=["agent=recurrent","recipe=ts_distill"]'
     cfg = conf.load_config("table1", [f"out={tmp_path}", "split=val_unseen_ogn", more])
-    made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in table2.cells(cfg)}
+    made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in tables.cells(cfg)}
     (plain,), (shipped,) = made["recurrent"], made["recurrent_da"]
     train, hardened = made["recurrent_mine"]
     assert "checkpoint=checkpoints/recurrent/teacher" in shipped
@@ -85,7 +85,7 @@ def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
 )
 def test_what_is_measured_can_be_chosen(tmp_path, option):
     cfg = conf.load_config("table1", [f"out={tmp_path}", option])
-    for cell in table2.cells(cfg):
+    for cell in tables.cells(cfg):
         assert "conditions=[clean,low_light_noise,missing_data]" in cell.commands(cfg)[-1][1]
 
 
@@ -128,37 +128,37 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
     ],
 )
 def test_a_mistake_is_told_once_and_before_any_cell_is_run(tmp_path, monkeypatch, option, said):
-    monkeypatch.setattr(table2, "make", lambda made, cfg: pytest.fail("cells are run"))
+    monkeypatch.setattr(tables, "make", lambda made, cfg: pytest.fail("cells are run"))
     cfg = conf.load_config("table1", [f"out={tmp_path / 'out'}", option])
     with pytest.raises(ValueError, match=said):
-        table2.run(cfg)
+        tables.run(cfg)
     assert not (tmp_path / "out").exists()
 
 
 def test_a_column_of_other_options_is_refused_where_it_has_rows(tmp_path, quick):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
-    table2.run(cfg)
-    table2.run(cfg)
+    tables.run(cfg)
+    tables.run(cfg)
     changed = config(tmp_path, seeds=[0], columns={"base": ["checkpoint=checkpoints/teacher"]})
     with pytest.raises(ValueError, match=r"base-seed0 holds rows of an agent .* another out="):
-        table2.run(changed)
+        tables.run(changed)
     with pytest.raises(ValueError, match=r"da_per_frame-seed0 holds rows"):
-        table2.run(config(tmp_path, seeds=[0], train=["severity=0.4"]))
+        tables.run(config(tmp_path, seeds=[0], train=["severity=0.4"]))
 
 
 def test_walks_of_what_is_no_column_are_told(tmp_path, capsys):
-    assert table2.draw_walks(config(tmp_path, walks=["base", "stacked"]), tmp_path) == []
+    assert tables.draw_walks(config(tmp_path, walks=["base", "stacked"]), tmp_path) == []
     assert "no pictures of walks: stacked of walks= is no column" in capsys.readouterr().out
 
 
 def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
-    failed, part = (cell.evaluation / "rows.jsonl" for cell in table2.cells(cfg))
+    failed, part = (cell.evaluation / "rows.jsonl" for cell in tables.cells(cfg))
     rows.write(failed, [{**row, "success": 0} for row in rows.read(failed)])
     rows.write(part, [row for row in rows.read(part) if row["corruption"] in ("clean", "flare")])
-    report = table2.run(cfg).read_text(encoding="utf-8")
+    report = tables.run(cfg).read_text(encoding="utf-8")
     assert "| undefined ‡ (" in report or "| undefined ‡ |" in report
     assert "† 1/8" in report
 
@@ -175,7 +175,7 @@ def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick
 def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table, split, suite):
     cfg = conf.load_config("table1", [f"table={table}"])
     assert (cfg.split, cells.measured(cfg)[0]) == (split, "clean")
-    for cell in table2.cells(cfg):
+    for cell in tables.cells(cfg):
         node = conf.load_config("train" if cell.trains else "evaluate", cell.options)
         blind = cell.column.partition("_no_")[2]
         assert list(node.agent.blind) == [blind] * bool(blind)
@@ -188,7 +188,7 @@ def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table
 def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)
-    report = table2.run(cfg).read_text(encoding="utf-8")
+    report = tables.run(cfg).read_text(encoding="utf-8")
     lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
     assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
     assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
@@ -196,14 +196,14 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     assert lines["Seeds"] == "| Seeds | 0 1 | 0 1 |"
     assert lines["Clean SR"] == "| Clean SR | 70.0 | 70.0 |"  # 80 and 60
     costs = sorted(tmp_path.glob("cells/*/cost.json"))
-    assert len(costs) == len(table2.cells(cfg))
+    assert len(costs) == len(tables.cells(cfg))
     first = json.loads(costs[0].read_text())["train"]
-    table2.run(cfg)
+    tables.run(cfg)
     assert json.loads(costs[0].read_text())["train"] >= first > 0
 
 
 def test_a_program_that_had_nothing_to_do_costs_nothing(tmp_path, monkeypatch):
-    cell = table2.cells(config(tmp_path, seeds=[0]))[-1]
+    cell = tables.cells(config(tmp_path, seeds=[0]))[-1]
     left = {
         "train": cell.folder / "run" / "imitation" / "step-00000001.pt",
         "evaluate": cell.evaluation / "rows.jsonl",
@@ -218,12 +218,12 @@ def test_a_program_that_had_nothing_to_do_costs_nothing(tmp_path, monkeypatch):
         return programs.Chain("mine", tuple(made), self.folder / "log.txt", Path.cwd())
 
     def cost() -> dict[str, float]:
-        assert table2.make([cell], config(tmp_path)) == []
+        assert tables.make([cell], config(tmp_path)) == []
         return json.loads((cell.folder / "cost.json").read_text(encoding="utf-8"))
 
     for path in left.values():
         path.parent.mkdir(parents=True)
-    monkeypatch.setattr(table2.Cell, "chain", chain)
+    monkeypatch.setattr(tables.Cell, "chain", chain)
     first = cost()
     assert first.keys() == {"train", "evaluate", "evaluate more"}
     todo = {"evaluate"}
@@ -237,21 +237,21 @@ def test_a_program_that_had_nothing_to_do_costs_nothing(tmp_path, monkeypatch):
 def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
     cfg = config(tmp_path / "all")
     finished(cfg)
-    whole = table2.run(cfg).read_text(encoding="utf-8").splitlines()
-    again = config(tmp_path / "again", rows=[str(c.folder) for c in table2.cells(cfg)])
-    report = table2.run(again).read_text(encoding="utf-8").splitlines()
+    whole = tables.run(cfg).read_text(encoding="utf-8").splitlines()
+    again = config(tmp_path / "again", rows=[str(c.folder) for c in tables.cells(cfg)])
+    report = tables.run(again).read_text(encoding="utf-8").splitlines()
     assert report == [line for line in whole if "CPU minutes" not in line]
     assert not (tmp_path / "again" / "cells").exists()
 
 
 def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
     """Each takes what the table says and its own options, and none mixes with the table's rows."""
-    measured = table2.Cell.measurement
+    measured = tables.Cell.measurement
     cfg = conf.load_config(
         "table2", [f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7"]
     )
     cfg.columns = {"base": cfg.columns.base, "restored": cfg.columns.restored}
-    plain, restored = table2.cells(cfg)
+    plain, restored = tables.cells(cfg)
     mild = measured(plain, cfg, "severity_02", cfg.evaluations.severity_02)
     node = conf.load_config("evaluate", mild)
     assert (node.severity, node.episodes, node.name) == (0.2, 7, "base")
@@ -263,7 +263,7 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
         made = column(8, ALL, name=name, agent=cell.column)
         rows.write(cell.evaluation / "rows.jsonl", made)
         rows.write(cell.further("severity_02") / "rows.jsonl", made[: len(made) // 2])
-    report = table2.run(cfg).read_text(encoding="utf-8")
+    report = tables.run(cfg).read_text(encoding="utf-8")
     apart = (tmp_path / "severity_02" / "table.md").read_text(encoding="utf-8")
     assert "| base | base+restorer |" in report and "| base | base+restorer |" in apart
     assert "Missing cells" in apart and "Missing cells" not in (tmp_path / "table.md").read_text()
@@ -278,52 +278,52 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
 )
 def test_a_further_evaluation_walks_no_more_episodes_than_the_table(tmp_path, table, asked, walked):
     cfg = config(tmp_path, episodes=table)
-    measured = table2.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={asked}"])
+    measured = tables.cells(cfg)[0].measurement(cfg, "mine", [f"episodes={asked}"])
     assert conf.load_config("evaluate", measured).episodes == walked
 
 
 def test_a_column_or_an_evaluation_that_is_null_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
     cfg = conf.load_config("table2", [f"out={tmp_path}", "evaluations=beyond", *null])
-    made = table2.cells(cfg)
+    made = tables.cells(cfg)
     cells.check(made, cfg)
     assert "base" not in {cell.column for cell in made}
     kinds = [kind for kind, _ in made[0].commands(cfg)]
     assert "evaluate unseen" in kinds and not {"evaluate pairs", "evaluate mine"} & {*kinds}
     rows.write(made[0].further("pairs") / "rows.jsonl", column(8, ALL))
-    assert table2.write_further(made, cfg, tmp_path) == []
+    assert tables.write_further(made, cfg, tmp_path) == []
     with pytest.raises(ValueError, match="columns.* must not be empty"):
-        table2.cells(OmegaConf.merge(cfg, {"columns": dict.fromkeys(cfg.columns)}))
+        tables.cells(OmegaConf.merge(cfg, {"columns": dict.fromkeys(cfg.columns)}))
 
 
 def test_a_cell_is_trained_once_and_measured_by_each_evaluation(tmp_path):
     cfg = config(tmp_path)
     cfg.evaluations = {"pairs": ["suite=pairs"]}
-    kinds = [[kind for kind, _ in cell.commands(cfg)] for cell in table2.cells(cfg)[:2]]
+    kinds = [[kind for kind, _ in cell.commands(cfg)] for cell in tables.cells(cfg)[:2]]
     assert kinds == [["evaluate", "evaluate pairs"], ["train", "evaluate", "evaluate pairs"]]
 
 
 def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path)
     finished(cfg)
-    broken = table2.cells(cfg)[-1]
+    broken = tables.cells(cfg)[-1]
     (broken.evaluation / "rows.jsonl").unlink()  # its training fails before there are any
     monkeypatch.setattr(
-        table2.Cell,
+        tables.Cell,
         "commands",
         lambda self, cfg: [
             ("train", ["no_such_module"] if self == broken else ["timeit", "-n", "1", "pass"])
         ],
     )
     with pytest.raises(ValueError, match=f"{broken.column}, seed {broken.seed}: train ended with"):
-        table2.run(cfg)
-    report = (tmp_path / table2.REPORT).read_text(encoding="utf-8")
+        tables.run(cfg)
+    report = (tmp_path / tables.REPORT).read_text(encoding="utf-8")
     assert "| Seeds | 0 1 | 0 |" in report
 
 
 def test_an_empty_table_is_refused(tmp_path):
     with pytest.raises(ValueError, match="must not be empty"):
-        table2.cells(config(tmp_path, seeds=[]))
+        tables.cells(config(tmp_path, seeds=[]))
 
 
 def test_rows_of_another_severity_are_told(tmp_path):
@@ -331,33 +331,33 @@ def test_rows_of_another_severity_are_told(tmp_path):
     rows.write(tmp_path / "cells" / "rows.jsonl", column(8, ALL))
     cfg = OmegaConf.merge(cfg, {"rows": [str(tmp_path / "cells")]})
     with pytest.raises(ValueError, match="only of val_unseen at 0, val_unseen at 0.6"):
-        table2.run(cfg)
+        tables.run(cfg)
 
 
 def test_clean_rows_alone_make_a_report(tmp_path):
     """As of the ablations, whatever the severity is that nothing was measured at."""
     rows.write(tmp_path / "rows.jsonl", column(8, {}))
     cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
-    report = table2.run(cfg).read_text(encoding="utf-8")
+    report = tables.run(cfg).read_text(encoding="utf-8")
     assert "clean only" in report and "| Clean SR | 80.0 |" in report
 
 
 def test_the_papers_figures_stand_only_beside_its_severity(tmp_path):
     rows.write(tmp_path / "rows.jsonl", column(8, ALL, name="da_per_frame", severity=0.9))
     cfg = config(tmp_path / "out", severity=0.9, rows=[str(tmp_path / "rows.jsonl")])
-    lines = table2.run(cfg).read_text(encoding="utf-8").splitlines()
+    lines = tables.run(cfg).read_text(encoding="utf-8").splitlines()
     assert "| Motion blur | 40.0 |" in lines
 
 
 def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick, monkeypatch):
     """Every cell's weights are the base agent's, so a test takes seconds; the rows say who won."""
-    monkeypatch.setattr(table2.Cell, "agent", ())
+    monkeypatch.setattr(tables.Cell, "agent", ())
     cfg = config(tmp_path, walks=["base", "da_per_frame"], episodes=2, seeds=[0])
     ids = [
         episode.episode_id
-        for episode in table2.episodes(conf.load_config("evaluate").env, cfg.split, 2)
+        for episode in tables.episodes(conf.load_config("evaluate").env, cfg.split, 2)
     ]
-    for cell, wins in zip(table2.cells(cfg), ("10", "11"), strict=True):
+    for cell, wins in zip(tables.cells(cfg), ("10", "11"), strict=True):
         made = [
             row(i, won == "1", name=cell.column, corruption=c, severity=0.6 * (c != "clean"))
             for c in ("clean", "flare")
@@ -365,7 +365,7 @@ def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick
         ]
         others = row("of-a-longer-run", True, name=cell.column)
         rows.write(cell.folder / "evaluation" / "rows.jsonl", [*made, others])
-    table2.run(cfg)
+    tables.run(cfg)
     assert {p.name for p in (tmp_path / "pictures").iterdir()} == {
         f"{ids[1]}-flare.png",
         "sheet.png",
@@ -377,9 +377,9 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
     cfg = config(tmp_path, seeds=[0], episodes=1, walks=["base", "restored"])
     restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
     cfg.columns = {"base": [], "restored": restored}
-    (episode,) = table2.episodes(conf.load_config("evaluate").env, cfg.split, 1)
+    (episode,) = tables.episodes(conf.load_config("evaluate").env, cfg.split, 1)
     names = "base", "base+rules+restorer-rgb"
-    for cell, name in zip(table2.cells(cfg), names, strict=True):
+    for cell, name in zip(tables.cells(cfg), names, strict=True):
         for corruption in ("clean", "flare", "black_box"):
             at = {"corruption": corruption, "severity": 0.6 * (corruption != "clean")}
             made = row(episode.episode_id, name != "base" or corruption == "flare", name=name, **at)
@@ -392,20 +392,20 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
         return {"success": 1}
 
     monkeypatch.setattr(trajectories, "run_episode", run_episode)
-    table2.draw_walks(cfg, tmp_path)
+    tables.draw_walks(cfg, tmp_path)
     plain, attacked, repaired = walked
     assert plain == ("clean", [], None) and attacked == ("black_box", [], None)
     assert repaired == ("black_box", [episode.instruction.text], ["rgb"])
 
 
 def test_no_walks_without_the_agents_cells(tmp_path):
-    assert table2.draw_walks(config(tmp_path), tmp_path) == []
+    assert tables.draw_walks(config(tmp_path), tmp_path) == []
 
 
 def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
     cfg = conf.load_config("table2", [f"out={tmp_path}", 'train=["env.size=32"]'])
     cfg.columns = {"mine": ["recipe=da_per_episode", "env.rule=etpnav", "severity=0.9"]}
-    (_, train), (_, evaluate) = table2.cells(cfg)[0].commands(cfg)
+    (_, train), (_, evaluate) = tables.cells(cfg)[0].commands(cfg)
     assert {"env.size=32", "env.rule=etpnav"} <= {*train} & {*evaluate}
     assert "severity=0.9" in train and "severity=0.6" in evaluate
 
@@ -413,9 +413,9 @@ def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
 def test_a_cell_that_left_no_whole_row_does_not_hide_why(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
-    broken = table2.cells(cfg)[-1]
+    broken = tables.cells(cfg)[-1]
     monkeypatch.setattr(
-        table2.Cell,
+        tables.Cell,
         "commands",
         lambda self, cfg: [
             ("train", ["no_such_module"] if self == broken else ["timeit", "-n", "1", "pass"])
@@ -424,4 +424,4 @@ def test_a_cell_that_left_no_whole_row_does_not_hide_why(tmp_path, quick, monkey
     for left in ("", '{"agent": "abc'):
         (broken.evaluation / "rows.jsonl").write_text(left)
         with pytest.raises(ValueError, match=f"{broken.column}, seed 0: train ended with"):
-            table2.run(cfg)
+            tables.run(cfg)

@@ -1,0 +1,223 @@
+"""Tables of columns and seeds, as the paper's Table I (all kinds of agent) and II (all methods).
+
+Trains and evaluates every column for every seed, several cells at a time, each in processes of its
+own, on this machine or on those of ``launcher``. The same command again goes on where the last one
+stopped: trainings resume, evaluations go on, finished cells are kept. Then the report is written
+from the rows of all cells. ``evaluations=beyond`` measures each cell under more than the table's
+suite; each of these has a report of its own.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hydra.core.config_store import ConfigStore
+from omegaconf import MISSING, DictConfig
+
+from mitigate.core import build, conf
+from mitigate.core.files import atomic_text
+from mitigate.core.progress import Progress, say
+from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.evaluate import load
+from mitigate.evaluation.rows import ROWS, Row, read
+from mitigate.scale import launcher, programs
+from mitigate.training.cells import Cell, cells, check, listed
+
+COST, REPORT = "cost.json", "overview.md"
+
+
+@dataclass
+class TablesConfig:
+    """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, where each entry's meaning is."""
+
+    runs: str = "runs"
+    out: str = "runs/table"
+    rows: list[str] = field(default_factory=list)
+    columns: dict[str, Any] = field(default_factory=dict)
+    seeds: list[int] = field(default_factory=list)
+    split: str = "val_unseen"
+    episodes: int | None = None
+    suite: Any = MISSING
+    conditions: list[str] | None = None
+    severity: float = 0.6
+    evaluations: dict[str, Any] = field(default_factory=dict)
+    train: list[str] = field(default_factory=list)
+    jobs: int = 2
+    launcher: Any = MISSING
+    walks: list[str] = field(default_factory=list)
+    paper: dict[str, Any] = field(default_factory=dict)
+
+
+ConfigStore.instance().store(name="tables_schema", node=TablesConfig)
+
+
+def run(cfg: DictConfig) -> Path:
+    """Make all cells and the report; return the report's path.
+
+    With ``cfg.rows`` the report is made of those rows, and no cell is run. Raises ValueError for
+    settings that make no sense, before a cell is run, and if a cell failed (after the others are
+    done), with the end of its log; FileNotFoundError for rows that are not there.
+    """
+    out = Path(cfg.out)
+    if cfg.rows:
+        return write_report(cfg, out, list(cfg.rows))
+    made = cells(cfg)
+    check(made, cfg)
+    failed = make(made, cfg)
+    if len(failed) == len(made):
+        raise ValueError("Every cell failed. " + " ".join(failed))
+    problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
+    measured = [cell.evaluation for cell in made if _rows(cell.evaluation)]
+    if failed and not measured:
+        raise ValueError(problem)
+    report = write_report(cfg, out, measured)
+    written = [report, *write_further(made, cfg, out)]
+    if failed:
+        raise ValueError(problem)
+    print("\n".join(f"wrote {path}" for path in (*written, *draw_walks(cfg, out))), flush=True)
+    return report
+
+
+def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
+    """Train and evaluate all cells, ``cfg.jobs`` at a time; return what went wrong with which."""
+    chains, problems = [cell.chain(cfg) for cell in made], []
+    for cell in made:
+        cell.keep()
+    before = [
+        {kind: cell.left(kind) for kind, _ in chain.programs}
+        for cell, chain in zip(made, chains, strict=True)
+    ]
+    with Progress("cells", len(made), unit="cell") as progress:
+
+        def told(number: int, outcome: programs.Outcome) -> None:
+            cell = made[number]
+            idle = {kind for kind, left in before[number].items() if left == cell.left(kind) != []}
+            failed = bool(outcome.problem)
+            spent = {k: s for k, s in outcome.seconds.items() if failed or k not in idle}
+            _add_cost(cell.folder / COST, spent)
+            if outcome.problem:
+                problems.append(f"{cell.column}, seed {cell.seed}: {outcome.problem}")
+            progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
+            progress.advance()
+
+        programs.run(chains, cfg.jobs, launcher.chosen(cfg.launcher), progress, told)
+    return problems
+
+
+def _add_cost(path: Path, spent: dict[str, float]) -> None:
+    """Add CPU seconds to a cell's account, which counts all its runs that had something to do."""
+    cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    for kind, seconds in spent.items():
+        cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
+    with atomic_text(path) as file:
+        json.dump(cost, file)
+
+
+def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:
+    """Write ``table.md`` with its pictures, and ``overview.md`` with the paper beside it, from
+    the rows under ``paths``."""
+    from mitigate.evaluation import report, rows
+    from mitigate.evaluation.paper import beside
+    from mitigate.evaluation.sections import sections
+
+    found = rows.gather(paths)
+    report.write(found, out)
+    made = [
+        section
+        for section in sections(found)
+        if section.grid.split == cfg.split
+        and (section.severity == cfg.severity or not section.blocks)  # clean rows have none
+    ]
+    if not made:
+        held = sorted({f"{row['split']} at {row['severity']:g}" for row in found})
+        raise ValueError(
+            f"There are no rows of {cfg.split} at severity {cfg.severity:g}, only of "
+            f"{', '.join(held)}. Set split= and severity=."
+        )
+    figures = {str(name): list(values) for name, values in cfg.paper.items()}
+    spent = {} if cfg.rows else costs(out)
+    with atomic_text(out / REPORT) as file:
+        file.write("\n".join(beside(section, figures, spent) for section in made))
+    print((out / REPORT).read_text(encoding="utf-8"), flush=True)
+    return out / REPORT
+
+
+def write_further(made: Sequence[Cell], cfg: DictConfig, out: Path) -> list[Path]:
+    """Write ``NAME/table.md`` with its pictures for each further evaluation, and return their
+    paths. Each has a table of its own: its episodes need not be those of the others."""
+    from mitigate.evaluation import report, rows
+
+    written = []
+    for name in listed(cfg, "evaluations"):
+        paths = [cell.further(name) for cell in made if _rows(cell.further(name))]
+        if paths:
+            written.append(report.write(rows.gather(paths), out / name)[0])
+    return written
+
+
+def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
+    """Write pictures of episodes that the last of ``cfg.walks`` wins back for the first, by the
+    agents of the first seed, behind what their cells put in front of them; nothing if one of them
+    has no cell."""
+    from mitigate.evaluation import rows
+    from mitigate.evaluation.trajectories import Front, write_pictures
+    from mitigate.restoration.restorer import restorer_of
+    from mitigate.safeguard.guard import open_safeguard
+
+    held = {cell.column: cell for cell in cells(cfg) if cell.seed == cfg.seeds[0]}
+    missing = [column for column in cfg.walks if column not in held]
+    if missing:
+        say(f"no pictures of walks: {', '.join(missing)} of walks= is no column")
+    if not cfg.walks or missing:
+        return []
+    made = {_named(held[column].folder): held[column] for column in cfg.walks}
+    nodes = {name: conf.load_config("evaluate", cell.agent) for name, cell in made.items()}
+    agents: dict[str, Any] = {
+        n: load(c.agent, c.checkpoint, overrides=made[n].agent) for n, c in nodes.items()
+    }
+    env = next(iter(nodes.values())).env
+    world, chosen = build.maker(env.world)(), episodes(env, cfg.split, cfg.episodes)
+    fronts = {
+        name: Front(open_safeguard(node.safeguard), restorer_of(node.restore, world.sensors))
+        for name, node in nodes.items()
+    }
+    drawn = {episode.episode_id for episode in chosen}
+    found = [
+        row
+        for row in rows.gather([cell.evaluation for cell in made.values()])
+        if row["split"] == cfg.split
+        and row["severity"] in (0.0, cfg.severity)
+        and row["episode_id"] in drawn
+    ]
+    folder, seed = out / "pictures", cfg.seeds[0]
+    return write_pictures(agents, world, chosen, found, folder, seed=seed, fronts=fronts)
+
+
+def costs(out: Path) -> dict[str, dict[str, float]]:
+    """Mean CPU minutes of a cell by what they were spent on ("train", "evaluate", ...), and by
+    the column that its rows name."""
+    spent: dict[str, dict[str, list[float]]] = {}
+    for path in sorted((out / "cells").glob(f"*/{COST}")):
+        column = _named(path.parent)
+        for kind, seconds in json.loads(path.read_text(encoding="utf-8")).items():
+            spent.setdefault(kind, {}).setdefault(column, []).append(seconds / 60)
+    return {
+        kind: {column: sum(held) / len(held) for column, held in columns.items()}
+        for kind, columns in sorted(spent.items(), key=lambda item: (item[0] != "train", item[0]))
+    }
+
+
+def _named(folder: Path) -> str:
+    """The column of a cell's rows, which names what stands in front of the agent, too; of a cell
+    without rows that of the folder."""
+    found = _rows(folder / "evaluation")
+    return str(found[0]["name"]) if found else folder.name.rpartition("-seed")[0]
+
+
+def _rows(folder: Path) -> list[Row]:
+    """The rows that an evaluation has left in ``folder`` so far."""
+    return read(folder / ROWS) if (folder / ROWS).is_file() else []
