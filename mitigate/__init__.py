@@ -33,7 +33,15 @@ _HOMES = {
 def __getattr__(name: str) -> Any:
     """Import what is in ``__all__``, and torch with it, when it is first asked for."""
     if name in _HOMES:
-        return getattr(import_module(_HOMES[name]), name)
+        try:
+            return getattr(import_module(_HOMES[name]), name)
+        except ModuleNotFoundError as error:
+            from mitigate.core.extras import lacking
+
+            told = lacking(f"mitigate.{name}", error)
+            if not told:
+                raise
+            raise ImportError(told) from error
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 

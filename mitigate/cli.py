@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NamedTuple
 
+from mitigate.core.extras import lacking
 from mitigate.core.names import unknown
 
 
@@ -91,6 +92,7 @@ COMMANDS = {
         "mitigate.corruptions.episodes_command",
         "corrupt the instructions of an R2R-CE or RxR-CE file",
         "val_unseen.json.gz out.json.gz corruption=mask severity=0.5",
+        "files",
     ),
     "export_drive": Command(
         "mitigate.replay.export_drive",
@@ -126,17 +128,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
         sys.exit(f"mitigate: {unknown('command', name, COMMANDS)} See mitigate --help.")
     sys.argv = [f"mitigate {name}", *options]
     try:
-        module = import_module(COMMANDS[name].module)
-    except ModuleNotFoundError as error:
-        if (error.name or "mitigate").startswith("mitigate"):
-            raise
-        sys.exit(
-            f"mitigate {name} needs {error.name}, which is not installed: in a "
-            f"checkout, make install, or pip install -e '.[{COMMANDS[name].extra}]'."
-        )
-    try:
-        status = module.main()
+        status = import_module(COMMANDS[name].module).main()
         sys.stdout.flush()
+    except ModuleNotFoundError as error:
+        told = lacking(f"mitigate {name}", error, COMMANDS[name].extra)
+        if not told:
+            raise
+        sys.exit(told)
     except BrokenPipeError:  # whoever read what is printed, as head does, has read enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 128 + signal.SIGPIPE

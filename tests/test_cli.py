@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import mitigate
 from mitigate import cli
 
 ROOT = Path(__file__).parent.parent
@@ -55,6 +56,31 @@ def test_a_missing_package_says_what_to_install(monkeypatch):
             monkeypatch.delitem(sys.modules, module)
     with pytest.raises(SystemExit, match=r"needs tqdm.*pip install -e '.\[files\]'"):
         cli.main(["corrupt", "--list"])
+
+
+def test_a_package_that_is_missing_later_is_told_too(monkeypatch, tmp_path):
+    def main():
+        raise ModuleNotFoundError("No module named 'matplotlib'", name="matplotlib.figure")
+
+    monkeypatch.setattr("mitigate.evaluation.table.main", main)
+    with pytest.raises(SystemExit, match=r"table needs matplotlib.*pip install -e '.\[train\]'"):
+        cli.main(["table", "rows.jsonl"])
+
+
+def test_a_module_of_ones_own_that_is_missing_is_no_such_package(monkeypatch):
+    def main():
+        raise ModuleNotFoundError("No module named 'mine'", name="mine")
+
+    monkeypatch.setattr("mitigate.evaluation.table.main", main)
+    with pytest.raises(ModuleNotFoundError, match="mine"):
+        cli.main(["table", "rows.jsonl"])
+
+
+def test_what_the_package_offers_says_what_it_needs(monkeypatch):
+    monkeypatch.setitem(sys.modules, "torch", None)
+    monkeypatch.delitem(sys.modules, "mitigate.shipping.loading", raising=False)
+    with pytest.raises(ImportError, match=r"mitigate.load needs torch, which is not installed"):
+        mitigate.load  # noqa: B018
 
 
 def test_a_dash_in_a_command_is_an_underscore(capsys):

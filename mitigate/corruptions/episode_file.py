@@ -63,7 +63,7 @@ def run(
     Raises ValueError or FileNotFoundError for wrong options or files, and for an ``out`` that is
     there and was not made so; then ``out`` is untouched.
     """
-    _check_name(corruption)
+    check_for_file(corruption)
     severity = check_severity(severity)
     Key(seed, "0")  # refuses a seed that is none
     check_options(split, "[MASK]" if mask_token is None else mask_token, tagger)
@@ -97,14 +97,14 @@ def run(
     return _summarised(settings, counts, out)
 
 
-def _check_name(corruption: str) -> None:
-    check_name(corruption, INSTRUCTION)
+def check_for_file(corruption: str) -> None:
     if corruption == "white_box":
         raise ValueError(
             "corruption=white_box is not applicable to a file: it corrupts the system prompt of an "
             "agent, which no episode holds. Evaluate an agent that has one, or use "
             "corruption=black_box."
         )
+    check_name(corruption, NAMES)
 
 
 def _check_target(source: Path | str, out: Path | str) -> None:
@@ -112,7 +112,12 @@ def _check_target(source: Path | str, out: Path | str) -> None:
         raise ValueError(f"{out} is the file that is read: give the corrupted one another name.")
     if Path(out).is_dir():
         raise ValueError(f"{out} is a folder: name the file to write in it.")
-    if Path(out).exists() and not Path(f"{out}{SUMMARY}").is_file():
+    summary = Path(f"{out}{SUMMARY}")
+    if summary.resolve() == Path(source).resolve():
+        raise ValueError(f"{summary} is the file that is read, and the summary's name: rename it.")
+    if summary.exists() and not Path(out).exists():
+        raise ValueError(f"{summary} is there already, without {out}: move it away first.")
+    if Path(out).exists() and not summary.is_file():
         raise ValueError(
             f"{out} is there already and no file of corrupt_episodes: {out}{SUMMARY} is not beside "
             "it. Give another name, or move the file away first."

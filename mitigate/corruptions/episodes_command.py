@@ -21,9 +21,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from mitigate.core.arguments import asks_help, paths_and_options
-from mitigate.corruptions.episode_file import NAMES, USES, run
+from mitigate.corruptions.episode_file import NAMES, USES, check_for_file, run
 from mitigate.corruptions.language.text import passed_through
-from mitigate.corruptions.suite import INSTRUCTION, check_name
 
 ALIAS = "family"  # of corruption=, in older command lines
 OPTIONS: dict[str, Callable[[str], Any]] = {
@@ -47,14 +46,16 @@ def _options(given: Mapping[str, str]) -> dict[str, Any]:
         try:
             options["corruption" if key == ALIAS else key] = OPTIONS[key](value)
         except ValueError as error:
-            raise ValueError(f"{key} must be a number, but {value!r} was given.") from error
+            kind = "a whole number" if OPTIONS[key] is int else "a number"
+            raise ValueError(f"{key} must be {kind}, but {value!r} was given.") from error
     for key, example in (("corruption", "black_box"), ("severity", "0.5")):
         if key not in options:
             raise ValueError(
                 f"The option {key} is missing: add {key}={example}. Corruptions: "
                 f"{', '.join(NAMES)}."
             )
-    name = check_name(options["corruption"], INSTRUCTION)
+    name = options["corruption"]
+    check_for_file(name)
     for key in options:
         users = [user for user, used in USES.items() if key in used]
         if users and name not in users:

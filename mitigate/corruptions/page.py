@@ -10,7 +10,8 @@ from mitigate.corruptions.suite import DEPTH, NAMES, RGB, SUITE_VERSION
 HEAD = """# The corruption suite
 
 Twelve ways in which an RGB-D camera fails, each with a severity s from 0 to 1. Version {version}
-(`SUITE_VERSION`; it changes when any pixel changes, and every result row carries it).
+(`SUITE_VERSION`; it changes when any pixel of a frame within the rules below changes, and every
+result row carries it).
 
 ![The 12 corruptions at severities 0, 0.25, 0.5, 0.75 and 1](pictures/corruptions.jpg)
 

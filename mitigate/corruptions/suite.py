@@ -19,7 +19,9 @@ from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import MODALITIES
 from mitigate.corruptions.views import depth_views, rgb_views
 
-SUITE_VERSION = "1.1"  # changes when any pixel or word of any corruption changes
+# changes when any pixel or word of any corruption changes, of frames and texts that keep the rules
+# of docs/corruptions.md and docs/instructions.md
+SUITE_VERSION = "1.1"
 
 RGB = registry.names("rgb")
 DEPTH = registry.names("depth")
@@ -142,7 +144,8 @@ def check_corruption(corruption: Corruption) -> Corruption:
 def check_heading(heading: float | None) -> float | None:
     """Return ``heading`` as a float or None, or raise ValueError for NaN, infinity and text."""
     try:
-        value = math.nan if isinstance(heading, str | bool) else float(heading or 0.0)
+        told = np.asarray(0.0 if heading is None else heading)
+        value = float(told) if told.ndim == 0 and told.dtype.kind in "iuf" else math.nan
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):

@@ -112,3 +112,7 @@ def main() -> int:
         )
     print(f"rows in {out}")
     return 0
+
+
+if __name__ == "__main__":
+    sys.exit("Write `mitigate controls split=val_unseen`.")

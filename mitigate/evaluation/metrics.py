@@ -47,6 +47,12 @@ class Rule:
         (ours), or the rule's where it counts less."""
         return min(1.0, self.metres)
 
+    @property
+    def path_metres(self) -> float:
+        """Metres by which nDTW calls a walk near its path: the rule's, or VLN-CE's where success is
+        counted from view points, which lie on no path."""
+        return SUCCESS_DISTANCE if self.view_points else self.metres
+
     def met(self, distance: float, stopped: bool) -> bool:
         """Whether it is a success to end ``distance`` metres away, with STOP or without. A NaN
         distance raises ValueError."""

@@ -18,7 +18,7 @@ from mitigate.corruptions.gallery import depth_picture
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.plots import COLOURS, DPI, plain
 from mitigate.evaluation.sections import label
-from mitigate.replay.changes import Changes
+from mitigate.replay.changes import FEW, Changes
 from mitigate.replay.walk import ACTIONS, Answers
 from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.recorded import Recording
@@ -43,7 +43,8 @@ def table(
     lines = [
         f"Decisions that a corruption of severity {severity:g} changes, in %, of {steps} steps in "
         f"{drives} drive{'s' * (drives > 1)}, against the same agent on clean frames. Brackets are "
-        f"95 % bootstrap intervals over runs of ten steps.{behind}",
+        f"95 % bootstrap intervals over runs of ten steps; of fewer than {FEW} runs, or where all "
+        f"are alike, Wilson's.{behind}",
         "",
         "| condition | " + " | ".join(map(markdown_of, agents)) + " |",
         "|---|" + "---:|" * len(agents),

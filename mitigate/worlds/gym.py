@@ -51,6 +51,7 @@ class GymWorld(SeededWorld):
     def step(self, action: int) -> Observation:
         """Raises ValueError for an action that the environment does not have, and at the end of an
         episode whose ``info`` does not say ``success``."""
+        self._check_going()
         space = self.env.action_space
         if not 0 <= action < space.n:
             raise ValueError(f"Unknown action {action}: the environment has {space.n}.")

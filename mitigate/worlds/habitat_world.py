@@ -152,7 +152,7 @@ class HabitatWorld:
         found |= {n: round(d, 4) for n, d in distances.items() if math.isfinite(d)}
         if self.episode.reference_path:
             reference = np.array(self.episode.reference_path)
-            by = self._rule.metres
+            by = self._rule.path_metres
             found["ndtw"] = round(metrics.ndtw(walked, reference, threshold=by), 6)
         return found
 

@@ -40,8 +40,8 @@ class SeededWorld:
         limit: int,
         rule: str | None,
     ) -> None:
-        if limit < 1:
-            raise ValueError(f"limit={limit}: an episode has 1 step or more.")
+        if type(limit) is not int or limit < 1:
+            raise ValueError(f"limit={limit!r} must be a whole number of steps, 1 or more.")
         self.entries, self.success = dict(entries), success
         self.unit, self.limit = 1.0 if unit is None else unit, limit
         self.rule = rule or (f"{success} at the end" if success else "reward > 0 at the end")
@@ -63,6 +63,11 @@ class SeededWorld:
                 f"RGB must be uint8 in 0-255, but it is {self.sensors[RGB].dtype}: take off what "
                 "scales or transposes frames."
             )
+
+    def _check_going(self) -> None:
+        """Raise RuntimeError after the last step of an episode."""
+        if self.done:
+            raise RuntimeError("The episode is over: reset first.")
 
     def measures(self) -> dict[str, float]:
         """success, spl (the same: no shortest path is known) and steps."""
@@ -112,8 +117,8 @@ class SeededWorld:
 
 def _check_unit(entry: str, dtype: str, unit: float | None) -> None:
     """Raise ValueError for a unit of depth that is none, or is not said and must be."""
-    if unit is not None and not 0 < unit < math.inf:
-        raise ValueError(f"unit={unit:g} is no unit of depth: give metres above 0.")
+    if unit is not None and not (type(unit) in (int, float) and 0 < unit < math.inf):
+        raise ValueError(f"unit={unit!r} is no unit of depth: give a number of metres above 0.")
     if unit is None and not dtype.startswith("float"):
         raise ValueError(
             f"The depth {entry!r} is {dtype}, which may be anything: give unit=, the metres of one "

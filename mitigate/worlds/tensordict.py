@@ -170,6 +170,7 @@ class EnvWorld(SeededWorld):
 
     def step(self, action: int) -> Observation:
         """Raises ValueError for an action that the environment does not have."""
+        self._check_going()
         spec = self.env.action_spec
         if not 0 <= action < spec.space.n:
             raise ValueError(f"Unknown action {action}: the environment has {spec.space.n}.")

@@ -275,6 +275,9 @@ def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
         (["corruption=mask", "severity=high"], "must be a number"),
         (["corruption=maks", "severity=0.5"], "Did you mean mask"),
         (["corruption=white_box", "severity=0.5"], "not applicable to a file"),
+        (["corruption=white_box", "severity=0.5", "split=test"], "not applicable to a file"),
+        (["corruption=spatter", "severity=0.5"], "mask, black_box."),
+        (["corruption=mask", "severity=0.5", "seed=1.5"], "seed must be a whole number"),
         (["corruption=mask", "severity=0.5", "tokeniser=x"], "Did you mean tokenizer"),
         (["corruption=mask", "severity=0.5", "tokenizer=/none/such"], "no tokenizer '/none/such'"),
         (["corruption=mask", "severity=0.5", "tagger=best"], "own, spacy"),
@@ -324,3 +327,16 @@ def test_real_r2r_ce_episodes(tmp_path, family):
             assert new.instruction.tokens != old.instruction.tokens
         if family in MANNERS:
             assert check(old.instruction.text, new.instruction.text) == []
+
+
+def test_a_summary_replaces_neither_the_source_nor_another_file(tmp_path, capsys):
+    source = tmp_path / "q.json.summary.json"
+    source.write_text(json.dumps({"episodes": []}))
+    options = ["corruption=mask", "severity=0.5"]
+    assert episodes_command.main([str(source), str(tmp_path / "q.json"), *options]) == 2
+    assert "is the file that is read, and the summary's name" in capsys.readouterr().err
+    other = tmp_path / "new.json.summary.json"
+    other.write_text("of somebody else")
+    assert episodes_command.main([str(source), str(tmp_path / "new.json"), *options]) == 2
+    assert "is there already, without" in capsys.readouterr().err
+    assert source.read_text() == '{"episodes": []}' and other.read_text() == "of somebody else"

@@ -204,7 +204,9 @@ def test_a_number_or_a_text_will_do_for_a_key(panorama):
     assert not same(hurt(7), hurt(8)) and not same(hurt("7"), hurt(7))
 
 
-@pytest.mark.parametrize("heading", ["north", True, float("nan"), [1.0, 2.0]], ids=str)
+@pytest.mark.parametrize(
+    "heading", ["north", "", True, np.True_, float("nan"), [1.0, 2.0], [], {}], ids=str
+)
 @pytest.mark.parametrize("name", ["flare", "spatter", "multipath"])
 def test_a_heading_that_is_no_finite_number_is_refused(panorama, name, heading):
     with pytest.raises(ValueError, match="heading must be in finite radians"):

@@ -94,6 +94,7 @@ def test_a_gymnasium_environment_is_a_world(entry):
     assert measures["success"] == 1 and measures["steps"] == 4 == measures["decisions"]
     dark = run_episode(agent, world, episode(3), Corruption("low_light", 1.0), 0)
     assert dark["success"] == 0 and dark["steps"] == 1  # it stops in what it takes for the dark
+    world.reset(episode(3))
     with pytest.raises(ValueError, match="has 2"):
         world.step(5)
 
@@ -131,7 +132,7 @@ def test_depth_in_whole_numbers_needs_its_unit():
     assert seen.dtype == np.float32 and np.allclose(seen, 2.5)
     with pytest.raises(ValueError, match="farther than 2500 m: that is not metres"):
         GymWorld(Deep(np.float32(2500))).reset(episode(3))["depth"]
-    for unit in (0, -1.0, float("nan")):
+    for unit in (0, -1.0, float("nan"), "0.001", True):
         with pytest.raises(ValueError, match="no unit of depth"):
             GymWorld(Deep(np.float32(2)), unit=unit)
 
@@ -143,12 +144,22 @@ def test_depth_that_is_none_is_no_reading(value):
     assert not GymWorld(Deep(np.float32(value))).reset(episode(3))["depth"].any()
 
 
-@pytest.mark.parametrize("limit", [0, -3])
+@pytest.mark.parametrize("limit", [0, -3, 1.5, "3", None])
 def test_an_episode_without_a_step_is_refused(limit):
     from mitigate.worlds.gym import GymWorld
 
-    with pytest.raises(ValueError, match="1 step or more"):
+    with pytest.raises(ValueError, match="whole number of steps, 1 or more"):
         GymWorld(Room(), limit=limit)
+
+
+def test_nothing_can_be_done_in_an_environment_whose_episode_is_over():
+    from mitigate.worlds.gym import GymWorld
+
+    world = GymWorld(Room(), limit=1)
+    world.reset(episode(3))
+    world.step(1)
+    with pytest.raises(RuntimeError, match="over: reset first"):
+        world.step(1)
 
 
 def test_a_gymnasium_environment_without_frames_is_refused_with_what_it_has():

@@ -15,13 +15,14 @@ COMMANDS = (
     "position|locate|end|search"
 )
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
+MOST_ADVERBS = 8  # in front of a command (ours): a longer row of them is no speech
 # a run of white space is tried from its start alone and read in one way: time is linear in it
 _JOIN = (
     r"(?:(?:(?<!\s)\s+)?[,;]\s*(?:and\s+)?|(?<!\s)\s+(?:and|but)\s+"
     r"|(?:(?<!\s)\s+)?(?:,\s*)?(?:and\s+)?\bthen\b(?:\s*,)?\s*)"
 )
 _SPLIT = re.compile(
-    rf"{_JOIN}(?=(?:{_ADVERBS}(?:\s*,)?\s+)*(?!go back\b)(?:(?:{COMMANDS})\b"
+    rf"{_JOIN}(?=(?:{_ADVERBS}(?:\s*,)?\s+){{0,{MOST_ADVERBS}}}(?!go back\b)(?:(?:{COMMANDS})\b"
     rf"|(?:in|at|once|when|after|from) (?:the|you|inside) [^,.;]{{1,40}}? (?:{COMMANDS})\b))",
     re.IGNORECASE,
 )

@@ -62,6 +62,8 @@ class ApartmentsWorld:
             raise ValueError(f"size={size}: a view has from 8 to {LARGEST} pixels, as env.size=64.")
         self.size, self.layouts, self.views = size, layouts, views
         self._rule, self.rule = rule, str(RULES[rule])
+        if RULES[rule].view_points:  # rows of older versions had them to the goal
+            self.rule += ", as are all distances"
         self.sensors: dict[str, Sensor] = cameras(size, views)
         self._memory = Memory(0)
         self._simulator: Simulator | None = None
@@ -114,7 +116,8 @@ class ApartmentsWorld:
     def measures(self) -> dict[str, float]:
         """success, spl, path_length, geodesic_distance, distance_to_goal (metres), ndtw,
         collisions and steps. Both distances are to what the rule counts from, the first from where
-        the episode starts; ndtw is to the reference path, by the rule's metres."""
+        the episode starts; ndtw is to the reference path, by the rule's
+        ``path_metres``."""
         simulator, rule = self.simulator, RULES[self._rule]
         walked, left = np.array(simulator.path), self._left()
         length, won = metrics.path_length(walked), rule.met(left, simulator.stopped)
@@ -125,7 +128,7 @@ class ApartmentsWorld:
             "path_length": round(length, 4),
             "geodesic_distance": self._shortest,
             "distance_to_goal": round(left, 4),
-            "ndtw": round(metrics.ndtw(walked, reference, threshold=rule.metres), 6),
+            "ndtw": round(metrics.ndtw(walked, reference, threshold=rule.path_metres), 6),
             "collisions": int(simulator.collisions),
             "steps": simulator.steps,
         }

@@ -39,8 +39,9 @@ class Bag:
     stepped = False
 
     def __init__(self, path: Path, topics: Topics, hfov: float | None, yaw: float = 0.0) -> None:
-        self.path, self.name = path, path.name if path.is_dir() else path.stem
-        self.instruction = words(path.parent / f"{self.name}.txt")
+        place = path.resolve()  # of `.`, too
+        self.path, self.name = path, place.name if path.is_dir() else path.stem
+        self.instruction = words(place.parent / f"{self.name}.txt")
         with self._open() as reader:
             there = {name: info.msgtype for name, info in reader.topics.items()}
             self.topics = chosen(path, there, topics)
