@@ -147,7 +147,9 @@ def masked(logits: Tensor, mask: Tensor | None) -> Tensor:
 
 def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, float]:
     """Weights of an agent's auxiliary losses by name: its own, and in their place those given.
-    Raises ValueError for one below 0."""
+    Raises ValueError for one below 0, and for what is no mapping."""
+    if not isinstance(given or {}, Mapping):
+        raise ValueError(f"recipe.losses={given} must be weights by name, as {{distance: 0.3}}.")
     limits.check_weights(**{f"losses.{name}": value for name, value in (given or {}).items()})
     return {**getattr(agent, "loss_weights", {}), **(given or {})}
 

@@ -14,7 +14,7 @@ import traceback
 from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mitigate.bridge.cameras import CHANNELS, Rig
 from mitigate.bridge.condition import Condition
@@ -24,9 +24,6 @@ from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
 from mitigate.bridge.shared_memory import SharedMemory
 from mitigate.core.names import short, unknown
-
-if TYPE_CHECKING:
-    pass
 
 # of messages, behind "hello"
 KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted", "stopped")

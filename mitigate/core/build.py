@@ -6,7 +6,7 @@ as data, because a ``_target_`` in it could run anything.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from inspect import signature
 from pathlib import Path
@@ -41,6 +41,7 @@ def build(node: DictConfig, **given: Any) -> Any:
         makers = {k: Maker(v) for k, v in plain.items() if isinstance(v, dict) and PARTIAL in v}
         rest = OmegaConf.create({k: v for k, v in plain.items() if k not in makers})
         make = instantiate(rest, _partial_=True, _convert_="all")
+        _check_arguments(plain, (*plain, *given))
         return make(**makers, **given)  # not through instantiate, which would copy what is given
     except InstantiationException as error:
         cause = error.__cause__
@@ -51,6 +52,20 @@ def build(node: DictConfig, **given: Any) -> Any:
         if str(cause).startswith(NOT_LOADED):
             raise ValueError(_not_loaded(cause)) from error
         raise
+
+
+def _check_arguments(node: dict[str, Any], names: Iterable[str]) -> None:
+    """Raise ValueError for arguments that the class or function of ``node`` does not take."""
+    target = str(node["_target_"])
+    try:
+        taken = signature(get_object(target)).parameters
+    except (ValueError, TypeError):  # of C, of which nobody knows
+        return
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in taken.values()):
+        return
+    for name in names:
+        if not name.startswith("_") and name not in taken:
+            raise ValueError(f"{target}: {unknown('argument', name, [*taken])}")
 
 
 class Maker:

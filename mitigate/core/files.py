@@ -26,9 +26,11 @@ ROOT = PACKAGE.parent  # of the checkout, or of all installed packages
 
 def find(path: str | Path) -> Path:
     """Return ``path``, or where the project itself has it, if it does not exist from here: the
-    configs name shipped weights and episodes as ``checkpoints/base``, ``mitigate/worlds/...``."""
-    places = (Path(path), ROOT / path, PACKAGE / path)
-    return next((place for place in places if place.exists()), Path(path))
+    configs name shipped weights and episodes as ``checkpoints/base``, ``mitigate/worlds/...``.
+    ``~`` is the home folder."""
+    own = Path(path).expanduser()
+    places = (own, ROOT / own, PACKAGE / own)
+    return next((place for place in places if place.exists()), own)
 
 
 def open_text(path: Path | str) -> io.TextIOWrapper:

@@ -12,6 +12,7 @@ import json
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
+from functools import cache
 from pathlib import PurePath
 from typing import Any
 
@@ -33,7 +34,7 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
     agent without ``settings`` it covers the code of its class as well, where that is in a file.
     """
     settings = getattr(agent, "settings", dict)
-    code = {} if hasattr(agent, "settings") else {"code": _code(type(agent))}
+    code = {} if hasattr(agent, "settings") else {"code": _code(type(agent))}  # type: ignore[arg-type]
     held = {
         "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
         "weights": _weights(agent),
@@ -46,8 +47,10 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
+@cache
 def _code(kind: type) -> list[str]:
-    """The source of a class and of those that it builds on, but torch's and Python's own."""
+    """The source of a class and of those that it builds on, but torch's and Python's own; as it was
+    when it was first asked for, whatever becomes of the file."""
     found = []
     for each in kind.__mro__:
         if each.__module__.partition(".")[0] in ("builtins", "abc", "typing", "torch"):

@@ -92,13 +92,20 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     names ``within`` it that are no run of their own; return it. Nothing further below is theirs."""
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     found = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
-    left = [p for p in found if (own := _LEFT.fullmatch(p.name)) and not is_alive(int(own[1]))]
+    ended = {path: _LEFT.fullmatch(path.name) for path in found}
+    left = [p for p, own in ended.items() if own and _is_over(int(own[1]))]
     for path in left:
         if path.is_dir() and not path.is_symlink():
             shutil.rmtree(path, ignore_errors=True)
         else:
             path.unlink(missing_ok=True)
     return left
+
+
+def _is_over(pid: int) -> bool:
+    """Whether a process writes no more where this one has just taken the lock: it is gone, or had
+    this one's number before, as in a container that is started anew."""
+    return pid == os.getpid() or not is_alive(pid)
 
 
 def is_alive(pid: int) -> bool:

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from hydra._internal.utils import get_args_parser
+from hydra.core.override_parser.overrides_parser import OverridesParser
+from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
 from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
@@ -20,6 +22,26 @@ def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
     words = list(arguments)
     options = [word for word in words if "=" in word or word.startswith("-")]
     return [word for word in words if word not in options], options
+
+
+def values(options: Sequence[str], key: str) -> list[str]:
+    """What ``options`` set ``key`` to, without quotes and escapes: the last of them, and of one
+    with several values, for many runs, all. None for what Hydra cannot read."""
+    found: list[str] = []
+    for option in options:
+        if re.match(rf"\+{{0,2}}{re.escape(key)}=", option):
+            try:
+                (parsed,) = OverridesParser.create().parse_overrides([option])
+            except HydraException:
+                return []
+            several = parsed.is_sweep_override()
+            found = [*map(str, parsed.sweep_string_iterator())] if several else [_text(parsed)]
+    return found
+
+
+def _text(parsed: Override) -> str:
+    value = parsed.value()
+    return str(getattr(value, "text", value))
 
 
 def config_folder(options: Sequence[str]) -> Path | None:
@@ -50,11 +72,15 @@ def flags_first(words: Sequence[str]) -> list[str]:
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:
     """What is to be said of the entries that ``options`` add to ``conf/<primary>.yaml``
-    (``+columns.mine=...``): Hydra puts the new value in the place of one that is there, and adds
-    one that no program reads, without a word."""
+    (``+columns.mine=[...]``): Hydra puts a new list or mapping in the place of one that is there,
+    and adds an entry that no program reads, without a word."""
     from mitigate.core.conf import CONF, load_config
 
-    added = [option[1:].partition("=")[0] for option in options if re.match(r"\+[^+]", option)]
+    added = {
+        option[1:].partition("=")[0]: option.partition("=")[2][:1] in "[{"
+        for option in options
+        if re.match(r"\+[^+]", option)
+    }
     if not added:
         return []
     others = [o for o in options if re.match(r"[^-+].*=|~", o)]
@@ -65,13 +91,15 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
     folders = [folder for folder in (CONF, config_folder(options)) if folder is not None]
     return [
         told
-        for key in added
+        for key, whole in added.items()
         if not any((folder / key.partition("@")[0]).is_dir() for folder in folders)
-        and (told := _notice(key, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)]))
+        and (told := _notice(key, whole, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)]))
     ]
 
 
-def _notice(key: str, there: bool, names: list[str]) -> str:
+def _notice(key: str, whole: bool, there: bool, names: list[str]) -> str:
+    if there and not whole:
+        return ""  # which Hydra refuses
     if there:
         return f"{key} is there already, and +{key}= replaces it. To add one, give it another name."
     if "." in key:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from inspect import signature
+from numbers import Real
 from typing import Any
 
+import numpy as np
 import torch
 import torch.nn.functional as F
 from torch import Tensor
@@ -46,7 +48,8 @@ class Transform:
     ) -> None:
         _check(locals())
         self.size, self.resize, self.crop, self.bgr = size, resize, crop, bgr
-        self.mean, self.std, self.scale, self.near, self.far = mean, std, scale, near, far
+        self.mean, self.std = [float(x) for x in mean], [float(x) for x in std]
+        self.scale, self.near, self.far = float(scale), float(near), far
 
     def settings(self) -> dict:
         """The arguments, as plain data."""
@@ -95,8 +98,9 @@ def _check(given: Mapping[str, Any]) -> None:
     if given["resize"] not in RESIZE:
         raise ValueError(unknown("agent.transform.resize", given["resize"], RESIZE))
     size, near, far, std = (given[name] for name in ("size", "near", "far", "std"))
+    whole = isinstance(size, (int, np.integer)) and type(size) is not bool
     wanted = {
-        "size": (type(size) is int and 1 <= size <= MOST, f"a whole number of 1 to {MOST} pixels"),
+        "size": (whole and 1 <= size <= MOST, f"a whole number of 1 to {MOST} pixels"),
         "crop": (type(given["crop"]) is bool, "true or false"),
         "bgr": (type(given["bgr"]) is bool, "true or false"),
         "scale": (_number(given["scale"]) and given["scale"] > 0, "a number above 0"),
@@ -120,8 +124,9 @@ def _check(given: Mapping[str, Any]) -> None:
 
 
 def _number(value: Any) -> bool:
-    return type(value) in (int, float) and math.isfinite(value)
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _numbers(values: Any) -> bool:
-    return isinstance(values, (list, tuple)) and len(values) > 0 and all(map(_number, values))
+    listed = isinstance(values, (list, tuple, np.ndarray))
+    return listed and len(values) > 0 and all(map(_number, values))

@@ -2,14 +2,15 @@
 
 They frame every result: the oracle shows that a world's episodes can be solved with the low-level
 actions, the random walker what chance gives. Both walk clean, on the episodes of split=, episodes=
-and env=, as of mitigate evaluate; out= names the file of the rows (runs/controls.jsonl). The same
+and env=, as of mitigate evaluate; out= names the folder of the rows (runs/controls). The same
 command again only walks what is missing.
 """
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,19 +19,22 @@ from omegaconf import DictConfig
 from mitigate.agents.agent import Agent
 from mitigate.core import conf
 from mitigate.core.build import maker
+from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
-from mitigate.core.options import check_dashes
+from mitigate.core.options import check_dashes, config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import rows
+from mitigate.evaluation import list_hash, rows
 from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import episodes
+from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
 
-OUT = "runs/controls.jsonl"
+OUT = "runs/controls"
+OPTIONS = ("env", "split", "episodes", "out")  # those of an evaluation that mean anything here
 _STOP_SHARE = 0.01  # of random actions; about 100 actions an episode
 
 
@@ -61,8 +65,15 @@ class RandomAgent:
 
 def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
     """Walk both on the episodes that ``cfg``, an evaluation's, names; return their rows, which are
-    in ``out`` too. Those that it has count."""
-    world, chosen = maker(cfg.env.world)(), episodes(cfg.env, cfg.split, cfg.episodes)
+    in the folder ``out`` too. Those that it has count."""
+    chosen = episodes(cfg.env, cfg.split, cfg.episodes)
+    with FolderLock(out):
+        list_hash.keep(out, cfg.split, cfg.env.episodes[cfg.split])
+        return _walked(cfg, chosen, out / rows.ROWS)
+
+
+def _walked(cfg: DictConfig, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
+    world = maker(cfg.env.world)()
     controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": RandomAgent()}
     held = {rows.identity(row): row for row in rows.read(out)} if out.exists() else {}
     found = []
@@ -94,11 +105,12 @@ def main() -> int:
     if {"-h", "--help"} & {*sys.argv[1:]}:
         print(__doc__)
         return 0
-    given = [option for option in sys.argv[1:] if not option.startswith("out=")]
-    out = Path([OUT, *(o[4:] for o in sys.argv[1:] if o.startswith("out="))][-1])
+    given = sys.argv[1:]
     try:
         check_dashes(given)
-        cfg = conf.composed("evaluate", given)
+        _check(given)
+        cfg = conf.composed("evaluate", given, config_folder(given))
+        out = Path(cfg.out or OUT)
         found = run(cfg, out)
     except (OSError, ValueError) as error:
         print(f"controls: {conf.said(error)}", file=sys.stderr)
@@ -112,6 +124,17 @@ def main() -> int:
         )
     print(f"rows in {out}")
     return 0
+
+
+def _check(options: Sequence[str]) -> None:
+    """Raise ValueError for an option of an evaluation that would have no effect."""
+    for option in options:
+        name = re.split(r"[.=]", option.lstrip("+~"))[0]
+        if not option.startswith("-") and name not in OPTIONS:
+            raise ValueError(
+                f"{option} has no effect: oracle and random walker walk clean, by seed 0. Options "
+                f"are {', '.join(OPTIONS)}."
+            )
 
 
 if __name__ == "__main__":

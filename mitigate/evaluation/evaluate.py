@@ -20,6 +20,7 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import conf, seeding
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
+from mitigate.core.options import values
 from mitigate.evaluation import list_hash
 from mitigate.evaluation.columns import changed, column_of, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
@@ -278,16 +279,16 @@ def hydra_main(cfg: DictConfig) -> None:
     run(cfg, HydraConfig.get().overrides.task)
 
 
-def _complete() -> None:
+def _add_kind_of_agent() -> None:
     """Check the command line, and add the kind of agent that its weights are of."""
     check_arguments(sys.argv)
-    weights = [o.partition("=")[2] for o in sys.argv[1:] if o.startswith("checkpoint=")]
-    if weights:
+    weights = values(sys.argv[1:], "checkpoint")
+    if len(weights) == 1:
         from mitigate.core.build import agent_option
 
-        sys.argv += agent_option(sys.argv[1:], weights[-1].strip("\"'"))
+        sys.argv += agent_option(sys.argv[1:], weights[0])
 
 
 def main() -> None:
     """Run from the command line."""
-    conf.main(hydra_main, "evaluate", _complete)
+    conf.main(hydra_main, "evaluate", _add_kind_of_agent)

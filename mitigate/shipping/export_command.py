@@ -47,8 +47,10 @@ def main() -> None:
     overrides, configs = given.pop("overrides"), given.pop("config_dir")
     given["rows"], more = paths_and_options(given["rows"])
     try:
-        chosen = [*overrides, *more] or _own_kind(given["run"])
-        if chosen:
+        chosen = [*overrides, *more]
+        if not any(option.lstrip("+").startswith("agent=") for option in chosen):
+            chosen += _own_kind(given["run"])
+        if any(option.lstrip("+").startswith("agent=") for option in chosen):
             given["walks"] = _walks_of(given["run"], chosen, configs)
         folder = export(given.pop("run"), given.pop("name"), **given)
     except (ValueError, OSError) as error:

@@ -27,7 +27,7 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     kind of agent that needs ``walks``, and for weights that do not fit float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / hardened.CONFIG
-    _refuse_what_ships_as_it_is(run)
+    refuse_what_ships_as_it_is(run)
     if not (weights.is_file() and config.is_file()):
         inside = run.name == "agent" and (run / checkpoint.WEIGHTS).is_file()
         raise FileNotFoundError(
@@ -50,7 +50,7 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     return settings.read(config), agent.eval()
 
 
-def _refuse_what_ships_as_it_is(run: Path) -> None:
+def refuse_what_ships_as_it_is(run: Path) -> None:
     """Raise ValueError for the run, or its folder ``agent``, of what is no navigation agent."""
     config = run / hardened.CONFIG
     held = settings.read(config).get("agent") if config.is_file() else None

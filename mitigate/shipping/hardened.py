@@ -119,9 +119,12 @@ def build(config: Path) -> Any:
 
 def config_of(weights: Path) -> Path:
     """Where the settings are of the agent that ``weights`` (a file, or a folder) belong to, whether
-    there are any or not. Raises FileNotFoundError if there are no weights."""
+    there are any or not. Raises FileNotFoundError if there are no weights, ValueError for a file of
+    a hardened folder, which is checked as a whole."""
     if is_hardened(weights):
         return weights / CONFIG
+    if weights.is_file() and is_hardened(weights.parent):
+        raise ValueError(f"{weights} is of a hardened folder: name that, {weights.parent}.")
     return checkpoint.weights_file(weights).with_name(CONFIG)
 
 

@@ -15,6 +15,7 @@ import torch
 from mitigate.core import checkpoint
 from mitigate.core.files import find
 from mitigate.shipping import hardened
+from mitigate.shipping.finished import refuse_what_ships_as_it_is
 
 
 def load(folder: str | Path) -> Any:
@@ -34,8 +35,11 @@ def load(folder: str | Path) -> Any:
             "checkpoints/base."
         )
     place = find(folder)
-    if (place / hardened.CARD).is_file():
+    if hardened.is_hardened(place):
         return hardened.load_hardened(place)
+    refuse_what_ships_as_it_is(place)
+    if (place / "agent").is_dir():
+        raise ValueError(f"{folder} is the folder of a run: name its agent, {place / 'agent'}.")
     config = hardened.config_of(place)
     if not config.is_file():
         raise FileNotFoundError(f"{config} is missing, so nobody knows what agent {folder} is of.")

@@ -11,6 +11,7 @@ from omegaconf import DictConfig, ListConfig
 
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_json
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.rows import ROWS
@@ -21,7 +22,7 @@ from mitigate.training import train
 LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
 CELLS = ("agent", "checkpoint", "name", "seed", "out")  # a further evaluation does not say these
-PLACES = ("seed", "folder", "out")  # nor a column these
+PLACES = ("seed", "folder", "out", "workers", "evaluation")  # nor a column these
 MEASURED = ("split", "episodes", "conditions", "severity")  # nor, if it does not train, these
 
 
@@ -121,7 +122,10 @@ class Cell:
     def check_kept(self) -> None:
         """Raise ValueError if its folder holds the rows of another agent."""
         file = self.folder / OPTIONS
-        held = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else self._made_by
+        begun = (self.folder / "run").exists() or (self.evaluation / ROWS).is_file()
+        if not (begun and file.is_file()):
+            return
+        held = read_json(file, f"Delete {self.folder}, or choose another out=.")
         if held != self._made_by:
             raise ValueError(
                 f"{self.folder} holds rows of an agent that was made by {held}, and the column is "
@@ -180,7 +184,8 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
     a split and conditions that there are not, and for a cell that holds another agent's rows."""
     if len({*cfg.seeds}) < len(cfg.seeds):
         raise ValueError(f"seeds={list(cfg.seeds)} names one twice: two cells would be one folder.")
-    _check_own(cfg.train, PLACES, "which has them from seeds= and out=.")
+    own = "which gives each cell a seed, a folder and one core, and evaluates it itself."
+    _check_own(cfg.train, PLACES, own)
     conditions(measured(cfg), cfg.severity, None)
     for cell in made:
         cell.check_kept()
@@ -217,7 +222,9 @@ def _check_own(options: Sequence[str], taken: Sequence[str], why: str) -> None:
     """Raise ValueError for options that the table sets: they would do nothing, make rows another
     agent's, or put them where the table does not look."""
     for option in options:
-        if option.lstrip("+~").partition("=")[0] in taken:
+        key = option.lstrip("+~").partition("=")[0]
+        whole = "evaluation" if key.startswith("evaluation.") else key
+        if whole in taken:
             raise ValueError(f"{option} is for the table to say, {why}")
 
 

@@ -100,6 +100,16 @@ def tell_of_schedule(cfg: DictConfig) -> None:
     )
 
 
+def check_teacher(cfg: DictConfig) -> None:
+    """Raise ValueError for a teacher of which no stage would learn."""
+    taught = any(stage is not None and "teacher" in stage.recipe for stage in cfg.stages.values())
+    if cfg.get("teacher") is not None and not taught:
+        raise ValueError(
+            f"teacher={cfg.teacher} would have no effect: recipe={cfg.name} does not distil. "
+            "Leave it out, or choose recipe=ts_distill or stacked."
+        )
+
+
 def tell_of_warmup(cfg: DictConfig) -> None:
     """Say so if a stage ends before its learning rate has risen to what it is set to."""
     for name, stage in cfg.stages.items():
@@ -186,8 +196,9 @@ def _check_kind(recipe: Any, stage: DictConfig | None) -> None:
 
 
 def _check_stages(cfg: DictConfig, agent: nn.Module, ranks: Ranks) -> None:
-    """Build our recipes of all stages on a copy of ``agent``: a mistake in the last one must not
-    show only after the others have trained. Those of a user may need what a stage leaves.
+    """Build the recipes of all stages on a copy of ``agent``, up to the first that is not ours: a
+    mistake in the last one must not show only after the others have trained. What a user's leaves,
+    and what the stages behind it need of that, is not known before.
 
     Raises ValueError or FileNotFoundError as they do, and for more ``ranks`` than pieces.
     """
@@ -199,11 +210,12 @@ def _check_stages(cfg: DictConfig, agent: nn.Module, ranks: Ranks) -> None:
     except Exception:  # of any kind: what cannot be copied may still be trained
         return
     for name, stage in stages.items():
-        if stage.recipe._target_.startswith(OURS):
-            with redirect_stdout(StringIO()):
-                pieces = recipe_of(stage, copied).pieces()
-            if pieces is not None:
-                ranks.check(pieces, f"the stage {name} of recipe={cfg.name}")
+        if not stage.recipe._target_.startswith(OURS):
+            return
+        with redirect_stdout(StringIO()):
+            pieces = recipe_of(stage, copied).pieces()
+        if pieces is not None:
+            ranks.check(pieces, f"the stage {name} of recipe={cfg.name}")
 
 
 def _check_settings(node: DictConfig, agent: nn.Module) -> None:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from numbers import Real
 from typing import Any
 
 from omegaconf import DictConfig, OmegaConf
+
+from mitigate.core.names import short
 
 COUNT = 10**9  # steps; a training at 1000 a second would take 11 days (ours)
 EPISODES, PROCESSES = 100_000, 256  # most (ours)
@@ -87,10 +90,12 @@ def check_share(name: str, value: float) -> None:
 
 def in_range(value: float, low: float, high: float) -> bool:
     """Whether ``value`` is a finite number from ``low`` to ``high``."""
-    return low <= value <= high and math.isfinite(value)
+    return isinstance(value, Real) and low <= value <= high and math.isfinite(value)
 
 
 def shown(value: float) -> str:
     """A number as a message has it."""
+    if not isinstance(value, Real):
+        return short(value)
     huge = isinstance(value, int) and value.bit_length() > 60  # a float may not hold it
     return "..." if huge else format(value, ".6g")

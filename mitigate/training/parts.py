@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from torch import nn
@@ -86,15 +86,23 @@ def freeze(agent: nn.Module) -> None:
                 parameter.requires_grad_(False)
 
 
-def hold_statistics(module: nn.Module) -> None:
+def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> None:
     """Put the frozen normalisations with running statistics (BatchNorm) below ``module`` in eval
     mode: in training mode every batch moves these, though no weight trains. One without weights of
-    its own is frozen with the module that it is in."""
+    its own is frozen if all are of the nearest module around it that has some, but for adapters
+    (``around``: those of a module above)."""
+    around = _without_adapters(module) or around
     for child in module.children():
-        hold_statistics(child)
+        hold_statistics(child, around)
         if isinstance(child, _NormBase):
-            own = [*child.parameters()] or [*module.parameters()]
-            child.train(child.training and any(p.requires_grad for p in own))
+            own = [*child.parameters()] or around
+            frozen = bool(own) and not any(p.requires_grad for p in own)
+            child.train(child.training and not frozen)
+
+
+def _without_adapters(module: nn.Module) -> list[nn.Parameter]:
+    named = module.named_parameters()
+    return [p for name, p in named if checkpoint.ADAPTER not in f".{name}"]
 
 
 def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:

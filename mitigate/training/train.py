@@ -119,7 +119,7 @@ def run(cfg: DictConfig) -> Path:
     check(cfg)
     with Ranks.of_environment() as ranks:
         cfg.folder = cfg.folder or default_folder(cfg)  # what refers to it finds it
-        within = ("agent", *cfg.stages)
+        within = ("agent", "walks", *cfg.stages)
         with FolderLock(cfg.folder, within) if ranks.first else nullcontext():
             return _run(cfg, Path(cfg.folder), ranks)
 
@@ -129,6 +129,7 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     node = cfg.agent if cfg.init_parts else begun
     agent = build_agent(node, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
     OmegaConf.resolve(cfg.stages)  # a stage that is left out may be named by another
+    fitting.check_teacher(cfg)
     fitting.tell_of_schedule(cfg)
     fitting.leave_out(cfg, agent)
     fitting.tell_of_warmup(cfg)

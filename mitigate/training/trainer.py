@@ -45,7 +45,6 @@ class Trainer:
         warmup: updates over which the learning rate rises from 0.
         schedule: learning rate after warm-up, one of ``optimization.SCHEDULES``; it ends at 0
             unless constant.
-            unless constant.
         grad_clip: largest global gradient norm; 0 turns clipping off.
         log_every, save_every, eval_every, figure_every: in updates; 0 means never (a checkpoint is
             always written at the end).

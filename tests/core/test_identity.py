@@ -63,3 +63,15 @@ def test_an_agent_without_settings_is_another_one_when_its_code_is(tmp_path, mon
     sys.modules.pop("plain_agent")
     first, edited, again = found
     assert first == again != edited
+
+
+def test_an_agent_is_what_was_loaded_whatever_becomes_of_its_file(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    file = tmp_path / "edited_agent.py"
+    file.write_text(PLAIN)
+    agent = importlib.import_module("edited_agent").Plain()
+    before = identity(agent, {})
+    file.write_text(PLAIN.replace("steps = 0", "steps = 1"))
+    linecache.clearcache()
+    assert identity(agent, {}) == before
+    sys.modules.pop("edited_agent")

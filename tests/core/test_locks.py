@@ -127,3 +127,14 @@ def test_a_refused_second_lock_does_not_end_the_first(tmp_path):
             text=True,
         )
     assert "is in use: process" in other.stderr
+
+
+def test_what_a_process_of_the_same_number_left_is_deleted_too(tmp_path):
+    """In a container that is started anew every process has the number it had before."""
+    (tmp_path / "walks").mkdir()
+    own, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))
+    dead = tmp_path / "walks" / ".x.pt.4194300.tmp"
+    for file in (own, other, dead):
+        file.touch()
+    with FolderLock(tmp_path, ("walks",)):
+        assert not own.exists() and not dead.exists() and other.exists()

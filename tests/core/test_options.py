@@ -16,7 +16,8 @@ REPLACES = "{0} is there already, and +{0}= replaces it."
         ("table1", ["+columns.mine=[agent=recurrent]", "jobs=1"], []),
         ("table1", ["columns.recurrent=[agent=recurrent]"], []),
         ("table1", ["~columns.recurrent", "+columns.recurrent=[agent=recurrent]"], []),
-        ("evaluate", ["+env.episodes.val_seen=mine.json"], ["env.episodes.val_seen"]),
+        ("evaluate", ["+env.episodes={mine: a.json}"], ["env.episodes"]),
+        ("evaluate", ["+env.episodes.val_seen=mine.json", "+seed=1"], []),  # Hydra refuses them
         ("evaluate", ["++split=val_seen"], []),
         ("evaluate", ["+severity=1", "sevrity=2"], []),  # is refused anyway
     ],
@@ -67,3 +68,17 @@ def test_many_runs_may_be_asked_for_behind_other_options(flag):
         "mine",
     ]
     assert options.flags_first(["seed=0"]) == ["seed=0"]
+
+
+@pytest.mark.parametrize(
+    ("given", "wanted"),
+    [
+        (["checkpoint=a/b"], ["a/b"]),
+        (["++checkpoint=a", "seed=1", "checkpoint='b c'"], ["b c"]),
+        ([r"checkpoint=my\=base"], ["my=base"]),
+        (["checkpoint=a,b"], ["a", "b"]),
+        (["checkpointer=a", "name=checkpoint=b", "checkpoint=~/x"], []),  # the last is unreadable
+    ],
+)
+def test_what_an_option_is_set_to_is_read_as_hydra_reads_it(given, wanted):
+    assert options.values(given, "checkpoint") == wanted

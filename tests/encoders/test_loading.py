@@ -9,6 +9,7 @@ import types
 from collections import defaultdict
 from dataclasses import make_dataclass
 
+import numpy as np
 import pytest
 import torch
 from omegaconf import OmegaConf
@@ -375,3 +376,13 @@ def test_the_transform_normalises_crops_and_clips():
     assert float(middle[..., :4].max()) < 0.01 and float(middle[..., 6:].min()) > 0.99
     with pytest.raises(ValueError, match="near"):
         Transform(2, near=3, far=2)
+
+
+def test_a_transform_takes_numbers_of_numpy():
+    made = Transform(
+        size=np.int64(8), scale=np.float32(255), mean=np.array([0.5] * 3), std=[np.float32(0.5)] * 3
+    )
+    frames = torch.full((1, 16, 16, 3), 255, dtype=torch.uint8)
+    assert torch.allclose(made(frames), torch.ones(1, 3, 8, 8))
+    with pytest.raises(ValueError, match=r"agent.transform.size=True must be a whole number"):
+        Transform(size=True)

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import shutil
+
 import pytest
 
+from mitigate.core import conf
+from mitigate.core.files import find
 from mitigate.corruptions import CLEAN
 from mitigate.evaluation import controls, rows
 from mitigate.evaluation.controls import OracleAgent, RandomAgent
@@ -41,7 +45,7 @@ def called(monkeypatch, *given):
 
 
 def test_the_same_command_only_walks_what_is_missing(monkeypatch, tmp_path, walked, capsys):
-    given = ["split=val_seen_ogn", f"out={tmp_path}/rows.jsonl"]
+    given = ["split=val_seen_ogn", f"out={tmp_path}"]
     assert called(monkeypatch, *given, "episodes=1") == 0
     assert called(monkeypatch, *given, "episodes=2") == 0
     assert len(walked) == 4 and len(set(walked)) == 2
@@ -57,8 +61,20 @@ def test_the_same_command_only_walks_what_is_missing(monkeypatch, tmp_path, walk
         ("split=val_sen", "Did you mean val_seen?"),
         ("env=corridor", "There is no env 'corridor'"),
         ("--split", "options are written split=VALUE"),
+        ("severity=0.9", "severity=0.9 has no effect"),
+        ("agent=recurrent", "agent=recurrent has no effect"),
     ],
 )
 def test_a_wrong_option_is_named(monkeypatch, tmp_path, capsys, option, words):
-    assert called(monkeypatch, option, f"out={tmp_path}/rows.jsonl") == 2
+    assert called(monkeypatch, option, f"out={tmp_path}") == 2
     assert words in capsys.readouterr().err and not list(tmp_path.iterdir())
+
+
+def test_rows_of_another_list_of_the_split_are_not_counted(monkeypatch, tmp_path, walked, capsys):
+    for name, split in (("a", "val_seen"), ("b", "val_unseen")):
+        source = conf.load_config("evaluate").env.episodes[split]
+        shutil.copy(find(source), tmp_path / f"{name}.json.gz")
+    given = ["split=mine", "episodes=1", f"out={tmp_path}/out"]
+    assert called(monkeypatch, f"+env.episodes.mine={tmp_path}/a.json.gz", *given) == 0
+    assert called(monkeypatch, f"+env.episodes.mine={tmp_path}/b.json.gz", *given) == 2
+    assert "holds rows of another list of mine" in capsys.readouterr().err and len(walked) == 2

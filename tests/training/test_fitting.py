@@ -23,6 +23,7 @@ from mitigate.recipes.pretrain import Pretrain
 from mitigate.recipes.restore import Restore
 from mitigate.training import fitting, train
 from mitigate.training.ranks import Ranks
+from mitigate.training.recipe import Recipe
 from tests.tiny import TinyAgent, TinyRecipe
 
 OFF = "evaluation.enabled=false"
@@ -361,3 +362,37 @@ def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
     assert met == {"perception_rgb": list(RGB), "imitation": list(RGB)}
     written = OmegaConf.load(tmp_path / "config.yaml")
     assert written.stages.imitation.recipe.schedule.names == list(RGB)
+
+
+def test_a_teacher_of_which_no_stage_learns_is_refused(tmp_path):
+    assert "recipe=da_per_frame does not distil" in refusal(
+        tmp_path, "recipe=da_per_frame", "teacher=nowhere", OFF
+    )
+
+
+def test_stages_behind_one_of_a_users_are_not_built_before_it_trained(monkeypatch):
+    built = []
+    monkeypatch.setattr(
+        fitting, "recipe_of", lambda stage, agent: built.append(stage.recipe._target_) or Recipe()
+    )
+    names = ("mitigate.recipes.a.A", "mine.B", "mitigate.recipes.c.C")
+    stages = {name[-1]: {"recipe": {"_target_": name}} for name in names}
+    cfg = OmegaConf.create({"name": "own", "stages": stages})
+    fitting._check_stages(cfg, TinyAgent(), Ranks())
+    assert built == ["mitigate.recipes.a.A"]
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        ("+agent.foo=1", "There is no argument 'foo'"),
+        ("+stages.imitation.recipe.foo=1", "There is no argument 'foo'"),
+        (
+            "+stages.imitation.recipe.losses={distance: abc}",
+            "losses.distance='abc' must be a number",
+        ),
+        ("+stages.imitation.recipe.losses=[1]", "must be weights by name"),
+    ],
+)
+def test_an_argument_that_cannot_be_is_named_before_the_first_step(tmp_path, option, words):
+    assert words in refusal(tmp_path, "recipe=da_per_episode", option, OFF)

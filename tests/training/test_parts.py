@@ -1,0 +1,30 @@
+"""Which parts of an agent train, and what the others keep."""
+
+from __future__ import annotations
+
+import torch
+from torch import nn
+
+from mitigate.agents.adapters import backbone_sha, insert_adapters
+from mitigate.training.parts import hold_statistics
+
+
+def test_a_normalisation_without_weights_in_a_module_without_any_trains_with_the_rest():
+    model = nn.Sequential(
+        nn.Sequential(nn.BatchNorm1d(4, affine=False), nn.ReLU()), nn.Linear(4, 2)
+    )
+    hold_statistics(model.train())
+    assert model[0][0].training
+    model.requires_grad_(False)
+    hold_statistics(model.train())
+    assert not model[0][0].training
+
+
+def test_adapters_beside_a_frozen_normalisation_do_not_make_it_train():
+    block = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8, affine=False), nn.ReLU())
+    model = nn.Sequential(block)
+    insert_adapters(model, ["0"])
+    before = backbone_sha(model)
+    hold_statistics(model.train())
+    model(torch.randn(2, 3, 8, 8))
+    assert backbone_sha(model) == before
