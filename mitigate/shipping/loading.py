@@ -35,7 +35,7 @@ def load(folder: str | Path) -> Any:
             "checkpoints/base."
         )
     place = find(folder)
-    if hardened.is_hardened(place):
+    if (place / hardened.CARD).is_file():
         return hardened.load_hardened(place)
     refuse_what_ships_as_it_is(place)
     if (place / "agent").is_dir():
