@@ -20,6 +20,7 @@ from torch import nn
 from mitigate.core import checkpoint, seeding, settings
 from mitigate.core.files import find
 from mitigate.core.names import unknown
+from mitigate.core.options import values
 
 # attribute of an agent's class: arguments that name code or files, which no config that came with
 # weights may set
@@ -170,6 +171,13 @@ def agent_option(options: Sequence[str], weights: str) -> list[str]:
         return []
     name = "" if kind == hardened.TARGET else settings.named(kind)
     return [f"agent={name}"] if name else []
+
+
+def with_kind(options: Sequence[str]) -> list[str]:
+    """The ``options`` of an evaluation, with the kind of agent that its ``checkpoint=`` is of."""
+    weights = values(options, "checkpoint")
+    own = agent_option(options, weights[0]) if len(weights) == 1 else []
+    return [*options, *own]
 
 
 def build_agent(

@@ -20,7 +20,6 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import conf, seeding
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
-from mitigate.core.options import values
 from mitigate.evaluation import list_hash
 from mitigate.evaluation.columns import changed, column_of, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
@@ -282,11 +281,10 @@ def hydra_main(cfg: DictConfig) -> None:
 def _add_kind_of_agent() -> None:
     """Check the command line, and add the kind of agent that its weights are of."""
     check_arguments(sys.argv)
-    weights = values(sys.argv[1:], "checkpoint")
-    if len(weights) == 1:
-        from mitigate.core.build import agent_option
+    if any("checkpoint=" in option for option in sys.argv[1:]):
+        from mitigate.core.build import with_kind
 
-        sys.argv += agent_option(sys.argv[1:], weights[0])
+        sys.argv[1:] = with_kind(sys.argv[1:])
 
 
 def main() -> None:

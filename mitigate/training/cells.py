@@ -195,7 +195,7 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
                 _check_own(cell.options, taken, "for all columns alike.")
                 if cell.trains:
                     train.check(conf.composed("train", cell.training))
-                node = conf.composed("evaluate", cell.agent)
+                node = conf.composed("evaluate", build.with_kind(cell.agent))
                 episodes(node.env, cfg.split, cfg.episodes)
                 _check_fronts(node)
             except (ValueError, FileNotFoundError) as error:
@@ -209,7 +209,9 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
                 "may have suite, conditions, severity, severity_depth, split, episodes, safeguard, "
                 "restore and entries of env and agent.",
             )
-            node = conf.composed("evaluate", made[0].measurement(cfg, name, options))
+            node = conf.composed(
+                "evaluate", build.with_kind(made[0].measurement(cfg, name, options))
+            )
             chosen = node.suite.conditions if node.conditions is None else node.conditions
             conditions(list(chosen), node.severity, node.severity_depth)
             episodes(node.env, node.split, node.episodes)

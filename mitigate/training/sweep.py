@@ -59,8 +59,10 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
         raise ValueError(f"jobs={cfg.jobs} is none: give 1 or more runs at a time.")
     made = combinations(options)
     _check_own(options)
+    from mitigate.core.build import with_kind  # brings torch
+
     for chosen in made:
-        conf.composed(cfg.command, chosen)
+        conf.composed(cfg.command, with_kind(chosen) if cfg.command == "evaluate" else chosen)
     chains, problems = [chain(cfg, chosen) for chosen in made], []
     with Progress("sweep", len(chains), unit="run") as progress:
 

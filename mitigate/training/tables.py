@@ -175,7 +175,10 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     if not cfg.walks or missing:
         return []
     made = {_named(held[column].folder): held[column] for column in cfg.walks}
-    nodes = {name: conf.load_config("evaluate", cell.agent) for name, cell in made.items()}
+    nodes = {
+        name: conf.load_config("evaluate", build.with_kind(cell.agent))
+        for name, cell in made.items()
+    }
     agents: dict[str, Any] = {
         n: load(c.agent, c.checkpoint, overrides=made[n].agent) for n, c in nodes.items()
     }

@@ -110,3 +110,14 @@ def test_what_no_run_could_have_is_said_before_any_starts(tmp_path, fake, own, o
     with pytest.raises(ValueError, match=said):
         sweep.run(config(tmp_path, *own), options)
     assert not fake
+
+
+def test_a_sweep_of_evaluations_knows_the_kind_of_agent_by_its_weights(tmp_path, fake):
+    """``rgb_width`` is a setting of the recurrent agent, and not of the usual one."""
+    cfg = config(tmp_path, "command=evaluate")
+    options = ["checkpoint=checkpoints/recurrent/base", "agent.rgb_width=1,2"]
+    sweep.run(cfg, options)
+    ((chains, _, _),) = fake
+    assert len(chains) == 2
+    with pytest.raises(ValueError, match=r"no option 'agent.rgb_width'"):
+        sweep.run(cfg, ["checkpoint=checkpoints/base", *options[1:]])
