@@ -98,6 +98,7 @@ def run(
 
 
 def check_for_file(corruption: str) -> None:
+    """Raise ValueError unless ``corruption`` is one of ``NAMES``."""
     if corruption == "white_box":
         raise ValueError(
             "corruption=white_box is not applicable to a file: it corrupts the system prompt of an "

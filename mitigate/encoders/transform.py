@@ -53,8 +53,7 @@ class Transform:
 
     def settings(self) -> dict:
         """The arguments, as plain data."""
-        lists = {"mean": list(self.mean), "std": list(self.std)}
-        return {**self.__dict__, **lists}
+        return dict(self.__dict__)
 
     def __call__(self, frames: Tensor) -> Tensor:
         x = frames.permute(0, 3, 1, 2)

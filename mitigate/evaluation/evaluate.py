@@ -259,11 +259,12 @@ def report_before_after(
 def write_table(files: list[Path], out: Path, asked: list[dict[str, Any]] | None = None) -> None:
     """Join row files into ``out/table.md`` and pictures, and print the table: of the rows that were
     ``asked`` for alone, if there are others beside them."""
-    from mitigate.evaluation import report, rows, table
+    from mitigate.evaluation import report, rows
     from mitigate.evaluation.sections import sections
 
-    written = table.run(files, out)
-    others = 0 if asked is None else len(rows.gather(files)) - len(asked)
+    found = rows.gather(files)
+    written = report.write(found, out)
+    others = 0 if asked is None else len(found) - len(asked)
     if asked is None or others <= 0:
         print(written[0].read_text(encoding="utf-8"))
     else:

@@ -18,6 +18,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from torch import nn
 
 from mitigate.core.build import build, located, maker
+from mitigate.core.conf import CONF
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
@@ -36,7 +37,6 @@ from mitigate.training.stages import (
 )
 
 OURS = "mitigate.recipes."
-SEVERITIES = {"severity": 0.6, "severity_depth": None}  # of conf/train.yaml
 OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
 
 
@@ -85,9 +85,10 @@ def tell_of_schedule(cfg: DictConfig) -> None:
     if mode in (None, "clean"):
         return
     if _holds(plain(cfg.stages), cfg.schedule._target_):
+        usual = OmegaConf.load(CONF / "train.yaml")
         for key in ("severity", "severity_depth"):
             asked, drawn = (OmegaConf.select(cfg, name) for name in (key, f"schedule.{key}"))
-            if asked not in (None, SEVERITIES[key], drawn):
+            if asked not in (None, OmegaConf.select(usual, key), drawn):
                 whole = "as schedule.severity" if drawn is None else drawn
                 say(
                     f"{key}={asked:g} is of the evaluation alone: recipe={cfg.name} trains at "

@@ -11,8 +11,7 @@ import numpy as np
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
 from mitigate.worlds.episodes import Episode
-
-FARTHEST = 100.0  # metres: half of an indoor frame's readings are nearer (ours)
+from mitigate.worlds.metres import check_metres
 
 
 class SeededWorld:
@@ -106,12 +105,9 @@ class SeededWorld:
         """Depth as float32 metres; of the first in an episode it is asked whether it can be."""
         metres = depth.astype(np.float32) * np.float32(self.unit)
         metres = np.where(np.isfinite(metres) & (metres > 0), metres, np.float32(0))
-        known = metres[metres > 0]
-        if self._steps == 0 and len(known) and float(np.median(known)) > FARTHEST:
-            raise ValueError(
-                f"Half of the depth is farther than {np.median(known):.0f} m: that is not metres. "
-                "Give unit=, the metres of one unit of it (0.001 for millimetres)."
-            )
+        if self._steps == 0:
+            unit = "Give unit=, the metres of one unit of it (0.001 for millimetres)."
+            check_metres(metres, "the depth", unit)
         return metres
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation, Sensor, cameras
 from mitigate.core.progress import Progress
 from mitigate.worlds.episodes import Episode, Instruction
+from mitigate.worlds.metres import check_metres
 from mitigate.worlds.recorded.source import Lens, Source
 from mitigate.worlds.recorded.steps import Driven, Step, driven, strange
 from mitigate.worlds.world import Expert
@@ -23,7 +24,6 @@ from mitigate.worlds.world import Expert
 LARGEST = 1 << 32  # bytes of the frames of a drive (ours)
 STRANGE = 1 / 3  # of the steps that move: more do not go along the heading by mistake (ours)
 ENOUGH = 5  # steps that move, to say so (ours)
-FARTHEST = 100.0  # metres: half of an indoor frame's readings are nearer (ours)
 OVER = 4  # pixels of a side of what is drawn into, for one of a view that is not filled (ours)
 OFF = 3.0  # degrees that a camera may look beside its view of the panorama (ours)
 
@@ -92,7 +92,9 @@ def load(source: Source, *, views: int, size: int, step: Step) -> Recording:
                 f"{source.name}: {source.dropped} frames were left out, as no pose or no frame of "
                 "the other camera was near in time"
             )
-    _check_metres(source.name, frames.get(DEPTH))
+    if DEPTH in frames:
+        unit = "Of 16-bit PNG set unit= (metres of a count)."
+        check_metres(frames[DEPTH], f"{source.name}'s depth", unit)
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
     taken = None if poses is None else driven(poses)
@@ -184,16 +186,6 @@ def _resized(frame: np.ndarray, width: int, height: int, depth: bool) -> np.ndar
     return cv2.resize(
         frame, (width, height), interpolation=cv2.INTER_NEAREST_EXACT if depth else kind
     )
-
-
-def _check_metres(name: str, depth: np.ndarray | None) -> None:
-    """Raise ValueError for depth that cannot be metres."""
-    valid = depth[depth > 0] if depth is not None else np.zeros(0)
-    if len(valid) and float(np.median(valid)) > FARTHEST:
-        raise ValueError(
-            f"Half of {name}'s depth is farther than {np.median(valid):.0f} m: that is not metres. "
-            "Of 16-bit PNG set unit= (metres of a count)."
-        )
 
 
 def _check_headings(name: str, strange: int, moves: int) -> None:
