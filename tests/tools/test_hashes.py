@@ -1,0 +1,16 @@
+"""The hashes by which environments are compared."""
+
+from __future__ import annotations
+
+from tools import hashes
+
+
+def test_every_corruption_has_a_hash_for_each_severity_and_the_same_each_time(capsys):
+    lines = []
+    for _ in range(2):
+        hashes.main()
+        lines.append(capsys.readouterr().out.splitlines())
+    first, again = lines
+    assert first == again and len(first) == 116
+    assert len({line.split()[0] for line in first}) == 34 + 7
+    assert len({line.rpartition(" ")[0] for line in first}) == 116

@@ -1,0 +1,44 @@
+"""Print a hash of what each corruption makes of a few frames or a text, to compare environments:
+
+    python tools/hashes.py > here.txt    # the same elsewhere, say with another numpy; then diff
+
+Random compositions are left out: their bits depend on the versions of numpy and OpenCV.
+"""
+
+from __future__ import annotations
+
+import hashlib
+
+import numpy as np
+
+from mitigate.corruptions import INSTRUCTION, Key, corrupt, corrupt_instruction
+from mitigate.corruptions.registry import modality, names, unseen_names
+
+KEY = Key(0, "7", 3)
+TEXT = "Walk past the red sofa, turn left and stop by the table."
+
+
+def frames() -> dict[str, np.ndarray]:
+    """Three random views of 48 x 64 pixels: uint8 RGB, and float32 metres with 5 % of holes."""
+    rng = np.random.Generator(np.random.PCG64(0))
+    rgb = rng.integers(0, 256, (3, 48, 64, 3), dtype=np.uint8)
+    depth = rng.uniform(0.3, 9, (3, 48, 64, 1)).astype(np.float32)
+    depth[rng.random(depth.shape) < 0.05] = 0
+    return {"rgb": rgb, "depth": depth}
+
+
+def main() -> None:
+    """Print a line for each corruption and severity."""
+    seen, sensors = frames(), ("rgb", "depth")
+    for name in names(*sensors) + unseen_names(*sensors):
+        for severity in (0.3, 0.6, 1.0):
+            made = corrupt(seen[modality(name)], name, severity, key=KEY)
+            print(name, severity, hashlib.sha256(made.tobytes()).hexdigest()[:12])
+    for name in INSTRUCTION:
+        for severity in (0.5, 1.0) if name != "white_box" else ():
+            said = corrupt_instruction(TEXT, name, severity, KEY)
+            print(name, severity, hashlib.sha256(said.encode()).hexdigest()[:12])
+
+
+if __name__ == "__main__":
+    main()
