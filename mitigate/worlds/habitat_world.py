@@ -119,7 +119,7 @@ class HabitatWorld:
     def step(self, action: int) -> Observation:
         """One low-level action. Raises ValueError for one that does not exist, RuntimeError after
         the last one."""
-        if self.done:
+        if self.stopped:
             raise RuntimeError("The episode is over: reset first.")
         if action == STOP:
             self.stopped = True
