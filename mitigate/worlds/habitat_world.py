@@ -118,7 +118,7 @@ class HabitatWorld:
 
     def step(self, action: int) -> Observation:
         """One low-level action. Raises ValueError for one that does not exist, RuntimeError after
-        the last one."""
+        STOP."""
         if self.stopped:
             raise RuntimeError("The episode is over: reset first.")
         if action == STOP:
