@@ -200,3 +200,13 @@ def test_every_room_and_door_can_be_reached(seed):
     assert rooms == set(range(len(apartment.rooms)))
     assert 4 <= len(apartment.rooms) <= 8
     assert all(free_at(apartment.space, np.array([door.x, door.y])) for door in apartment.doors)
+
+
+def test_a_way_may_be_walked_to_its_end_beyond_the_last_step():
+    """As a training's rollout does: only STOP ends what can be done."""
+    world = ApartmentsWorld(16)
+    world.reset(load_episodes("val_seen")[0])
+    world.simulator.steps = MAX_STEPS
+    assert world.done
+    world.step(LEFT)
+    assert world.simulator.steps == MAX_STEPS + 1
