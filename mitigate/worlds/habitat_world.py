@@ -118,8 +118,8 @@ class HabitatWorld:
 
     def step(self, action: int) -> Observation:
         """One low-level action. Raises ValueError for one that does not exist, RuntimeError after
-        STOP."""
-        if self.stopped:
+        the last one."""
+        if self.done:
             raise RuntimeError("The episode is over: reset first.")
         if action == STOP:
             self.stopped = True

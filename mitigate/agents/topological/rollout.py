@@ -28,10 +28,13 @@ _TRAVEL = 0.4  # weight of the metres to a ghost against the metres from it to t
 
 
 class Walk(Protocol):
-    """One episode's rollout: where the agent is, what a route does, what the oracle knows."""
+    """One episode's rollout: where the agent is, what a route does, what the oracle knows, and
+    whether the episode is over."""
 
     episode: Episode
 
+    @property
+    def done(self) -> bool: ...
     def pose(self) -> np.ndarray: ...
     def go(self, route: list[np.ndarray]) -> None: ...
     def distance(self, xy: np.ndarray) -> float: ...
@@ -118,10 +121,15 @@ class LiveWalk:
     def pose(self) -> np.ndarray:
         return checked.pose(self.observation).astype(np.float64)
 
+    @property
+    def done(self) -> bool:
+        return self.world.done
+
     def go(self, route: list[np.ndarray]) -> None:
+        """Walk the route, as far as the episode lasts."""
         controller = Controller()
         controller.follow(route)
-        while (action := controller.action(self.pose())) is not None:
+        while not self.done and (action := controller.action(self.pose())) is not None:
             self.observation = self.world.step(action)
 
     def distance(self, xy: np.ndarray) -> float:
@@ -142,7 +150,7 @@ def roll_out(
     rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
-    """Run all walks to the oracle's stop or ``limit`` decisions.
+    """Run all walks to the oracle's stop, ``limit`` decisions or the end of the episode.
 
     Each decision follows the oracle with probability ``follow_oracle``, else the planner's own
     distribution over ghosts (sampled). The planner's stop is never taken, so that every trace holds
@@ -177,6 +185,7 @@ def roll_out(
             route = graphs[i].route(ghost)
             graphs[i].arrive(ghost)
             walks[i].go(route)
+        running = [i for i in running if not walks[i].done]
         if not running:
             break
     return traces

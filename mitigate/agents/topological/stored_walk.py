@@ -58,8 +58,11 @@ class Features:
 class StoredWalk:
     """A rollout by stored features: every move ends on the lattice pose nearest to its target.
 
-    ``shown`` holds, for each look, which views show the goal's landmark: float32 [12].
+    ``shown`` holds, for each look, which views show the goal's landmark: float32 [12]. Nothing
+    counts its steps, so it is never ``done``.
     """
+
+    done = False
 
     def __init__(self, episode: Episode, features: Features, world: Any) -> None:
         self.episode, self.features = episode, features

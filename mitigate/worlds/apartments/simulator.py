@@ -99,8 +99,8 @@ class Simulator:
 
     def step(self, action: int) -> None:
         """One low-level action. Raises ``ValueError`` for an action that does not exist,
-        ``RuntimeError`` after STOP. Rollouts of a training end a way beyond the last step."""
-        if self.stopped:
+        ``RuntimeError`` after the last one."""
+        if self.done:
             raise RuntimeError("The episode is over: reset first.")
         if action == FORWARD:
             self.xy, collided = self.space.move(self.xy, self.heading, FORWARD_METRES)

@@ -9,6 +9,7 @@ import pytest
 import torch
 
 from mitigate.agents.text import Vocabulary, pad
+from mitigate.agents.topological.learning import collect
 from mitigate.agents.topological.rollout import STOP_BEST, LiveWalk, roll_out
 from mitigate.agents.topological.scene_poses import SPACING
 from mitigate.agents.topological.stored import Store
@@ -16,6 +17,7 @@ from mitigate.agents.topological.stored_walk import StoredWalk
 from mitigate.agents.topological.waypoints import select
 from mitigate.core.observation import VIEWS
 from mitigate.corruptions import CLEAN
+from mitigate.worlds.apartments import simulator
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.tasks import load_episodes, make_episode
@@ -30,6 +32,7 @@ class RoomWorld:
     """An empty room whose views are noise; routes are walked at once."""
 
     rule_metres = 2.0
+    done = False
 
     def __init__(self, number: int, width: int) -> None:
         rng = np.random.default_rng(number)
@@ -106,6 +109,17 @@ def test_the_oracle_stops_only_where_the_rule_counts_it(monkeypatch, metres):
 def test_the_limit_bounds_the_decisions():
     traces, _ = traces_of(0.0, limit=2)
     assert max(len(trace.steps) for trace in traces) <= 2
+
+
+def test_a_rollout_ends_with_its_episode(monkeypatch):
+    """Also in the middle of a route: a world need not take a step after its last one."""
+    monkeypatch.setattr(simulator, "MAX_STEPS", 12)
+    worlds, episodes = [ApartmentsWorld(SIZE) for _ in range(3)], load_episodes("val_seen")[:3]
+    rngs = [np.random.default_rng(n) for n in range(3)]
+    piece = collect(wanderer(), worlds, episodes, expert_share=0.5, rngs=rngs)
+    assert [world.measures()["steps"] for world in worlds] == [12, 12, 12]
+    for trace in piece.traces:
+        assert len(trace.views) == len(trace.steps) > 0
 
 
 def test_a_rollout_is_a_function_of_its_generator():

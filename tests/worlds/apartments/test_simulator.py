@@ -202,11 +202,11 @@ def test_every_room_and_door_can_be_reached(seed):
     assert all(free_at(apartment.space, np.array([door.x, door.y])) for door in apartment.doors)
 
 
-def test_a_way_may_be_walked_to_its_end_beyond_the_last_step():
-    """As a training's rollout does: only STOP ends what can be done."""
+def test_no_step_follows_the_last_one():
     world = ApartmentsWorld(16)
     world.reset(load_episodes("val_seen")[0])
-    world.simulator.steps = MAX_STEPS
-    assert world.done
+    world.simulator.steps = MAX_STEPS - 1
     world.step(LEFT)
-    assert world.simulator.steps == MAX_STEPS + 1
+    assert world.done
+    with pytest.raises(RuntimeError, match="over: reset first"):
+        world.step(LEFT)
