@@ -17,8 +17,8 @@ from omegaconf.errors import OmegaConfBaseException
 MULTIRUN = ("-m", "--multirun")
 
 
-def paths_and_options(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
-    """A command line's words without "=" (paths), and Hydra's options."""
+def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
+    """A command line's words without "=" (paths), and Hydra's overrides."""
     words = list(arguments)
     options = [word for word in words if "=" in word or word.startswith("-")]
     return [word for word in words if word not in options], options

@@ -24,7 +24,7 @@ from mitigate.core import conf
 from mitigate.core.files import atomic_text, make_folder, write_bytes
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
-from mitigate.core.options import paths_and_options
+from mitigate.core.options import paths_and_overrides
 
 FORMS = ("frames", "bag", "mcap")
 _OTHERS = re.compile(r"[^\w-]+")  # signs that the name of a drive does not have
@@ -223,6 +223,6 @@ def main() -> None:
         print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
         print(conf.options_text("export_drive"))
         sys.exit(0 if arguments else 2)
-    _out[:], sys.argv[1:] = paths_and_options(arguments)
+    _out[:], sys.argv[1:] = paths_and_overrides(arguments)
     again = "To run it again, once what it wrote is deleted"
     conf.main(hydra_main, "export_drive", behind=_out, again=again)

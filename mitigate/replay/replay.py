@@ -25,7 +25,7 @@ from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import short
-from mitigate.core.options import paths_and_options
+from mitigate.core.options import paths_and_overrides
 from mitigate.replay.inputs import load_agents, load_recordings
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
@@ -279,5 +279,5 @@ def main() -> None:
         print(f"{__doc__}\nOptions, with what they are if nothing is said:\n")
         print(conf.options_text("replay"))
         sys.exit(0 if arguments else 2)
-    _paths[:], sys.argv[1:] = paths_and_options(arguments)
+    _paths[:], sys.argv[1:] = paths_and_overrides(arguments)
     conf.main(hydra_main, "replay", behind=_paths, again="To run it again")

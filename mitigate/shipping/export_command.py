@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 from mitigate.core import build, conf, settings
-from mitigate.core.options import paths_and_options
+from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation import evaluate
 from mitigate.shipping import hardened, others
 from mitigate.shipping.export import HARDENED, export
@@ -45,7 +45,7 @@ def main() -> None:
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
     given = vars(parser.parse_intermixed_args())
     overrides, configs = given.pop("overrides"), given.pop("config_dir")
-    given["rows"], more = paths_and_options(given["rows"])
+    given["rows"], more = paths_and_overrides(given["rows"])
     try:
         chosen = [*overrides, *more]
         if not any(option.lstrip("+").startswith("agent=") for option in chosen):
