@@ -47,7 +47,8 @@ class Retention:
 class Grid:
     """All results of one split, list of episodes, suite version and success rule.
 
-    ``columns`` maps a column's label to its (name, agent shas).
+    ``columns`` maps a column's label to its (name, agent shas), ``agents[label][seed]`` says which
+    of these a seed is of.
     ``cells[label, corruption, severity, metric]`` is float64 [N], one value an episode, the mean
     over ``seeds[label, severity]``, NaN where a row is missing; a clean cell is there once for each
     severity, over that one's seeds. ``unfinished[label, severity]`` holds the seeds that are left
@@ -60,6 +61,7 @@ class Grid:
     suite: str
     rule: str
     columns: dict[str, tuple[str, tuple[str, ...]]]
+    agents: dict[str, dict[int, str]]
     seeds: dict[tuple[str, float], tuple[int, ...]]
     unfinished: dict[tuple[str, float], dict[int, tuple[int, int]]]
     episodes: tuple[str, ...]
@@ -109,6 +111,11 @@ class Grid:
         """Return the columns with a cell at ``severity``."""
         measured = {label for label, _, at, _ in self.cells if at == severity}
         return [label for label in self.columns if label in measured]
+
+    def agents_at(self, label: str, severity: float) -> list[str]:
+        """Return the shas of the agents that a column's cells at ``severity`` are of, seed by
+        seed."""
+        return [*dict.fromkeys(self.agents[label][s] for s in self.seeds[label, severity])]
 
     def blocks_at(self, severity: float) -> dict[str, tuple[str, ...]]:
         """Return the measured corruptions at ``severity`` by block; "Pairs" holds the pairs of
@@ -225,6 +232,10 @@ def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
     held: dict[str, dict[int, list[Row]]] = {label: defaultdict(list) for label in columns}
     for row in rows:
         held[labels[row["name"], row["agent"]]][row["seed"]].append(row)
+    agents = {
+        label: {seed: run[0]["agent"] for seed, run in found.items()}
+        for label, found in held.items()
+    }
     seeds, unfinished, runs = {}, {}, {}
     cells: dict[tuple[str, str, float, str], np.ndarray] = {}
     for label, found in held.items():
@@ -234,7 +245,7 @@ def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
             seeds[spot], unfinished[spot] = _whole(measured, severity)
             pooled = _pooled([measured[seed] for seed in seeds[spot]], severity)
             cells |= {(label, name, severity, metric): v for (name, metric), v in pooled.items()}
-    return Grid(*key, columns, seeds, unfinished, episodes, cells, runs)
+    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs)
 
 
 def _cells(rows: list[Row], place: dict[str, int]) -> _Run:

@@ -21,6 +21,7 @@ WIDTH, MARKER = 1.2, 3.0  # points, of a line and its markers where nothing coin
 RIM = 1.8  # points by which a line is wider than one that lies on it
 CLOSE = 0.5  # points of SR that are less than a line is wide
 DPI = 150
+STACKED = 5  # columns from which the panels of a heatmap stand one above the other
 
 Curve = list[tuple[float, bootstrap.Estimate]]  # severities, rising, and SR in [0, 1]
 
@@ -28,12 +29,18 @@ Curve = list[tuple[float, bootstrap.Estimate]]  # severities, rising, and SR in 
 def heatmap(section: Section, path: Path | str) -> Path:
     """Draw one panel a block: rows PRS-SR, PRS-SPL, clean and the corruptions; columns agents.
 
-    A cell shows SR (%) / SPL and is coloured by SR over the best clean SR; PRS by itself.
+    A cell shows SR (%) / SPL and is coloured by SR over the best clean SR; PRS by itself. The
+    panels of many agents stand one above the other.
     """
-    width = 1.0 + len(section.blocks) * (1.6 + 1.15 * len(section.columns))
-    height = 1.9 + 0.36 * (3 + max(map(len, section.blocks.values())))
-    figure = Figure(figsize=(width, height), layout="constrained")
-    axes = figure.subplots(1, len(section.blocks), squeeze=False)[0]
+    rows = [3 + len(names) for names in section.blocks.values()]
+    width, narrow = 1.6 + 1.15 * len(section.columns), len(section.columns) < STACKED
+    size = (1.0 + len(rows) * width, 1.9 + 0.36 * max(rows))
+    if not narrow:
+        size = (1.0 + width, 1.0 + sum(0.9 + 0.36 * count for count in rows))
+    figure = Figure(figsize=size, layout="constrained")
+    down, across = (1, len(rows)) if narrow else (len(rows), 1)
+    ratios = None if narrow else rows
+    axes = figure.subplots(down, across, squeeze=False, height_ratios=ratios).ravel()
     for axis, (block, names) in zip(axes, section.blocks.items(), strict=True):
         _panel(axis, section, block, names)
     grid = section.grid

@@ -32,17 +32,22 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
 
 
 def write(
-    rows: Iterable[Row], folder: Path | str, first: str | None = None, least: int = 1
+    rows: Iterable[Row],
+    folder: Path | str,
+    first: str | None = None,
+    least: int = 1,
+    against: str | None = None,
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
     Further sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. ``first``: the
     rule of success whose sections come first; ``least``: severities of which a curve is drawn.
+    ``against``: the column to compare with, as in :func:`sections`.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
+    parts = sorted(sections(rows, against), key=lambda part: part.grid.rule != first)
     folder = make_folder(folder)
-    parts = sorted(sections(rows), key=lambda part: part.grid.rule != first)
     pictures: list[list[str]] = [[] for _ in parts]
     heatmaps = 0
     grids: list[Grid] = []
@@ -68,7 +73,8 @@ def _heading(section: Section) -> str:
     kinds = {grid.seeds[column, section.severity] for column in columns}
     seeds = "seed " + _listed(kinds.pop()) if len(kinds) == 1 else _seeds_by_column(section)
     agents = ", ".join(
-        f"{markdown_of(x)} " + " ".join(f"`{a}`" for a in grid.columns[x][1]) for x in columns
+        f"{markdown_of(x)} " + " ".join(f"`{a}`" for a in grid.agents_at(x, section.severity))
+        for x in columns
     )
     return (
         f"## {markdown_of(grid.heading)}, {at}\n\n"

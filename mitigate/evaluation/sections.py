@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from mitigate.core.names import unknown
 from mitigate.corruptions.registry import title
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.blocks import SUITE, by_kind, halves, meant
@@ -101,17 +102,26 @@ def compare(section: Section, column: str, reference: str) -> Compared:
     return _compared(section.grid, section.severity, (column, reference), section.blocks)
 
 
-def sections(rows: Iterable[Row]) -> list[Section]:
+def sections(rows: Iterable[Row], against: str | None = None) -> list[Section]:
     """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 
-    Where a column was never corrupted (a control), a clean-only section comes first.
+    Where a column was never corrupted (a control), a clean-only section comes first. ``against``:
+    the column that comes first and that the others are compared with, where it is there; None:
+    :data:`REFERENCES`. Raises ValueError if it is nowhere.
     """
+    rows = list(rows)
+    names = sorted({row["name"] for row in rows})
+    if against is not None and against not in names:
+        raise ValueError(unknown("column", against, names))
+    first = REFERENCES if against is None else (against,)
     found = []
     for kind, held in (by_kind(rows) or {SUITE: []}).items():
         for grid in grids(held):
             corrupted = {label for label, _, severity, _ in grid.cells if severity > 0}
             clean_only = [] if corrupted == grid.columns.keys() else [0.0]
-            found += [_section(grid, kind, severity) for severity in clean_only + grid.severities]
+            found += [
+                _section(grid, kind, severity, first) for severity in clean_only + grid.severities
+            ]
     return found
 
 
@@ -120,8 +130,8 @@ def label(corruption: str) -> str:
     return title(corruption)
 
 
-def _section(grid: Grid, kind: str, severity: float) -> Section:
-    rank = {name: place for place, name in enumerate(REFERENCES)}
+def _section(grid: Grid, kind: str, severity: float, first: Sequence[str]) -> Section:
+    rank = {name: place for place, name in enumerate(first)}
     columns = sorted(
         grid.columns_at(severity), key=lambda label: rank.get(grid.columns[label][0], len(rank))
     )
@@ -203,9 +213,9 @@ def _by_seed(
 ) -> dict[tuple[str, str], dict[int, float]]:
     """Return the clean SR and the PRS-SR of every block, of each seed that is pooled."""
     found: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
-    several = [column for column, runs in grid.runs.items() if len(runs) > 1]
-    for column in several:
-        for seed in grid.seeds.get((column, severity), ()):
+    for column in grid.columns:
+        seeds = grid.seeds.get((column, severity), ())
+        for seed in seeds if len(seeds) > 1 else ():
             run = grid.over([column], [seed], severity)
             found[column, "clean"][seed] = _mean(run.cell(column, "clean", severity, METRICS["SR"]))
             for block, names in blocks.items():

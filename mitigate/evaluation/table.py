@@ -1,4 +1,4 @@
-"""Join result rows into one table: ``mitigate table RUNS... [--out DIR]``.
+"""Join result rows into one table: ``mitigate table RUNS... [--seed N] [--against NAME]``.
 
 Takes row files and run or sweep folders, partial ones too. Prints the table and writes
 ``table.md``, ``heatmap.png`` and ``severity.png``.
@@ -16,25 +16,49 @@ from mitigate.core.arguments import check_paths
 OUT = Path("runs/table")
 
 
-def run(paths: Iterable[Path | str], out: Path | str = OUT) -> list[Path]:
+def run(
+    paths: Iterable[Path | str],
+    out: Path | str = OUT,
+    seeds: Sequence[int] | None = None,
+    against: str | None = None,
+) -> list[Path]:
     """Join the rows of ``paths``, write the report to ``out``; return its files, the table first.
 
-    Raises FileNotFoundError for a path without rows, ValueError for rows that are damaged.
+    ``seeds``: those to take, None: all. ``against``: the column that the others are compared with,
+    None: "base" or "before", or else the first.
+    Raises FileNotFoundError for a path without rows, ValueError for rows that are damaged, seeds
+    that no row is of and a column that is not there.
     """
     from mitigate.evaluation import report, rows
 
-    return report.write(rows.gather(paths), out)
+    found = rows.gather(paths)
+    held = sorted({row["seed"] for row in found})
+    for seed in seeds or ():
+        if seed not in held:
+            raise ValueError(f"No row is of seed {seed}; there are {', '.join(map(str, held))}.")
+    taken = [row for row in found if seeds is None or row["seed"] in seeds]
+    return report.write(taken, out, against=against)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for a bad input)."""
     parser = argparse.ArgumentParser(prog="mitigate table", description=__doc__)
     parser.add_argument("rows", nargs="+", metavar="ROWS", help="row files or run folders")
+    parser.add_argument(
+        "--seed",
+        type=int,
+        action="append",
+        metavar="N",
+        help="of these seeds alone (again for more)",
+    )
+    parser.add_argument(
+        "--against", metavar="NAME", help="the column that the others are compared with"
+    )
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)
     try:
         check_paths(options.rows, "--out DIR")
-        written = run(options.rows, options.out)
+        written = run(options.rows, options.out, options.seed, options.against)
     except (OSError, ValueError) as error:
         from mitigate.core.errors import said
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import cv2
@@ -216,6 +217,27 @@ def test_a_seed_counts_only_at_the_severities_it_was_measured_at():
     assert strong.value("base", "clean") == pytest.approx(0.6)
     assert not mild.gaps and not strong.gaps
     assert "left out" not in markdown([mild, strong])
+
+
+def test_a_table_names_the_agents_that_its_numbers_come_from():
+    """Another training counts at the severities that it was measured at alone."""
+    other = column(4, ALL, 0.6, seed=1, agent="eeee00000000")
+    mild, strong = sections(column(8, ALL, 0.2) + column(8, ALL, 0.6) + other)
+    assert "eeee00000000" not in markdown([mild]) and "eeee00000000" in markdown([strong])
+    assert "Several seeds" not in markdown([mild]) and "Several seeds" in markdown([strong])
+
+
+def test_seeds_and_the_column_to_compare_with_may_be_chosen(tmp_path, capsys):
+    made = column(8, ALL) + column(2, ALL, seed=1) + column(6, ALL, **HARD)
+    (tmp_path / "rows.jsonl").write_text("".join(json.dumps(r) + "\n" for r in made))
+    given = [str(tmp_path / "rows.jsonl"), "--out", str(tmp_path / "out")]
+    assert table.main([*given, "--seed", "0", "--against", "da_per_episode"]) == 0
+    printed = capsys.readouterr().out
+    assert "| Corruption | da_per_episode | base |" in printed
+    assert "| Clean SR against da_per_episode | – | +20.0" in printed and "seed 0," in printed
+    for wrong, words in (("--seed=4", "seed 4; there are 0, 1"), ("--against=bas", "Did you mean")):
+        assert table.main([*given, wrong]) == 2
+        assert words in capsys.readouterr().err
 
 
 def test_controls_without_corruption_get_a_clean_table():

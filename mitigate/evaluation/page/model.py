@@ -105,7 +105,7 @@ def _facts(section: Section) -> list[list[str]]:
 
 def _column(section: Section, column: str) -> dict[str, Any]:
     seeds = section.grid.seeds[column, section.severity]
-    agents = section.grid.columns[column][1]
+    agents = section.grid.agents_at(column, section.severity)
     return {
         "label": column,
         "place": list(section.grid.columns).index(column),
