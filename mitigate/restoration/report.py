@@ -42,6 +42,7 @@ from mitigate.worlds.episodes import read_episodes
 UNITS = {RGB: 1.0, DEPTH: 100.0}  # of the range: levels; metres as centimetres
 SHOWN = (0, 1, 2)  # views of an instant in the picture
 SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names beside it
+GAP, HEAD = 6, 20  # pixels between its blocks, and of their headings
 
 
 class Score(NamedTuple):
@@ -160,8 +161,8 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, clean: dict[str, np.ndarray], met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean. None if
-    no corruption is of a sensor that there is."""
+    """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean, under
+    these headings. None if no corruption is of a sensor that there is."""
     rows = []
     for corruption in met:
         sensor = next((s for s in corruption.modalities if s in restorer.nets and s in clean), None)
@@ -171,12 +172,31 @@ def sheet(
         shown = [
             _views(sensor, f) for f in (frames, restorer.restore(sensor, frames), clean[sensor])
         ]
-        name = np.full((SIDE, LABEL, 3), 255, np.uint8)
-        place, font = (4, SIDE // 2), cv2.FONT_HERSHEY_SIMPLEX
-        cv2.putText(name, title(corruption.name)[:18], place, font, 0.42, (0, 0, 0), 1, cv2.LINE_AA)
-        gap = np.full((SIDE, 6, 3), 255, np.uint8)
-        rows.append(np.hstack([name, shown[0], gap, shown[1], gap, shown[2]]))
+        if not rows:
+            heads = [
+                _said(head, shown[0].shape[1], HEAD) for head in ("corrupted", "restored", "clean")
+            ]
+            rows.append(_beside(_said("", LABEL, HEAD), heads))
+        rows.append(_beside(_said(title(corruption.name)[:18], LABEL, SIDE), shown))
     return np.vstack(rows) if rows else None
+
+
+def _far(frames: dict[str, np.ndarray]) -> float:
+    """How far the views of a picture see: walls from near by show little."""
+    depth = frames.get(DEPTH)
+    return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
+
+
+def _beside(name: np.ndarray, parts: Sequence[np.ndarray]) -> np.ndarray:
+    gap = np.full((len(name), GAP, 3), 255, np.uint8)
+    return np.hstack([name, *(piece for part in parts for piece in (gap, part))])
+
+
+def _said(text: str, width: int, height: int) -> np.ndarray:
+    """A white field with a text in it."""
+    field = np.full((height, width, 3), 255, np.uint8)
+    place, font = (4, height // 2 + 4), cv2.FONT_HERSHEY_SIMPLEX
+    return cv2.putText(field, text, place, font, 0.42, (0, 0, 0), 1, cv2.LINE_AA)
 
 
 def _views(sensor: str, frames: np.ndarray) -> np.ndarray:
@@ -203,7 +223,7 @@ def write(
     with atomic_text(folder / "restoration.md") as file:
         file.write(text)
     print(f"{text}\nwrote {folder / 'restoration.md'}")
-    drawn = sheet(restorer, seen[0], [c for c in met if c is not CLEAN], seed)
+    drawn = sheet(restorer, max(seen, key=_far), [c for c in met if c is not CLEAN], seed)
     if drawn is not None:
         encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
         write_bytes(folder / "restoration.jpg", encoded.tobytes())
