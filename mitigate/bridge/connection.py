@@ -21,7 +21,7 @@ from mitigate.bridge.condition import Condition
 from mitigate.bridge.episodes import begun, ended
 from mitigate.bridge.events import EVENTS, note
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
+from mitigate.bridge.hook.mitigate_hook import BROKEN, LONGEST, receive, send
 from mitigate.bridge.shared_memory import SharedMemory
 from mitigate.core.names import short, unknown
 
@@ -210,7 +210,10 @@ class Connection:
         return {"changed": list(dict.fromkeys(changed))}
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """How the episode went."""
+        """How the episode went; one that an exception broke off counts as left in the middle."""
+        if message.get("how") == BROKEN:
+            self._leave()
+            return {}
         said = ended(message, self.episode)
         failed = self.loop and not said.get("metrics", {}).get("success")  # before its first look
         if self.calls == 0 and not failed:

@@ -13,6 +13,7 @@ import numpy as np
 
 from mitigate.bridge.episodes import MEASURES, name_of
 from mitigate.bridge.events import EVENTS
+from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER, RESET
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 from mitigate.evaluation.metrics import RULES, Rule, path_length, spl
@@ -26,8 +27,8 @@ COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: 
 class Told:
     """What was told under one condition, so far.
 
-    ends: of each episode, by its name; again: episodes that ended once more, of which the first
-    counts; dropped: left in the middle. cameras: of all calls, as first described; first: what the
+    ends: of each episode, by its name, the first that was over, or else the first; again: episodes
+    that ended once more; dropped: left in the middle. cameras: of all calls, as first described; first: what the
     first episode says; languages: of the episodes' words, by name. refused: what the server could
     not do, and why processes stopped themselves, in words. adapted: encoders that got adapters.
     connected: environments that are there now.
@@ -49,6 +50,29 @@ class Told:
         """Episodes that were left in the middle, and did not end later."""
         return sorted(set(self.dropped) - self.ends.keys())
 
+    def end(self, name: str, event: dict[str, Any]) -> None:
+        """Take how an episode ended: what was over is in place of a try that was given up."""
+        held = self.ends.get(name)
+        if held is None or (_how(event) == OVER != _how(held)):
+            self.ends[name] = event
+        elif _how(event) != CLOSE:
+            self.again += 1
+        if held is not None and held["scene"] != event["scene"]:
+            self.refused.append(
+                f"two scenes have one file name, {held['scene']} and {event['scene']}: "
+                "episodes are told apart by it. Rename the scenes' files."
+            )
+
+    def without_closed(self) -> Told:
+        """Drop episodes whose Env was closed in the middle; where a program's own Envs are never
+        over, or it ends episodes itself by a reset, a close ends the last one."""
+        how = {_how(end) for end in self.ends.values()}
+        if OVER in how and RESET not in how:
+            closed = [name for name, end in self.ends.items() if _how(end) == CLOSE]
+            self.dropped += closed
+            self.ends = {n: end for n, end in self.ends.items() if n not in closed}
+        return self
+
 
 def read(folder: Path) -> Told:
     """Return what the events in ``folder`` tell; a last line that is not whole is left out."""
@@ -67,20 +91,18 @@ def read(folder: Path) -> Told:
             told.first = told.first or event
             told.languages[name] = event.get("language")
         elif kind == "end":
-            held = told.ends.setdefault(name, event)
-            told.again += held is not event
-            if held["scene"] != event["scene"]:
-                told.refused.append(
-                    f"two scenes have one file name, {held['scene']} and {event['scene']}: "
-                    "episodes are told apart by it. Rename the scenes' files."
-                )
+            told.end(name, event)
         elif kind == "dropped":
             told.dropped.append(name)
         elif kind == "adapted":
             told.adapted.append(event["module"])
         elif kind in ("refused", "stopped"):
             told.refused.append(event["problem"])
-    return told
+    return told.without_closed()
+
+
+def _how(end: dict[str, Any]) -> str:
+    return end.get("how", OVER)
 
 
 def _events(file: Path) -> Iterator[dict[str, Any]]:

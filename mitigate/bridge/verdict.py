@@ -73,8 +73,8 @@ def _unfinished(cell: Cell, told: Told) -> str:
         return (
             f"the command ended, but {counted(len(told.lost), 'episode')} "
             f"{'was' if len(told.lost) == 1 else 'were'} left in the middle, such as "
-            f"{told.lost[0]}: a process of it died, or its loop gave up. Run again; the "
-            f"condition is measured anew. {CRASH}{cell.said()}"
+            f"{told.lost[0]}: a process of it died, its loop gave up, or its Env was closed before "
+            f"the episode was over. Run again; the condition is measured anew. {CRASH}{cell.said()}"
         )
     if told.connected > 0:
         return (

@@ -31,7 +31,7 @@ import threading
 import weakref
 
 np = None  # numpy, once it is needed: every Python process loads this file, and some have none
-PROTOCOL = 2
+PROTOCOL = 3
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
 ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, module, class, path
 HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
@@ -42,6 +42,8 @@ LONGEST = 4000  # characters of why a process was stopped
 STATUS = 97  # what a process that was stopped exits with
 FAREWELL = 3.0  # seconds at most in which a process that stops tells the server why (ours)
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
+# how an episode ends: it was over; its Env was reset, or closed, before; behind an exception
+OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
 _thread = threading.local()  # .walk: of connect
 # by id, corrupted frames that the program still holds
 _given: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
@@ -247,11 +249,12 @@ class Walk:
         self.cameras = None  # what the server was told of them
         self.sim = self.task = self.episode = None
         self.begun = self.busy = False
+        self.handled = id(None)  # of the exception that was handled as the episode began
         self.simulated = False  # whether frames of habitat-sim alone came in this episode
         self.pid = None  # of the process in which the episode that is on was begun
         self.home, self.lock = os.getpid(), threading.RLock()
         self.current = None  # of connect: the episode that is on
-        self.put_back = None  # sets the words of the last episode as they were
+        self.words = None  # of the episode that is on, where others are heard in their place
         self.clear()
 
     def clear(self):
@@ -282,7 +285,7 @@ class Walk:
     def begin(self, scene, name, **said):
         """Begin an episode; the answer holds its words as the agent is to hear them."""
         self.clear()
-        self.pid, self.simulated = os.getpid(), False
+        self.pid, self.simulated, self.handled = os.getpid(), False, id(sys.exc_info()[1])
         answer = self.connected().ask("episode", scene=str(scene), id=str(name), **said)
         self.begun = True
         return answer
@@ -347,20 +350,26 @@ class Walk:
     def moved(self, action=None):
         """Count a low-level step, and note what it was and where it led."""
         self.steps += 1
+        if sys.exc_info()[1] is None:
+            self.handled = id(None)
         self.actions.append(_action(action))
         here = self.position()
         if here is not None and (not self.path or here != self.path[-1]):
             self.path.append(here)
 
     @_whole("how an episode went could not be told")
-    def end(self, metrics):
+    def end(self, metrics, how=OVER):
         """Tell how the episode went, once; one without a step did not take place, and a forked
-        process does not end that of its parent."""
+        process does not end that of its parent. One that was not over and is left as an exception
+        goes by, since it began, tells of the program's fault, not of the agent's."""
         if not self.begun or self.pid != os.getpid():
             return
         self.begun = False
+        if how != OVER and id(sys.exc_info()[1]) not in (id(None), self.handled):
+            how = BROKEN
         if self.steps or self.sim is None:
             said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
+            said["how"] = how
             said.update(path=self.path, actions=self.actions, **self._distances())
             self.channel.ask("end", **said)
 
@@ -528,37 +537,54 @@ def _task_reset(original, task, episode, *args, **kwargs):
     if getattr(getattr(sim, "config", None), "enable_batch_renderer", False):
         stop("frames of Habitat's batch renderer pass no sensor: set enable_batch_renderer=False.")
     walk = _walk_of(sim.sensor_suite)
-    walk.end(task.measurements.get_metrics() if walk.begun else None)
-    if walk.put_back is not None:
-        walk.put_back()
+    walk.end(task.measurements.get_metrics() if walk.begun else None, RESET)
+    _put_back(walk)
     walk.sim, walk.task, walk.episode = sim, task, episode
     words = getattr(episode, "instruction", None)
+    text, tokens = _own(words)
     said = {
-        "text": getattr(words, "instruction_text", None),
-        "tokens": _plain(getattr(words, "instruction_tokens", None)),
+        "text": text,
+        "tokens": _plain(tokens),
         "language": getattr(words, "language", None),
         "category": getattr(episode, "object_category", None),
     }
     answer = walk.begin(episode.scene_id, episode.episode_id, **said)
     if words is not None and answer.get("text") is not None:
-        walk.put_back = _say(words, answer)
+        _said[id(words)] = (words, answer["text"], text, tokens)
+        walk.words = words
+        _say(words, answer["text"], answer["tokens"])
     observations = original(task, episode, *args, **kwargs)
     walk.start = _distance(sim, walk.position(), episode)
     walk.path = [place for place in [walk.position()] if place is not None]
     return observations
 
 
-def _say(words, answer):
-    """Put the answer's words into an episode; return what puts back those that were there."""
-    before = {"text": words.instruction_text, "tokens": getattr(words, "instruction_tokens", None)}
+_said = {}  # id of an episode's words: (they, the text that is heard, their own text and tokens)
 
-    def put(text, tokens):
-        words.instruction_text = text
-        if before["tokens"] is not None:
-            words.instruction_tokens = tokens
 
-    put(answer["text"], answer["tokens"])
-    return functools.partial(put, **before)
+def _own(words):
+    """Return text and tokens of an episode's words as the data set has them, though a walk may have
+    put others in their place: those are not corrupted again."""
+    text = getattr(words, "instruction_text", None)
+    _, heard, *own = _said.get(id(words), (None, None, None, None))
+    known = heard is not None and heard == text
+    return own if known else (text, getattr(words, "instruction_tokens", None))
+
+
+def _say(words, text, tokens):
+    words.instruction_text = text
+    if getattr(words, "instruction_tokens", None) is not None:
+        words.instruction_tokens = tokens
+
+
+def _put_back(walk):
+    """Let the words of a walk's episode be as they were, unless another walk is in it."""
+    words, walk.words = walk.words, None
+    if words is None or any(other.words is words for _, other in list(_walks.values())):
+        return
+    own = _own(words)
+    _said.pop(id(words), None)
+    _say(words, *own)
 
 
 def _plain(tokens):
@@ -596,20 +622,20 @@ def _some(dataset):
 
 def _env_reset(original, env, *args, **kwargs):
     """``Env.reset`` loads the next scene, so the last episode is measured before."""
-    _end(env)
+    _end(env, RESET)
     return original(env, *args, **kwargs)
 
 
 def _env_step(original, env, *args, **kwargs):
     observations = original(env, *args, **kwargs)
     if env.episode_over:
-        _end(env)
+        _end(env, OVER)
     return observations
 
 
 def _env_close(original, env, *args, **kwargs):
     """``Env.close``: an Env for each episode leaves no simulator or connection behind."""
-    _end(env)
+    _end(env, CLOSE)
     suite = getattr(env.sim, "sensor_suite", None)
     try:
         return original(env, *args, **kwargs)
@@ -624,14 +650,15 @@ def _release(suite):
         for sensor in suite.sensors.values():
             _described.pop(id(sensor), None)
         if walk is not None:
+            _put_back(walk)
             walk.leave()
 
 
-def _end(env):
+def _end(env, how):
     suite = getattr(env.sim, "sensor_suite", None)
     walk = None if suite is None else _walk_of(suite)
     if walk is not None and walk.begun:
-        walk.end(env.get_metrics())
+        walk.end(env.get_metrics(), how)
 
 
 def _env_render(original, env, *args, **kwargs):
