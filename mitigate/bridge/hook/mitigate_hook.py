@@ -37,6 +37,7 @@ ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, modul
 HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
 MAGIC = b"mtg1"
 LARGEST = 1 << 24  # bytes of a message: an episode with all view points of its goals has 1e6
+PIECE = 10000  # names of episodes in a message: train splits have millions
 LOADED = "loaded"  # a file beside the socket, once a process has loaded this file
 LONGEST = 4000  # characters of why a process was stopped
 STATUS = 97  # what a process that was stopped exits with
@@ -250,6 +251,7 @@ class Walk:
         self.sim = self.task = self.episode = None
         self.begun = self.busy = False
         self.handled = id(None)  # of the exception that was handled as the episode began
+        self.farthest = {}  # by camera of depth: the most that the first frame reads
         self.simulated = False  # whether frames of habitat-sim alone came in this episode
         self.pid = None  # of the process in which the episode that is on was begun
         self.home, self.lock = os.getpid(), threading.RLock()
@@ -260,7 +262,7 @@ class Walk:
     def clear(self):
         """Forget how the last episode went."""
         self.calls = self.steps = 0
-        self.path, self.actions, self.start = [], [], None
+        self.path, self.actions, self.start, self.farthest = [], [], None, {}
 
     def at_home(self):
         """In a forked process, take a lock of its own: a thread that is not here may hold it."""
@@ -309,9 +311,9 @@ class Walk:
                 frame = observations[camera["name"]]
                 channel.place(camera)[...] = frame[..., :3] if camera["alpha"] else frame
         seen = {}
-        if self.calls == 0:  # whether depth is what it is said to be
-            depth = [camera["name"] for camera in told if camera["type"] == DEPTH]
-            seen = {name: _middle(observations[name]) for name in depth}
+        for name in (camera["name"] for camera in told if camera["type"] == DEPTH):
+            if self.farthest.get(name) is None:  # whether depth is what it is said to be
+                seen[name], self.farthest[name] = _middle(observations[name])
         where = {"heading": heading, "position": self.position()}
         answer = channel.ask("frame", call=self.calls, depth=seen, **where)
         self.calls += 1
@@ -358,7 +360,7 @@ class Walk:
             self.path.append(here)
 
     @_whole("how an episode went could not be told")
-    def end(self, metrics, how=OVER):
+    def end(self, metrics, how=OVER, stopped=None):
         """Tell how the episode went, once; one without a step did not take place, and a forked
         process does not end that of its parent. One that was not over and is left as an exception
         goes by, since it began, tells of the program's fault, not of the agent's."""
@@ -369,7 +371,7 @@ class Walk:
             how = BROKEN
         if self.steps or self.sim is None:
             said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
-            said["how"] = how
+            said.update(how=how, stopped=stopped, farthest=self.farthest)
             said.update(path=self.path, actions=self.actions, **self._distances())
             self.channel.ask("end", **said)
 
@@ -425,10 +427,11 @@ def _data(told):
 
 
 def _middle(depth):
-    """Return the median of what a depth frame reads, holes left out; None if all are."""
+    """Return the median and the most of what a depth frame reads, holes left out; None if all
+    are."""
     some = np.asarray(depth[::4, ::4], np.float64)
     some = some[np.isfinite(some) & (some > 0)]
-    return float(np.median(some)) if some.size else None
+    return (float(np.median(some)), float(some.max())) if some.size else (None, None)
 
 
 def _numbers(metrics, prefix=""):
@@ -613,11 +616,22 @@ def _make_dataset(original, *args, **kwargs):
 def _some(dataset):
     """Leave out episodes that the server does not ask for."""
     if dataset is not None and len(dataset.episodes):
-        keys = [_key(e.scene_id, e.episode_id) for e in dataset.episodes]
-        keep = Channel().ask("dataset", keys=keys)["keep"]
+        keep = _chosen(dataset.episodes, lambda e: _key(e.scene_id, e.episode_id), 1)
         if keep is not None:
             dataset.episodes = [dataset.episodes[i] for i in keep]
     return dataset
+
+
+def _chosen(episodes, key, least):
+    """Return the numbers of the episodes that the server asks for, ``least`` so many; None: of
+    all. Their keys are told in pieces, if it chooses at all."""
+    channel, count = Channel(), len(episodes)
+    answer = channel.ask("dataset", count=count, keys=[], least=least)
+    for at in range(0, count, PIECE):
+        if "keep" not in answer:
+            keys = [key(episode) for episode in episodes[at : at + PIECE]]
+            answer = channel.ask("dataset", count=count, keys=keys, least=least)
+    return answer["keep"]
 
 
 def _env_reset(original, env, *args, **kwargs):
@@ -870,16 +884,15 @@ class Episode:
         self._walk.steps += 1
         return self._walk.corrupt(observations, listed, heading)
 
-    def finish(self, success, spl=None, **metrics):
+    def finish(self, success, spl=None, stopped=None, **metrics):
         """Tell how it went: ``success`` (0 or 1), ``spl`` (0 to 1; None: by ``path_length`` and
-        ``geodesic_distance``, or else as the success), ``distance_to_goal`` ... Raises ValueError
-        for what is none."""
+        ``geodesic_distance``, or else as the success), whether the agent ``stopped`` by itself (0
+        or 1, None: unknown; rules ask for it), ``distance_to_goal`` ... Raises ValueError for what
+        is none."""
         self._check()
-        told = dict(metrics, success=_share(success, "success"))
-        if told["success"] not in (0.0, 1.0):
-            raise ValueError(
-                f"finish(success={success!r}): it must be 1 (or True) or 0 (or False)."
-            )
+        told = dict(metrics, success=_truth(success, "success"))
+        if stopped is not None:
+            stopped = bool(_truth(stopped, "stopped"))
         if spl is not None:
             told["spl"] = _share(spl, "spl")
             if told["spl"] and not told["success"]:
@@ -890,7 +903,7 @@ class Episode:
         for name in ("path_length", "geodesic_distance", "distance_to_goal"):
             if metrics.get(name) is not None:
                 told[name] = _measure(metrics[name], name)
-        self._walk.end(told)
+        self._walk.end(told, OVER, stopped)
 
     def _check(self):
         if self._walk.current is not self:
@@ -910,6 +923,14 @@ class Episode:
                 "it, and their frames might be mixed up: call mitigate_hook.connect() in the "
                 "thread that walks."
             )
+
+
+def _truth(value, name):
+    """Return 0.0 or 1.0. Raises ValueError for what is neither."""
+    found = _share(value, name)
+    if found not in (0.0, 1.0):
+        raise ValueError(f"finish({name}={value!r}): it must be 1 (or True) or 0 (or False).")
+    return found
 
 
 def _share(value, name):
@@ -997,13 +1018,18 @@ def _shape(value):
 def wanted(episodes):
     """Return those of a list of (scene, episode id) that this run asks for: all without
     ``episodes=``, else about as many, chosen by a hash of their names. Raises RuntimeError outside
-    of ``mitigate run``."""
+    of ``mitigate run``, ValueError for what is no such list."""
     _check_run()
     episodes = list(episodes)
+    for one in episodes:
+        if not isinstance(one, (tuple, list)) or len(one) != 2:
+            raise ValueError(
+                f"wanted() was given {one!r:.80}: each episode must be a pair, (scene, id), or "
+                "('', id) where there are no scenes."
+            )
     if not episodes:
         return []
-    keys = [_key(*episode) for episode in episodes]
-    keep = Channel().ask("dataset", keys=keys, least=0)["keep"]
+    keep = _chosen(episodes, lambda episode: _key(*episode), 0)
     return episodes if keep is None else [episodes[i] for i in keep]
 
 
