@@ -201,10 +201,9 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
                     print(f"{cell.name}: done before, {cell.summary()}", flush=True)
                 else:
                     running.append(cell)  # before: whatever interrupts its start, it is ended
-                    problem = _begin(cell)
-                    if problem:  # the others go on
+                    if refused := _begin(cell):  # the others go on
                         running.remove(cell)
-                        problems.append(f"{cell.name}: {problem}")
+                        problems.append(f"{cell.name}: {refused}")
             time.sleep(0.2)
             for cell in list(running):
                 problem = cell.poll()
