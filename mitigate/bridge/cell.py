@@ -14,15 +14,15 @@ from typing import Any, TextIO
 
 from mitigate.bridge import results, verdict
 from mitigate.bridge.condition import Condition
-from mitigate.bridge.events import EVENTS
+from mitigate.bridge.events import EVENTS, LOCK, put_aside
 from mitigate.bridge.identity import files_of
 from mitigate.bridge.recording import delete_left, is_whole
-from mitigate.bridge.results import Told, without_path
+from mitigate.bridge.results import Told
 from mitigate.bridge.server import Listener
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.verdict import lacking
 from mitigate.core.files import atomic_text, make_folder
-from mitigate.core.names import counted
+from mitigate.core.json_files import read_json
 from mitigate.core.signals import unbroken
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
@@ -72,9 +72,9 @@ class Cell:
         return self.folder / LOG
 
     def held(self) -> dict[str, Any] | None:
-        """What was noted as it ended, None if it has not."""
+        """What was noted as it ended, None if it has not. Raises ValueError for a damaged file."""
         file = self.folder / DONE
-        return json.loads(file.read_text("utf-8")) if file.is_file() else None
+        return read_json(file, "Delete it: the condition is run anew.") if file.is_file() else None
 
     def others(self) -> list[str]:
         """The settings with another value than it was finished with."""
@@ -121,13 +121,14 @@ class Cell:
         return sorted(self.told().ends.keys() - held) if held else []
 
     def start(self) -> None:
-        """Start the server and the command; what an earlier, unfinished run told is put aside."""
+        """Start the server and the command, in an empty folder; what an earlier, unfinished run
+        left in it is put aside. Raises ValueError if it is at work, or cannot be started."""
         with unbroken():  # or what was just started would not be known to ``kill``
             self._start()
 
     def _start(self) -> None:
         make_folder(self.folder)
-        self.lock = open(self.folder / "lock", "w", encoding="utf-8")  # noqa: SIM115
+        self.lock = open(self.folder / LOCK, "w", encoding="utf-8")  # noqa: SIM115
         try:
             fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
@@ -137,8 +138,7 @@ class Cell:
                 "(out=...)."
             ) from error
         (self.folder / DONE).unlink(missing_ok=True)
-        if (self.folder / EVENTS).is_file():
-            os.replace(self.folder / EVENTS, self.folder / f"{EVENTS}.unfinished")
+        put_aside(self.folder)
         chosen = self.chosen if self.clean is None else None
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
             chosen.forget()  # of a run that came to nothing
@@ -287,15 +287,7 @@ class Cell:
 
     def summary(self) -> str:
         """How far it is: "41 episodes, success 58.5"."""
-        told, found = self.told(), self.rows()
-        own = [row["success"] for row in found if row["rule"] == found[0]["rule"]]
-        rate = f", success {100 * sum(own) / len(own):.1f} ({found[0]['rule']})" if own else ""
-        left = f", {len(told.lost)} left in the middle" if told.lost else ""
-        left += f", {n} without a path: SPL is success" if (n := without_path(told)) else ""
-        twice = f", {told.again} ended twice (the first counts)" if told.again else ""
-        silent = len(told.ends) - len({row["episode_id"] for row in found})
-        left += f", {silent} without a result" if silent and found else ""
-        return f"{counted(len(told.ends), 'episode')}{rate}{left}{twice}"
+        return verdict.summary(self)
 
 
 def _filled(word: str, values: dict[str, str]) -> str:

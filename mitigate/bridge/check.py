@@ -17,7 +17,8 @@ from omegaconf import DictConfig
 
 from mitigate.bridge.cameras import Group, Rig
 from mitigate.bridge.conditions import applicable, cells, untold
-from mitigate.bridge.results import Told
+from mitigate.bridge.options import check_options, name_of
+from mitigate.bridge.results import NEAR, NORMALISED, Told
 from mitigate.bridge.sheet import HEADING, of, sheet
 from mitigate.core.files import write_atomically
 from mitigate.core.observation import DEPTH, RGB
@@ -25,7 +26,6 @@ from mitigate.core.observation import DEPTH, RGB
 if TYPE_CHECKING:  # it needs torch, which a check without one does not wait for
     from mitigate.restoration.restorer import Restorer
 
-NEAR = 1.01  # metres: depth that reads no more may be normalised (ours)
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
 
 
@@ -67,8 +67,6 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     Raises ValueError as a run does for its options, and if the command ends before, or shows
     nothing within ``LATE`` seconds.
     """
-    from mitigate.bridge.run import check_options, name_of
-
     check_options(cfg, command)
     out = Path(cfg.out or f"{cfg.runs}/run/{cfg.name or name_of(command)}-check")
     made = cells(cfg, command, out, "check")
@@ -164,5 +162,5 @@ def _range(group: Group, frames: Mapping[str, np.ndarray]) -> str:
     low, middle, high = (f"{x:.2f}" for x in (seen.min(), np.median(seen), seen.max()))
     strange = ""
     if not first.normalised and seen.max() < NEAR:
-        strange = " - is it normalised? Say so: normalize_depth, min_depth, max_depth"
+        strange = f" - {NORMALISED}"
     return f"{said}; seen {low} to {high} (median {middle}) m{strange}"

@@ -21,7 +21,7 @@ from mitigate.bridge.condition import Condition
 from mitigate.bridge.episodes import begun, ended
 from mitigate.bridge.events import EVENTS, note
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.hook.mitigate_hook import LONGEST, receive, send
+from mitigate.bridge.hook.mitigate_hook import BROKEN, LONGEST, receive, send
 from mitigate.bridge.shared_memory import SharedMemory
 from mitigate.core.names import short, unknown
 
@@ -42,7 +42,13 @@ def _one_thread() -> None:
     torch.set_num_threads(1)
 
 
-def _unfit(kind: str, error: Exception) -> str:
+def _said(kind: str, error: Exception) -> str:
+    """What the agent's side is told of an error in the answer to a message."""
+    if type(error) is ValueError:
+        return str(error)
+    if isinstance(error, OSError):  # of a disk of ours
+        told = f"the run cannot write {error.filename}: {error.strerror}."
+        return str(error) if error.strerror is None else told
     return (
         f"the message {kind!r} is not as the protocol has it ({short(repr(error), 200)}): use the "
         "mitigate_hook.py of this version."
@@ -65,6 +71,7 @@ class Connection:
         self.offsets: dict[str, int] = {}
         self.scene = self.episode = ""
         self.open = self.loop = self.chosen = False
+        self.names: list[str] = []  # of a data set, so far
         self.described: list[Any] = []  # cameras of the calls so far, as they were told
         self.kinds: set[str] = set()  # of the cameras of this episode's calls
         self.calls = 0  # of this episode
@@ -98,7 +105,7 @@ class Connection:
             answer = getattr(self, f"on_{kind}")(message)
             os.utime(self.folder / EVENTS)  # a sign of life
         except Exception as error:  # whatever it is, the agent must be told
-            problem = str(error) if type(error) is ValueError else _unfit(kind, error)
+            problem = _said(kind, error)
             note(self.folder, event="refused", problem=problem, trace=traceback.format_exc())
             answer = {"error": problem}
         return answer
@@ -210,7 +217,10 @@ class Connection:
         return {"changed": list(dict.fromkeys(changed))}
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """How the episode went."""
+        """How the episode went; one that an exception broke off counts as left in the middle."""
+        if message.get("how") == BROKEN:
+            self._leave()
+            return {}
         said = ended(message, self.episode)
         failed = self.loop and not said.get("metrics", {}).get("success")  # before its first look
         if self.calls == 0 and not failed:
@@ -248,11 +258,16 @@ class Connection:
             self.condition.restorer.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """The episodes of an environment: answer which it is to keep, all if None; ``least`` so
-        many (Habitat refuses none)."""
-        keep, names = self.condition.keep, [str(key) for key in message["keys"]]
+        """Episodes of an environment, in pieces: answer which of all ``count`` it is to keep, all
+        if None, once all are named; ``least`` so many (Habitat refuses none)."""
+        keep = self.condition.keep
+        self.names += [str(key) for key in message["keys"]]
+        count = int(message.get("count", len(self.names)))
+        if keep is not None and len(self.names) < count:
+            return {"more": count - len(self.names)}
+        note(self.folder, event="dataset", episodes=count)
+        names, self.names = self.names, []
         least = 0 if message.get("least") == 0 else 1
-        note(self.folder, event="dataset", episodes=len(names))
         return {"keep": None if keep is None else keep(names, least)}
 
     def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:

@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
+from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER, RESET
 from mitigate.core.names import short
 from mitigate.evaluation.metrics import path_length
 from mitigate.evaluation.rows import GREATEST, allowed
 
 COUNTS = ("steps", "calls")
 METRES = ("start_distance", "distance")  # infinite where a goal is out of reach
-FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped")
+FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped", "how", "farthest")
+HOW = (OVER, RESET, CLOSE)  # an episode may end and count
 # of the metrics, what rows say beside success and SPL
 MEASURES = ("path_length", "geodesic_distance", "distance_to_goal", "ndtw", "collisions")
 
@@ -74,6 +76,13 @@ def _checked(said: dict[str, Any]) -> dict[str, Any]:
         far = name in METRES and value == math.inf
         if not _number(value) or not (far or 0 <= value <= GREATEST):
             raise _wrong(name, value, f"a number from 0 to {GREATEST:g}")
+    farthest = said.get("farthest", {})
+    if not isinstance(farthest, dict) or not all(
+        v is None or _number(v) for v in farthest.values()
+    ):
+        raise _wrong("farthest", farthest, "metres by camera")
+    if said.get("how", OVER) not in HOW:
+        raise _wrong("how", said["how"], " or ".join(HOW))
     path = _known(said.pop("path", []))
     return {**said, "path": path} if path else said
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import shutil
 import time
 from pathlib import Path
 from typing import Any
 
-EVENTS = "events.jsonl"
+EVENTS, LOCK = "events.jsonl", "lock"
 
 
 def note(folder: Path, **event: Any) -> None:
@@ -18,3 +19,15 @@ def note(folder: Path, **event: Any) -> None:
     with open(folder / EVENTS, "a", encoding="utf-8") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         file.write(line)
+
+
+def put_aside(folder: Path) -> None:
+    """Empty the folder of a condition but for its lock: what an earlier attempt left there, the
+    program's own results too, is put into ``<folder>.unfinished``."""
+    left = [path for path in folder.iterdir() if path.name != LOCK]
+    if left:
+        aside = folder.with_name(f"{folder.name}.unfinished")
+        shutil.rmtree(aside, ignore_errors=True)
+        aside.mkdir()
+        for path in left:
+            os.replace(path, aside / path.name)

@@ -4,6 +4,7 @@ apart."""
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -34,7 +35,17 @@ def settings_of(
     told = {name: cfg[name] for name in SETTINGS}
     told |= met(corruption)
     told |= {"restore": None if restorer is None else restorer.hash, "adapters": adapters}
-    return {"command": command, **told, "safeguard": _guard(cfg)}
+    return {"command": command, **told, "safeguard": _guard(cfg), "watch": watched(cfg)}
+
+
+def watched(cfg: DictConfig) -> dict[str, str | None] | None:
+    """What ``watch=`` names: of a file its hash, else an environment variable; None without."""
+    if not cfg.watch:
+        return None
+    return {
+        str(name): sha256(Path(name))[:12] if os.path.isfile(name) else os.environ.get(name)
+        for name in cfg.watch
+    }
 
 
 def met(corruption: Corruption) -> dict[str, Any]:
@@ -43,22 +54,27 @@ def met(corruption: Corruption) -> dict[str, Any]:
     return {"suite": SUITE_VERSION, "severity": corruption.severity, **own}
 
 
+def _watch(cfg: DictConfig) -> str | None:
+    seen = watched(cfg)
+    return None if seen is None else json.dumps(seen, sort_keys=True)
+
+
 def label_of(
     cfg: DictConfig, command: str, name: str, restorer: Restorer | None, adapters: str | None
 ) -> dict[str, Any]:
-    """What the rows say of the agent: with a restorer, a safeguard or adapters it is another one,
-    by their hashes."""
+    """What the rows say of the agent: with a restorer, a safeguard, adapters or what is watched it
+    is another one, by their hashes."""
     sha = _digest(command)
     guard = None if cfg.safeguard == "none" else _guard(cfg)
-    for part in (restorer and restorer.hash, guard, adapters):
+    for part in (restorer and restorer.hash, guard, adapters, _watch(cfg)):
         sha = sha if part is None else _digest(f"{sha} {part}")
     return {"agent": sha, "name": _column(cfg, name), "split": cfg.split, "seed": cfg.seed}
 
 
 def default_folder(cfg: DictConfig, name: str) -> Path:
     """The folder of a run that names none: other for another agent, severity, episodes."""
-    adapters = adapters_of(cfg)
-    own = _column(cfg, name) + (f"-{_digest(adapters)[:6]}" if adapters else "")
+    parts = [part for part in (adapters_of(cfg), _watch(cfg)) if part]
+    own = "-".join([_column(cfg, name), *(_digest(part)[:6] for part in parts)])
     own += f"-s{cfg.severity:g}" + (f"-e{cfg.episodes}" if cfg.episodes else "")
     return Path(cfg.runs) / "run" / plain(own)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,12 +14,15 @@ import numpy as np
 
 from mitigate.bridge.episodes import MEASURES, name_of
 from mitigate.bridge.events import EVENTS
+from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER, RESET
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 from mitigate.evaluation.metrics import RULES, Rule, path_length, spl
 from mitigate.evaluation.rows import Row
 
 OWN = "own: the agent's Success measure"
+NEAR = 1.01  # metres: depth that reads no more may be normalised (ours)
+NORMALISED = "is it normalised? Say so: normalize_depth, min_depth, max_depth"
 COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: some never say it
 
 
@@ -26,11 +30,11 @@ COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: 
 class Told:
     """What was told under one condition, so far.
 
-    ends: of each episode, by its name; again: episodes that ended once more, of which the first
-    counts; dropped: left in the middle. cameras: of all calls, as first described; first: what the
-    first episode says; languages: of the episodes' words, by name. refused: what the server could
-    not do, and why processes stopped themselves, in words. adapted: encoders that got adapters.
-    connected: environments that are there now.
+    ends: of each episode, by its name, the first that was over, or else the first; again: episodes
+    that ended once more; dropped: left in the middle. cameras: of all calls, as first described;
+    first: what the first episode says; languages: of the episodes' words, by name. refused: what
+    the server could not do, and why processes stopped themselves, in words. adapted: encoders that
+    got adapters. connected: environments that are there now.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
@@ -48,6 +52,29 @@ class Told:
     def lost(self) -> list[str]:
         """Episodes that were left in the middle, and did not end later."""
         return sorted(set(self.dropped) - self.ends.keys())
+
+    def end(self, name: str, event: dict[str, Any]) -> None:
+        """Take how an episode ended: what was over is in place of a try that was given up."""
+        held = self.ends.get(name)
+        if held is None or (_how(event) == OVER != _how(held)):
+            self.ends[name] = event
+        elif _how(event) != CLOSE:
+            self.again += 1
+        if held is not None and held["scene"] != event["scene"]:
+            self.refused.append(
+                f"two scenes have one file name, {held['scene']} and {event['scene']}: "
+                "episodes are told apart by it. Rename the scenes' files."
+            )
+
+    def without_closed(self) -> Told:
+        """Drop episodes whose Env was closed in the middle; where a program's own Envs are never
+        over, or it ends episodes itself by a reset, a close ends the last one."""
+        how = {_how(end) for end in self.ends.values()}
+        if OVER in how and RESET not in how:
+            closed = [name for name, end in self.ends.items() if _how(end) == CLOSE]
+            self.dropped += closed
+            self.ends = {n: end for n, end in self.ends.items() if n not in closed}
+        return self
 
 
 def read(folder: Path) -> Told:
@@ -67,20 +94,18 @@ def read(folder: Path) -> Told:
             told.first = told.first or event
             told.languages[name] = event.get("language")
         elif kind == "end":
-            held = told.ends.setdefault(name, event)
-            told.again += held is not event
-            if held["scene"] != event["scene"]:
-                told.refused.append(
-                    f"two scenes have one file name, {held['scene']} and {event['scene']}: "
-                    "episodes are told apart by it. Rename the scenes' files."
-                )
+            told.end(name, event)
         elif kind == "dropped":
             told.dropped.append(name)
         elif kind == "adapted":
             told.adapted.append(event["module"])
         elif kind in ("refused", "stopped"):
             told.refused.append(event["problem"])
-    return told
+    return told.without_closed()
+
+
+def _how(end: dict[str, Any]) -> str:
+    return end.get("how", OVER)
 
 
 def _events(file: Path) -> Iterator[dict[str, Any]]:
@@ -100,8 +125,6 @@ def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | 
     agent's Success measure. An agent without either has the common one alone.
     """
     found = []
-    routes = told.first.get("text") and not told.first.get("category")
-    common = COMMON["words" if routes else "objects"]
     for name, end in told.ends.items():
         row = {
             "agent": label["agent"],
@@ -114,9 +137,14 @@ def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | 
             "suite": SUITE_VERSION,
             **version(corruption.name),
         }
-        for own in _by_rules(end, rule, common):
+        for own in _by_rules(end, rule, _common(told)):
             found.append(row | own | _measures(end))
     return found
+
+
+def _common(told: Told) -> Rule:
+    routes = told.first.get("text") and not told.first.get("category")
+    return COMMON["words" if routes else "objects"]
 
 
 def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[Row]:
@@ -129,28 +157,65 @@ def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[R
             "spl": metrics["spl"] if "spl" in metrics else _spl(end, won),
         }
     for known in ([RULES[rule]] if rule else []) + [common]:
-        metres = end.get("distance", metrics.get("distance_to_goal"))
-        if metres is not None:
-            won = known.met(float(metres), bool(end.get("stopped")))
+        if not _unknown(end, known):
+            won = known.met(_metres(end), bool(end.get("stopped")))
             judged[str(known)] = {"success": float(won), "spl": _spl(end, won)}
     return [{"rule": name, **values} for name, values in judged.items()]
 
 
+def _metres(end: dict[str, Any]) -> Any:
+    """Metres to the goal; None where nobody knows."""
+    return end.get("distance", end.get("metrics", {}).get("distance_to_goal"))
+
+
+def _unknown(end: dict[str, Any], rule: Rule) -> str:
+    """What an episode does not tell that a rule asks for: an argument of ``finish``."""
+    if _metres(end) is None:
+        return "distance_to_goal"
+    return "stopped" if rule.stop and end.get("stopped") is None else ""
+
+
+def unjudged(told: Told, rule: str) -> str:
+    """What a rule asks for and no episode tells; empty if it can judge some, or none ended."""
+    unknown = [_unknown(end, RULES[rule]) for end in told.ends.values()]
+    return min(unknown, default="", key=len)  # "" before "stopped" before the distance
+
+
 def _spl(end: dict[str, Any], won: bool) -> float:
-    """SPL by the path that was told; where start or path is not known, the success itself, as if
-    the way had been the shortest (:func:`without_path` counts these)."""
+    """SPL by the path that was told, or the agent's own; where it tells neither of a success, 1, as
+    if the way had been the shortest (:func:`without_path` counts these)."""
     start, length = _start(end), _length(end)
     if not won:
         return 0.0
-    return 1.0 if start is None or length is None else spl(won, float(start), length)
+    if start is None or length is None:
+        return float(end["metrics"]["spl"]) if _tells_spl(end) else 1.0
+    return spl(won, float(start), length)
 
 
-def without_path(told: Told) -> int:
-    """How many episodes tell neither SPL nor the start and path to compute it by."""
-    return sum(
-        "spl" not in end.get("metrics", {}) and (_start(end) is None or _length(end) is None)
-        for end in told.ends.values()
-    )
+def _tells_spl(end: dict[str, Any]) -> bool:
+    """Whether the agent's own SPL is that of a success."""
+    metrics = end.get("metrics", {})
+    return "spl" in metrics and metrics.get("success", 0) > 0
+
+
+def without_path(told: Told, rule: str | None) -> dict[str, int]:
+    """By rule: how many successes tell neither SPL nor the start and path to compute it by."""
+    found: Counter[str] = Counter()
+    for end in told.ends.values():
+        if not _tells_spl(end) and (_start(end) is None or _length(end) is None):
+            judged = _by_rules(end, rule, _common(told))
+            found.update(str(row["rule"]) for row in judged if row["success"])
+    return dict(found)
+
+
+def near(told: Told) -> list[str]:
+    """Cameras whose depth is told as metres and read no more than ``NEAR`` in any episode."""
+    most: dict[str, float] = {}
+    for end in told.ends.values():
+        for name, metres in end.get("farthest", {}).items():
+            most[name] = max(most.get(name, 0.0), metres or 0.0)
+    metric = [c["name"] for c in told.cameras if not c.get("normalize_depth")]
+    return [name for name in metric if 0 < most.get(name, 0.0) <= NEAR]
 
 
 def _start(end: dict[str, Any]) -> float | None:

@@ -7,7 +7,6 @@ output folder; the same command again goes on where it stopped.
 
 from __future__ import annotations
 
-import math
 import shlex
 import signal
 import sys
@@ -15,7 +14,6 @@ import time
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,10 +22,10 @@ from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING, DictConfig
 
 from mitigate.bridge import verdict
+from mitigate.bridge.options import check_options, name_of
 from mitigate.core import conf
-from mitigate.core.names import unknown
 from mitigate.core.signals import raise_ended
-from mitigate.safeguard.addresses import check_arguments, check_choice
+from mitigate.safeguard.addresses import check_arguments
 from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
 
 if TYPE_CHECKING:  # torch and the corruptions are slow to import
@@ -63,6 +61,7 @@ class RunConfig:
     patience: float = 25.0
     record: str | None = None
     adapters: str | None = None
+    watch: list[str] | None = None
     check: bool = False
     suite: Any = MISSING
 
@@ -104,21 +103,31 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     problems = _run_all(cfg, command, out, name, [clean])
     if problems:
         raise ValueError("\n".join(problems))
+    if lacking := verdict.lacks(clean):
+        raise ValueError(
+            f"{clean.name}: {lacking} It was measured before; out=... names another folder."
+        )
+    strange = verdict.strange(clean)
+    if strange:
+        print(strange, flush=True)  # before hours of the others, and at the end
     fitting, unheard = _fitting(made)
     if unheard:
         problems = [f"{', '.join(unheard)}: {NO_TOKENIZER}"]
         print(*problems, flush=True)  # before hours of the others
-    if before and all(cell.is_done() for cell in fitting):
+    nothing = before and all(cell.is_done() for cell in fitting)
+    if nothing:
         print(
             f"run: nothing was left to run, all is in {out}; to measure anew, name another folder "
             "(out=...), or remove this one.",
             flush=True,
         )
     problems += _run_all(cfg, command, out, name, fitting)
-    _warn_of_changes([clean, *fitting], out, known)
+    _warn_of_changes([clean, *fitting], out, known if nothing else ())
     if not clean.is_done():  # a condition showed that it is not whole
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.why_anew()}")
     write_report([clean, *fitting], out)
+    if strange:
+        print(strange, flush=True)
     if problems:
         raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
     return out
@@ -162,56 +171,11 @@ def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ())
         was = "was" if len(names) == 1 else "were"
         print(
             f"run: {file} changed since {', '.join(names[:3])}{more} {was} run, whose old results "
-            f"are kept: out=... measures the new one, or remove {out / 'conditions'}.",
+            "are kept, and stand in one table with new ones: out=... measures the new one, or "
+            f"remove {out / 'conditions'}. watch=[{file}] makes it another agent.",
             flush=True,
         )
     return list(changed)
-
-
-def check_options(cfg: DictConfig, command: Sequence[str]) -> None:
-    """Raise ValueError for options that make no sense, and without a command."""
-    from mitigate.bridge.subset import SETTLED
-    from mitigate.evaluation.metrics import RULES
-
-    check_choice(cfg.safeguard)
-    if not command:
-        raise ValueError(
-            "No command is given. Write it behind --, as you would type it: mitigate run "
-            "corruption=spatter -- bash run_r2r/main.bash eval 2333"
-        )
-    if cfg.rule is not None and cfg.rule not in RULES:
-        raise ValueError(unknown("rule", cfg.rule, RULES))
-    if cfg.turn not in ("left", "right"):
-        raise ValueError(unknown("turn", cfg.turn, ("left", "right")))
-    if cfg.corruption is not None and cfg.conditions is not None:
-        raise ValueError(
-            f"corruption={cfg.corruption} and conditions=... both say what is measured: put it "
-            "into conditions=[...], or leave that out."
-        )
-    for option in ("jobs", "repeats"):
-        if cfg[option] < 1:
-            raise ValueError(f"{option}={cfg[option]} is none: give 1 or more.")
-    if not math.isfinite(cfg.missing):
-        raise ValueError(f"missing={cfg.missing} must be a number of metres, as missing=10.")
-    if not 1 <= cfg.patience <= 3600:
-        raise ValueError(f"patience={cfg.patience:g} must be 1 to 3600 seconds.")
-    if cfg.severity == 0 or cfg.severity_depth == 0:
-        raise ValueError("severity=0 changes nothing: for clean runs alone, conditions=[clean].")
-    if cfg.episodes is not None and cfg.patience < SETTLED + 1:
-        raise ValueError(
-            f"patience={cfg.patience:g} is too little with episodes={cfg.episodes}: which are "
-            f"chosen is known {SETTLED:g} s after the last environment came. Give {SETTLED + 1:g} "
-            "or more (the default is 25)."
-        )
-    if cfg.episodes is not None and cfg.episodes < 1:
-        raise ValueError(f"episodes={cfg.episodes} is none: give 1 or more, or null for all.")
-
-
-def name_of(command: Sequence[str]) -> str:
-    """Return a name for a command: of its first script or module (``-m``), or of the program."""
-    scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
-    modules = [name for word, name in pairwise(command) if word == "-m"]
-    return [*scripts, *modules, Path(command[0]).stem][0]
 
 
 def _run_all(
@@ -236,10 +200,10 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
                 if cell.is_done():
                     print(f"{cell.name}: done before, {cell.summary()}", flush=True)
                 else:
-                    again = f", measured anew: {why}" if (why := cell.why_anew()) else ""
                     running.append(cell)  # before: whatever interrupts its start, it is ended
-                    cell.start()
-                    print(f"{cell.name}: started{again}; its output is in {cell.log}", flush=True)
+                    if refused := _begin(cell):  # the others go on
+                        running.remove(cell)
+                        problems.append(f"{cell.name}: {refused}")
             time.sleep(0.2)
             for cell in list(running):
                 problem = cell.poll()
@@ -257,6 +221,18 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
         for cell in running:
             cell.kill()
     return problems
+
+
+def _begin(cell: Cell) -> str:
+    """Start a condition; return why it cannot be, empty if it was."""
+    again = f", measured anew: {why}" if (why := cell.why_anew()) else ""
+    try:
+        cell.start()
+    except ValueError as error:
+        print(f"{cell.name}: {error}", flush=True)
+        return str(error)
+    print(f"{cell.name}: started{again}; its output is in {cell.log}", flush=True)
+    return ""
 
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")

@@ -61,6 +61,8 @@ class ConditionTask:
                 cell.start()
                 while (problem := cell.poll()) is None:
                     time.sleep(PAUSE)
+            except ValueError as error:  # it cannot be started: the others can
+                problem = str(error)
             finally:
                 cell.kill()
             yield problem

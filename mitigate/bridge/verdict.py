@@ -1,11 +1,13 @@
-"""Why a condition does not count, though its command ended: one paragraph."""
+"""How a condition goes, in a line, and why one does not count, though its command ended."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.results import Told
+from mitigate.bridge.hook.mitigate_hook import RESET
+from mitigate.bridge.results import NORMALISED, Told, near, unjudged, without_path
+from mitigate.bridge.subset import SETTLED
 from mitigate.core.names import counted
 
 if TYPE_CHECKING:
@@ -25,6 +27,66 @@ def outcome(cell: Cell, problem: str, alone: bool) -> str:
         return cell.summary()
     first = problem.splitlines()[0]
     return "failed" if alone else f"failed: {first[:REASON]}{'...' * (len(first) > REASON)}"
+
+
+def summary(cell: Cell) -> str:
+    """How far it is: "41 episodes, success 58.5 (own: ...), 2 without a path ..."."""
+    told, found = cell.told(), cell.rows()
+    first = found[0]["rule"] if found else ""
+    own = [row["success"] for row in found if row["rule"] == first]
+    said = [counted(len(told.ends), "episode") + asked(cell, told)]
+    said += [f"success {100 * sum(own) / len(own):.1f} ({first})"] if own else []
+    said += [f"{len(told.lost)} left in the middle"] if told.lost else []
+    unknown = without_path(told, cell.rule)
+    alike = len(set(unknown.values())) == 1 and len(unknown) == len({row["rule"] for row in found})
+    for rule, count in list(unknown.items())[: 1 if alike else None]:
+        by = "" if alike else f" by {rule}"
+        said.append(f"{count} without a path{by}: SPL is success")
+    left = sum(end.get("how") == RESET for end in told.ends.values())
+    if 0 < left < len(told.ends):
+        said.append(f"{left} reset before the end (counted as it stood)")
+    said += [f"{told.again} ended twice (the first counts)"] if told.again else []
+    silent = len(told.ends) - len(own)
+    said += [f"{silent} without a result"] if silent and found else []
+    return ", ".join(said)
+
+
+def asked(cell: Cell, told: Told) -> str:
+    """Whether many more episodes were walked than were asked for, and why."""
+    count = len(told.ends) if cell.chosen is None else cell.chosen.count
+    if len(told.ends) <= 1.5 * count:
+        return ""
+    return (
+        f" ({count} asked for: processes came more than {SETTLED:g} s after the others, or each of "
+        "many had to keep one)"
+    )
+
+
+def lacks(cell: Cell) -> str:
+    """What ``rule=`` asks for and no episode of a condition told; empty if nothing."""
+    unknown = "" if cell.rule is None else unjudged(cell.told(), cell.rule)
+    if not unknown:
+        return ""
+    what = "whether the agent said STOP" if unknown == "stopped" else "how far the goal is"
+    own = ", or leave rule= out to count the told success" if _tells_success(cell) else ""
+    return (
+        f"rule={cell.rule} needs to know {what}, which no episode told: finish({unknown}=...){own}."
+    )
+
+
+def _tells_success(cell: Cell) -> bool:
+    return any("success" in end.get("metrics", {}) for end in cell.told().ends.values())
+
+
+def strange(cell: Cell) -> str:
+    """What is strange in what a condition's cameras read; empty if nothing is."""
+    names = near(cell.told())
+    if not names:
+        return ""
+    return (
+        f"run: the depth of {', '.join(names)} counts as metres, and read no more than 1 in any "
+        f"episode: {NORMALISED}"
+    )
 
 
 def problem(cell: Cell, status: int) -> str:
@@ -60,9 +122,9 @@ def _unseen(cell: Cell, told: Told) -> str:
         )
     if not told.ends and not told.lost:
         return (
-            "the command ended without an episode. Did it find results of an earlier run? Let "
-            "it write to a folder of each condition: {out} or {condition} in the command "
-            f"stands for one.{cell.said()}"
+            "the command ended without an episode. Did it find results of an earlier run, or of "
+            "another condition? Delete them, and let it write to {out} in the command, which "
+            f"stands for {cell.folder}: of each condition one, empty as it starts.{cell.said()}"
         )
     return ""
 
@@ -73,8 +135,8 @@ def _unfinished(cell: Cell, told: Told) -> str:
         return (
             f"the command ended, but {counted(len(told.lost), 'episode')} "
             f"{'was' if len(told.lost) == 1 else 'were'} left in the middle, such as "
-            f"{told.lost[0]}: a process of it died, or its loop gave up. Run again; the "
-            f"condition is measured anew. {CRASH}{cell.said()}"
+            f"{told.lost[0]}: a process of it died, its loop gave up, or its Env was closed before "
+            f"the episode was over. Run again; the condition is measured anew. {CRASH}{cell.said()}"
         )
     if told.connected > 0:
         return (
@@ -97,6 +159,8 @@ def _unfinished(cell: Cell, told: Told) -> str:
             "episodes at random (fix its seed, and choose some by episodes=). Run again; clean is "
             f"measured anew, too. {CRASH}"
         )
+    if lacks(cell):
+        return lacks(cell)
     if not cell.rows():
         return (
             f"of {counted(len(told.ends), 'episode')} that ended none said how it went, so there "

@@ -138,7 +138,7 @@ def test_a_fork_walks_no_episode_of_its_parent(tmp_path):
 
 
 def test_a_fork_that_resets_walks_an_episode_of_its_own(tmp_path):
-    _, told = ran(tmp_path, FORK.replace("CHILD", "env.reset(); env.step(1); env.close()"))
+    _, told = ran(tmp_path, FORK.replace("CHILD", "env.reset(); env.step(0); env.close()"))
     assert not told.refused and not told.lost
     assert {name: end["steps"] for name, end in told.ends.items()} == {"s0/0": 3, "s1/1": 1}
 

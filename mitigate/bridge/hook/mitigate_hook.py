@@ -31,17 +31,20 @@ import threading
 import weakref
 
 np = None  # numpy, once it is needed: every Python process loads this file, and some have none
-PROTOCOL = 2
+PROTOCOL = 3
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
 ADAPTERS = "MITIGATE_ADAPTERS"  # JSON: folder, file of plain_adapters.py, module, class, path
 HEADER = struct.Struct("!4sI")  # magic, bytes of the JSON object that follows
 MAGIC = b"mtg1"
 LARGEST = 1 << 24  # bytes of a message: an episode with all view points of its goals has 1e6
+PIECE = 10000  # names of episodes in a message: train splits have millions
 LOADED = "loaded"  # a file beside the socket, once a process has loaded this file
 LONGEST = 4000  # characters of why a process was stopped
 STATUS = 97  # what a process that was stopped exits with
 FAREWELL = 3.0  # seconds at most in which a process that stops tells the server why (ours)
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
+# how an episode ends: it was over; its Env was reset, or closed, before; behind an exception
+OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
 _thread = threading.local()  # .walk: of connect
 # by id, corrupted frames that the program still holds
 _given: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
@@ -247,17 +250,19 @@ class Walk:
         self.cameras = None  # what the server was told of them
         self.sim = self.task = self.episode = None
         self.begun = self.busy = False
+        self.handled = id(None)  # of the exception that was handled as the episode began
+        self.farthest = {}  # by camera of depth: the most that the first frame reads
         self.simulated = False  # whether frames of habitat-sim alone came in this episode
         self.pid = None  # of the process in which the episode that is on was begun
         self.home, self.lock = os.getpid(), threading.RLock()
         self.current = None  # of connect: the episode that is on
-        self.put_back = None  # sets the words of the last episode as they were
+        self.words = None  # of the episode that is on, where others are heard in their place
         self.clear()
 
     def clear(self):
         """Forget how the last episode went."""
         self.calls = self.steps = 0
-        self.path, self.actions, self.start = [], [], None
+        self.path, self.actions, self.start, self.farthest = [], [], None, {}
 
     def at_home(self):
         """In a forked process, take a lock of its own: a thread that is not here may hold it."""
@@ -282,7 +287,7 @@ class Walk:
     def begin(self, scene, name, **said):
         """Begin an episode; the answer holds its words as the agent is to hear them."""
         self.clear()
-        self.pid, self.simulated = os.getpid(), False
+        self.pid, self.simulated, self.handled = os.getpid(), False, id(sys.exc_info()[1])
         answer = self.connected().ask("episode", scene=str(scene), id=str(name), **said)
         self.begun = True
         return answer
@@ -306,9 +311,9 @@ class Walk:
                 frame = observations[camera["name"]]
                 channel.place(camera)[...] = frame[..., :3] if camera["alpha"] else frame
         seen = {}
-        if self.calls == 0:  # whether depth is what it is said to be
-            depth = [camera["name"] for camera in told if camera["type"] == DEPTH]
-            seen = {name: _middle(observations[name]) for name in depth}
+        for name in (camera["name"] for camera in told if camera["type"] == DEPTH):
+            if self.farthest.get(name) is None:  # whether depth is what it is said to be
+                seen[name], self.farthest[name] = _middle(observations[name])
         where = {"heading": heading, "position": self.position()}
         answer = channel.ask("frame", call=self.calls, depth=seen, **where)
         self.calls += 1
@@ -347,20 +352,26 @@ class Walk:
     def moved(self, action=None):
         """Count a low-level step, and note what it was and where it led."""
         self.steps += 1
+        if sys.exc_info()[1] is None:
+            self.handled = id(None)
         self.actions.append(_action(action))
         here = self.position()
         if here is not None and (not self.path or here != self.path[-1]):
             self.path.append(here)
 
     @_whole("how an episode went could not be told")
-    def end(self, metrics):
+    def end(self, metrics, how=OVER, stopped=None):
         """Tell how the episode went, once; one without a step did not take place, and a forked
-        process does not end that of its parent."""
+        process does not end that of its parent. One that was not over and is left as an exception
+        goes by, since it began, tells of the program's fault, not of the agent's."""
         if not self.begun or self.pid != os.getpid():
             return
         self.begun = False
+        if how != OVER and id(sys.exc_info()[1]) not in (id(None), self.handled):
+            how = BROKEN
         if self.steps or self.sim is None:
             said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
+            said.update(how=how, stopped=stopped, farthest=self.farthest)
             said.update(path=self.path, actions=self.actions, **self._distances())
             self.channel.ask("end", **said)
 
@@ -416,10 +427,11 @@ def _data(told):
 
 
 def _middle(depth):
-    """Return the median of what a depth frame reads, holes left out; None if all are."""
+    """Return the median and the most of what a depth frame reads, holes left out; None if all
+    are."""
     some = np.asarray(depth[::4, ::4], np.float64)
     some = some[np.isfinite(some) & (some > 0)]
-    return float(np.median(some)) if some.size else None
+    return (float(np.median(some)), float(some.max())) if some.size else (None, None)
 
 
 def _numbers(metrics, prefix=""):
@@ -528,37 +540,54 @@ def _task_reset(original, task, episode, *args, **kwargs):
     if getattr(getattr(sim, "config", None), "enable_batch_renderer", False):
         stop("frames of Habitat's batch renderer pass no sensor: set enable_batch_renderer=False.")
     walk = _walk_of(sim.sensor_suite)
-    walk.end(task.measurements.get_metrics() if walk.begun else None)
-    if walk.put_back is not None:
-        walk.put_back()
+    walk.end(task.measurements.get_metrics() if walk.begun else None, RESET)
+    _put_back(walk)
     walk.sim, walk.task, walk.episode = sim, task, episode
     words = getattr(episode, "instruction", None)
+    text, tokens = _own(words)
     said = {
-        "text": getattr(words, "instruction_text", None),
-        "tokens": _plain(getattr(words, "instruction_tokens", None)),
+        "text": text,
+        "tokens": _plain(tokens),
         "language": getattr(words, "language", None),
         "category": getattr(episode, "object_category", None),
     }
     answer = walk.begin(episode.scene_id, episode.episode_id, **said)
     if words is not None and answer.get("text") is not None:
-        walk.put_back = _say(words, answer)
+        _said[id(words)] = (words, answer["text"], text, tokens)
+        walk.words = words
+        _say(words, answer["text"], answer["tokens"])
     observations = original(task, episode, *args, **kwargs)
     walk.start = _distance(sim, walk.position(), episode)
     walk.path = [place for place in [walk.position()] if place is not None]
     return observations
 
 
-def _say(words, answer):
-    """Put the answer's words into an episode; return what puts back those that were there."""
-    before = {"text": words.instruction_text, "tokens": getattr(words, "instruction_tokens", None)}
+_said = {}  # id of an episode's words: (they, the text that is heard, their own text and tokens)
 
-    def put(text, tokens):
-        words.instruction_text = text
-        if before["tokens"] is not None:
-            words.instruction_tokens = tokens
 
-    put(answer["text"], answer["tokens"])
-    return functools.partial(put, **before)
+def _own(words):
+    """Return text and tokens of an episode's words as the data set has them, though a walk may have
+    put others in their place: those are not corrupted again."""
+    text = getattr(words, "instruction_text", None)
+    _, heard, *own = _said.get(id(words), (None, None, None, None))
+    known = heard is not None and heard == text
+    return own if known else (text, getattr(words, "instruction_tokens", None))
+
+
+def _say(words, text, tokens):
+    words.instruction_text = text
+    if getattr(words, "instruction_tokens", None) is not None:
+        words.instruction_tokens = tokens
+
+
+def _put_back(walk):
+    """Let the words of a walk's episode be as they were, unless another walk is in it."""
+    words, walk.words = walk.words, None
+    if words is None or any(other.words is words for _, other in list(_walks.values())):
+        return
+    own = _own(words)
+    _said.pop(id(words), None)
+    _say(words, *own)
 
 
 def _plain(tokens):
@@ -587,29 +616,40 @@ def _make_dataset(original, *args, **kwargs):
 def _some(dataset):
     """Leave out episodes that the server does not ask for."""
     if dataset is not None and len(dataset.episodes):
-        keys = [_key(e.scene_id, e.episode_id) for e in dataset.episodes]
-        keep = Channel().ask("dataset", keys=keys)["keep"]
+        keep = _chosen(dataset.episodes, lambda e: _key(e.scene_id, e.episode_id), 1)
         if keep is not None:
             dataset.episodes = [dataset.episodes[i] for i in keep]
     return dataset
 
 
+def _chosen(episodes, key, least):
+    """Return the numbers of the episodes that the server asks for, ``least`` so many; None: of
+    all. Their keys are told in pieces, if it chooses at all."""
+    channel, count = Channel(), len(episodes)
+    answer = channel.ask("dataset", count=count, keys=[], least=least)
+    for at in range(0, count, PIECE):
+        if "keep" not in answer:
+            keys = [key(episode) for episode in episodes[at : at + PIECE]]
+            answer = channel.ask("dataset", count=count, keys=keys, least=least)
+    return answer["keep"]
+
+
 def _env_reset(original, env, *args, **kwargs):
     """``Env.reset`` loads the next scene, so the last episode is measured before."""
-    _end(env)
+    _end(env, RESET)
     return original(env, *args, **kwargs)
 
 
 def _env_step(original, env, *args, **kwargs):
     observations = original(env, *args, **kwargs)
     if env.episode_over:
-        _end(env)
+        _end(env, OVER)
     return observations
 
 
 def _env_close(original, env, *args, **kwargs):
     """``Env.close``: an Env for each episode leaves no simulator or connection behind."""
-    _end(env)
+    _end(env, CLOSE)
     suite = getattr(env.sim, "sensor_suite", None)
     try:
         return original(env, *args, **kwargs)
@@ -624,14 +664,15 @@ def _release(suite):
         for sensor in suite.sensors.values():
             _described.pop(id(sensor), None)
         if walk is not None:
+            _put_back(walk)
             walk.leave()
 
 
-def _end(env):
+def _end(env, how):
     suite = getattr(env.sim, "sensor_suite", None)
     walk = None if suite is None else _walk_of(suite)
     if walk is not None and walk.begun:
-        walk.end(env.get_metrics())
+        walk.end(env.get_metrics(), how)
 
 
 def _env_render(original, env, *args, **kwargs):
@@ -843,16 +884,15 @@ class Episode:
         self._walk.steps += 1
         return self._walk.corrupt(observations, listed, heading)
 
-    def finish(self, success, spl=None, **metrics):
+    def finish(self, success, spl=None, stopped=None, **metrics):
         """Tell how it went: ``success`` (0 or 1), ``spl`` (0 to 1; None: by ``path_length`` and
-        ``geodesic_distance``, or else as the success), ``distance_to_goal`` ... Raises ValueError
-        for what is none."""
+        ``geodesic_distance``, or else as the success), whether the agent ``stopped`` by itself (0
+        or 1, None: unknown; rules ask for it), ``distance_to_goal`` ... Raises ValueError for what
+        is none."""
         self._check()
-        told = dict(metrics, success=_share(success, "success"))
-        if told["success"] not in (0.0, 1.0):
-            raise ValueError(
-                f"finish(success={success!r}): it must be 1 (or True) or 0 (or False)."
-            )
+        told = dict(metrics, success=_truth(success, "success"))
+        if stopped is not None:
+            stopped = bool(_truth(stopped, "stopped"))
         if spl is not None:
             told["spl"] = _share(spl, "spl")
             if told["spl"] and not told["success"]:
@@ -863,7 +903,7 @@ class Episode:
         for name in ("path_length", "geodesic_distance", "distance_to_goal"):
             if metrics.get(name) is not None:
                 told[name] = _measure(metrics[name], name)
-        self._walk.end(told)
+        self._walk.end(told, OVER, stopped)
 
     def _check(self):
         if self._walk.current is not self:
@@ -883,6 +923,14 @@ class Episode:
                 "it, and their frames might be mixed up: call mitigate_hook.connect() in the "
                 "thread that walks."
             )
+
+
+def _truth(value, name):
+    """Return 0.0 or 1.0. Raises ValueError for what is neither."""
+    found = _share(value, name)
+    if found not in (0.0, 1.0):
+        raise ValueError(f"finish({name}={value!r}): it must be 1 (or True) or 0 (or False).")
+    return found
 
 
 def _share(value, name):
@@ -970,13 +1018,18 @@ def _shape(value):
 def wanted(episodes):
     """Return those of a list of (scene, episode id) that this run asks for: all without
     ``episodes=``, else about as many, chosen by a hash of their names. Raises RuntimeError outside
-    of ``mitigate run``."""
+    of ``mitigate run``, ValueError for what is no such list."""
     _check_run()
     episodes = list(episodes)
+    for one in episodes:
+        if not isinstance(one, (tuple, list)) or len(one) != 2:
+            raise ValueError(
+                f"wanted() was given {one!r:.80}: each episode must be a pair, (scene, id), or "
+                "('', id) where there are no scenes."
+            )
     if not episodes:
         return []
-    keys = [_key(*episode) for episode in episodes]
-    keep = Channel().ask("dataset", keys=keys, least=0)["keep"]
+    keep = _chosen(episodes, lambda episode: _key(*episode), 0)
     return episodes if keep is None else [episodes[i] for i in keep]
 
 

@@ -1,0 +1,178 @@
+"""What an attempt at a condition begins with, and what of it is refused before or as it starts."""
+
+import fcntl
+import json
+import sys
+from functools import partial
+
+import pytest
+
+from mitigate.bridge.conditions import cells
+from mitigate.bridge.hook import mitigate_hook
+from mitigate.bridge.identity import default_folder
+from mitigate.bridge.results import read
+from mitigate.bridge.server import Listener
+from mitigate.bridge.subset import Subset
+from mitigate.core.conf import load_config
+
+from .conftest import condition, python
+
+SKIPS = """
+import json, os, sys, numpy, mitigate_hook
+results = sys.argv[1]
+done = json.load(open(results)) if os.path.exists(results) else []
+for _, name in mitigate_hook.wanted([("", name) for name in "abc"]):
+    if name in done:
+        continue
+    episode = mitigate_hook.connect(name)
+    episode.corrupt({"rgb": numpy.full((8, 8, 3), 90, "uint8")})
+    episode.finish(success=True)
+    json.dump(done + [name], open(results, "w"))
+    if len(sys.argv) > 2 and not done:
+        sys.exit(3)  # it is broken off
+"""
+
+
+@pytest.fixture
+def skips(tmp_path):
+    """A program that skips what it finds in its own results, and dies behind its first episode."""
+    file = tmp_path / "nav.py"
+    file.write_text(SKIPS)
+    return f"{sys.executable} {file}"
+
+
+def test_each_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
+    out = tmp_path / "o"
+    broken = run(out, "conditions=[clean]", f"{skips} {{out}}/results.json die")
+    assert broken.returncode == 1 and (out / "conditions/clean/results.json").exists()
+    again = run(out, "conditions=[spatter]", f"{skips} {{out}}/results.json")
+    assert again.returncode == 0 and "clean: 3 episodes" in again.stdout, again.stderr
+    aside = out / "conditions/clean.unfinished"
+    assert json.loads((aside / "results.json").read_text()) == ["a"]
+    assert (aside / "events.jsonl").exists()
+
+
+def test_a_program_that_finds_its_own_results_is_told_what_to_do(run, skips, tmp_path):
+    (tmp_path / "all.json").write_text('["a", "b", "c"]')
+    ran = run(tmp_path / "o", "conditions=[clean]", f"{skips} {tmp_path}/all.json")
+    assert "without an episode" in ran.stderr and "Delete them" in ran.stderr
+    assert f"stands for {tmp_path / 'o/conditions/clean'}" in ran.stderr
+
+
+def test_a_condition_that_is_locked_leaves_the_others_to_run(run, skips, tmp_path):
+    folder = tmp_path / "o/conditions/spatter-s0.6"
+    folder.mkdir(parents=True)
+    with open(folder / "lock", "w") as held:
+        fcntl.flock(held, fcntl.LOCK_EX)
+        ran = run(tmp_path / "o", "conditions=[spatter,flare]", f"{skips} {{out}}/results.json")
+    assert "spatter-s0.6: Another run is at work in" in ran.stderr and "flare" not in ran.stderr
+    assert (tmp_path / "o/conditions/flare-s0.6/done.json").exists()
+
+
+def test_a_damaged_note_of_a_condition_is_named(run, skips, tmp_path):
+    file = tmp_path / "o/conditions/clean/done.json"
+    file.parent.mkdir(parents=True)
+    file.write_text('{"seed": ')
+    ran = run(tmp_path / "o", "conditions=[clean]", f"{skips} {{out}}/results.json")
+    assert f"{file} is cut short or damaged" in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("missing=-5", "missing=-5 must be metres, 0 or more"),
+        ("token_length=-5", "token_length=-5 is none"),
+        ("split=", "split='' can stand in no row"),
+        (f"name={'x' * 201}", "can stand in no row: a line of at most 200"),
+    ],
+)
+def test_options_that_would_fail_later_are_refused_at_once(run, tmp_path, options, words):
+    assert words in run(tmp_path / "o", options).stderr
+    assert not (tmp_path / "o").exists()
+
+
+def test_a_recording_that_is_a_file_is_refused_by_its_path(run, tmp_path):
+    file = tmp_path / "recorded"
+    file.write_text("")
+    with pytest.raises(OSError, match=f"Cannot write {file}"):
+        run(tmp_path / "o", f"conditions=[clean] record={file}")
+
+
+def test_a_disk_that_takes_nothing_is_not_the_hooks_fault(tmp_path):
+    from mitigate.bridge.recording import Recorder
+
+    (tmp_path / "recorded").write_text("")
+    met = condition(observers=[Recorder(tmp_path / "recorded")])
+    with Listener(met, tmp_path / "told") as listener:
+        python(listener, "import mitigate_hook; mitigate_hook.connect('a')")
+    problem = read(tmp_path / "told").refused[0]
+    assert f"cannot write {tmp_path}/recorded" in problem and "mitigate_hook.py" not in problem
+
+
+def made(folder, *options):
+    """The first condition of a run with options, and its folder by default."""
+    cfg = load_config("run", ["conditions=[clean]", *options])
+    return cells(cfg, ["nav"], folder, "nav")[0], default_folder(cfg, "nav")
+
+
+def test_what_is_watched_makes_another_agent(tmp_path, monkeypatch):
+    file = tmp_path / "policy.yaml"
+    file.write_text("good")
+    plain, folder = made(tmp_path)
+    assert plain.settings["watch"] is None and folder.name == "nav-s0.6"
+    option = f"watch=[CKPT,{file}]"
+    monkeypatch.setenv("CKPT", "good")
+    known = [made(tmp_path, option)]
+    assert known[0][0].settings["watch"]["CKPT"] == "good"
+    monkeypatch.setenv("CKPT", "bad")
+    known.append(made(tmp_path, option))
+    file.write_text("bad")
+    known.append(made(tmp_path, option))
+    for part in (lambda one: one[0].label["agent"], lambda one: one[1].name):
+        assert len({part(one) for one in [(plain, folder), *known]}) == 4
+
+
+def test_names_of_episodes_come_in_pieces(tmp_path):
+    """A train split's are more than a message holds."""
+    code = (
+        "import mitigate_hook\nmitigate_hook.PIECE = 7\n"
+        "print([n for _, n in mitigate_hook.wanted([('x.glb', n) for n in range(20)])])"
+    )
+    keep = Subset(4, tmp_path, settled=0.0).keep
+    with Listener(condition(keep=keep), tmp_path / "told") as listener:
+        printed = python(listener, code).stdout
+    wanted = keep([f"x.glb/{n}" for n in range(20)])
+    assert printed.strip() == str(wanted) and len(wanted) == 4
+    assert json.loads((tmp_path / "episodes.json").read_text())["of"] == 20
+
+
+def test_no_names_are_told_where_none_are_chosen(tmp_path):
+    code = (
+        "import mitigate_hook\nmitigate_hook._key = None\n"
+        "print(len(mitigate_hook.wanted([('x.glb', n) for n in range(20)])))"
+    )
+    with Listener(condition(), tmp_path) as listener:
+        assert python(listener, code).stdout.strip() == "20"
+
+
+@pytest.mark.parametrize("episodes", [["17", "18"], ["7"], [("a", "b", "c")], [5]])
+def test_what_is_wanted_must_be_pairs(monkeypatch, episodes):
+    monkeypatch.setenv(mitigate_hook.ADDRESS, "nowhere")
+    with pytest.raises(ValueError, match="each episode must be a pair"):
+        mitigate_hook.wanted(episodes)
+
+
+def test_that_more_episodes_were_walked_than_asked_for_is_said(run, tmp_path, monkeypatch):
+    from mitigate.bridge import conditions
+
+    monkeypatch.setattr(conditions, "Subset", partial(Subset, settled=0.0))
+    file = tmp_path / "nav.py"
+    file.write_text(
+        "import numpy, mitigate_hook\nfor shard in range(9):\n"  # each comes late
+        "    for scene, name in mitigate_hook.wanted([('k', 9 * shard + n) for n in range(9)]):\n"
+        "        episode = mitigate_hook.connect(name, scene=scene)\n"
+        "        episode.corrupt({'rgb': numpy.zeros((8, 8, 3), 'u1')})\n"
+        "        episode.finish(success=1)\n"
+    )
+    ran = run(tmp_path / "o", "conditions=[clean] episodes=3", f"{sys.executable} {file}")
+    assert "episodes (3 asked for: processes came more than 4 s after the others" in ran.stdout
