@@ -33,6 +33,7 @@ CLASS, CODE, ENV, MADE = (
     "its env",
     "what makes it",
 )  # what differs, in words
+MOST_LAYERS = 20  # of wrappers around an environment (ours)
 
 
 def keep(
@@ -74,12 +75,21 @@ def keep(
 
 def described(make_world: Callable[[], World], world: World) -> dict[str, str]:
     """Return what ``world`` is, as texts by name: its class, the environment inside it, the hash of
-    the code of both where that is of neither this project nor a known library, and what it was made
+    their code where that is of neither this project nor a known library, and what it was made
     by: the entries of a config, or a function's arguments and the values that it uses."""
-    env = getattr(getattr(world, "env", None), "unwrapped", getattr(world, "env", None))
-    sources = [source for one in (world, env) for source in source_of(type(one))]
+    sources = [source for layer in _layers(world) for source in source_of(type(layer))]
     told = {CLASS: _kind(world), ENV: _spec(world), CODE: _hash(sources) if sources else ""}
     return {key: value for key, value in (*told.items(), *_made_by(make_world)) if value}
+
+
+def _layers(world: World) -> Iterator[Any]:
+    """The world, the environment in it, and those that this goes around."""
+    layer: Any = world
+    for _ in range(MOST_LAYERS):
+        if layer is None:
+            return
+        yield layer
+        layer = getattr(layer, "env", None)
 
 
 def name_of(world: World) -> str:

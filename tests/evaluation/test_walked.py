@@ -50,6 +50,10 @@ def of_config(**given):
     return maker(OmegaConf.create({"_target_": target, "_partial_": True, **given}))
 
 
+def in_two_layers(env) -> SimpleNamespace:
+    return SimpleNamespace(rule="there", sensors={}, env=SimpleNamespace(env=env))
+
+
 def with_cells(cells: int):
     return lambda: Maze(cells)
 
@@ -87,7 +91,9 @@ def test_worlds_of_other_sensors_or_another_rule_stand_side_by_side(tmp_path):
         keep(tmp_path, of_config(size=16, cells=3))
 
 
-def test_an_edited_world_is_another_one(tmp_path, monkeypatch):
+@pytest.mark.parametrize("wrapped", [False, True])
+def test_an_edited_world_is_another_one(tmp_path, monkeypatch, wrapped):
+    """Also one inside an environment's wrappers."""
     monkeypatch.syspath_prepend(tmp_path)
     source = "class Edited:\n    rule, sensors = 'there', {}\n    won = True\n"
     for text in (source, source, source.replace("True", "False")):
@@ -95,11 +101,12 @@ def test_an_edited_world_is_another_one(tmp_path, monkeypatch):
         sys.modules.pop("edited_world", None)
         importlib.invalidate_caches()
         linecache.clearcache()
-        make = importlib.import_module("edited_world").Edited
+        edited = importlib.import_module("edited_world").Edited
+        make = partial(in_two_layers, edited()) if wrapped else edited
         if text == source:
             keep(tmp_path, make)
             continue
-        with pytest.raises(ValueError, match=r"the code of edited_world\.Edited was changed"):
+        with pytest.raises(ValueError, match=r"the code of .* was changed"):
             keep(tmp_path, make)
     sys.modules.pop("edited_world")
 
