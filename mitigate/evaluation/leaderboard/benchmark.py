@@ -62,9 +62,8 @@ def benchmark(
     Args:
         agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
         name: heading of the entry; None: of the weights' folder, or the agent's class.
-        split: list of episodes of the world; None: its own first, or the name of a world of your
-            own. episodes: how many, spread over the list; None: all, as entries of the leaderboard
-            have.
+        split: list of episodes of the world; None: its own first, or the name of your own world.
+            episodes: how many, spread over the list; None: all, as entries of the leaderboard have.
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
             the corruptions. workers: processes; None: one a core if there is work. More than one
             read the script again, which keeps its call under ``if __name__ == "__main__":``.
@@ -73,17 +72,15 @@ def benchmark(
             ``options``; a world of another class than theirs needs both.
         training_data, link: for the entry. out: folder of the rows; None: one in
             ``runs/benchmark``.
-    Raises ValueError for what is no agent, unknown names, numbers out of range, texts that an
-    entry cannot hold and a folder with rows of another world, FileNotFoundError for missing
-    weights.
+    Raises ValueError for no agent, unknown names, numbers out of range, texts that an entry cannot
+    hold and a folder with rows of another world, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
     agent, name = _agent(agent, name, cfg, seed)
     check_texts(name=name, training_data=training_data, link=link)
     made = world or maker(cfg.env.world)
     first = _first_world(made, met)
-    split = split or (walked.name_of(first) if _is_own(first, cfg) else cfg.split)
-    chosen = _episodes(first, cfg, split, episodes, listed)
+    split, chosen = _episodes(first, cfg, split, episodes, listed)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     _check_known(agent, name, file)
     _tell(agent, made, chosen, len(met), workers)
@@ -183,11 +180,13 @@ def _is_own(world: World, cfg: Any) -> bool:
 
 
 def _episodes(
-    world: World, cfg: Any, split: str, count: int | None, listed: Sequence[Episode] | None
-) -> list[Episode]:
-    """Return the episodes to walk; raise ValueError for none, and for a world of another class
-    than the config's without a list of its own."""
-    if listed is None and _is_own(world, cfg):
+    world: World, cfg: Any, split: str | None, count: int | None, listed: Sequence[Episode] | None
+) -> tuple[str, list[Episode]]:
+    """Return the split and the episodes to walk; raise ValueError for none, and for a world of
+    another class than the config's without a list of its own."""
+    own = _is_own(world, cfg)
+    split = split or (walked.name_of(world) if own else cfg.split)
+    if listed is None and own:
         raise ValueError(
             f"The episodes of {cfg.env.name} are none of {walked.name_of(world)}: give its own, "
             'listed=[*read_episodes("mine.json")] (mitigate.worlds.episodes, '
@@ -196,7 +195,7 @@ def _episodes(
         )
     chosen = evaluation.episodes(cfg.env, split, count) if listed is None else list(listed)
     check_episodes("listed" if listed is not None else split, chosen)
-    return chosen
+    return split, chosen
 
 
 def _check_copies(*things: Any) -> None:
