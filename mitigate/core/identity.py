@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
-import sys
+import sysconfig
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
@@ -25,7 +25,8 @@ from mitigate.core.held import Held, held
 from mitigate.core.observation import Sensor
 
 DIGITS = 12  # hex digits: 48 bits
-_BY_VERSION = ("mitigate", "torch", "torchrl", "tensordict", "gymnasium", "numpy")  # not by code
+_BY_VERSION = ("mitigate", "torch")  # not by their code, wherever it is
+_INSTALLED = frozenset(("site-packages", "dist-packages"))
 
 
 def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> str:
@@ -34,9 +35,9 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
     It covers the weights (names, types, shapes, values) of the network that it is and of those that
     it holds, wherever they are in it (``core/held.py``), or of its arrays if it has no networks;
     the agent's class and ``settings`` (a mapping, or a method that returns one: vocabulary and all
-    else that is no weight); the code of its classes and of its networks' that are of neither this
-    project nor torch; what each sensor gives, and what stands in front of the agent (``front``: the
-    safeguard that repairs its instructions).
+    else that is no weight); the code of its classes and of its networks' (:func:`source_of`); what
+    each sensor gives, and what stands in front of the agent (``front``: the safeguard that repairs
+    its instructions).
     """
     settings, inside = getattr(agent, "settings", dict), held(agent)
     code = _codes(agent, inside)
@@ -53,9 +54,9 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
 
 
 def source_of(kind: type) -> list[str]:
-    """The source of a class and of those that it builds on, but for this project's, Python's own
-    and those of :data:`_BY_VERSION`; as it was when it was first asked for, whatever becomes of the
-    file."""
+    """The source of a class and of those that it builds on, but for this project's, torch's,
+    Python's own and those of installed packages, which nobody edits; as it was when it was first
+    asked for, whatever becomes of the file."""
     return list(_source_of(kind))
 
 
@@ -71,12 +72,16 @@ def _codes(agent: Any, inside: Held) -> list[str]:
 def _source_of(kind: type) -> tuple[str, ...]:
     found = []
     for each in kind.__mro__:
-        package = each.__module__.partition(".")[0]
-        if package in _BY_VERSION or package in sys.stdlib_module_names:
+        if each.__module__.partition(".")[0] in _BY_VERSION:
             continue
         with suppress(OSError, TypeError):  # typed in, or made while it ran
-            found.append(inspect.getsource(each))
+            if not _is_installed(PurePath(inspect.getsourcefile(each) or "")):
+                found.append(inspect.getsource(each))
     return tuple(found)
+
+
+def _is_installed(file: PurePath) -> bool:
+    return bool(_INSTALLED & {*file.parts}) or file.is_relative_to(sysconfig.get_path("stdlib"))
 
 
 def _weights(inside: Held) -> str | dict[str, str]:

@@ -75,7 +75,7 @@ def keep(
 
 def described(make_world: Callable[[], World], world: World) -> dict[str, str]:
     """Return what ``world`` is, as texts by name: its class, the environment inside it, the hash of
-    their code where that is of neither this project nor a known library, and what it was made
+    their code where that is of neither this project nor an installed package, and what it was made
     by: the entries of a config, or a function's arguments and the values that it uses."""
     sources = [source for layer in _layers(world) for source in source_of(type(layer))]
     told = {CLASS: _kind(world), ENV: _spec(world), CODE: _hash(sources) if sources else ""}
