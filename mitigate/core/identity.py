@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
+import sysconfig
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
@@ -16,57 +17,91 @@ from functools import cache
 from pathlib import PurePath
 from typing import Any
 
-from torch import nn
+import numpy as np
+import torch
 
 from mitigate.core.checkpoint import weights_sha
+from mitigate.core.held import Held, held
 from mitigate.core.observation import Sensor
 
 DIGITS = 12  # hex digits: 48 bits
+_BY_VERSION = ("mitigate", "torch")  # not by their code, wherever it is
+_INSTALLED = frozenset(("site-packages", "dist-packages"))
 
 
 def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> str:
     """Return the hash of ``agent`` behind ``sensors``.
 
-    It covers the weights (names, types, shapes, values), also those of networks that an agent which
-    is none itself holds as attributes, the agent's class and ``settings`` (a mapping, or a method
-    that returns one: vocabulary and all else that is no weight), what each sensor gives, and what
-    stands in front of the agent (``front``: the safeguard that repairs its instructions). Of an
-    agent without ``settings`` it covers the code of its class as well, where that is in a file.
+    It covers the weights (names, types, shapes, values) of the network that it is and of those that
+    it holds, wherever they are in it (``core/held.py``), or of its arrays if it has no networks;
+    the agent's class and ``settings`` (a mapping, or a method that returns one: vocabulary and all
+    else that is no weight); the code of its classes and of its networks' (:func:`source_of`); what
+    each sensor gives, and what stands in front of the agent (``front``: the safeguard that repairs
+    its instructions).
     """
-    settings = getattr(agent, "settings", dict)
-    code = {} if hasattr(agent, "settings") else {"code": _code(type(agent))}  # type: ignore[arg-type]
-    held = {
+    settings, inside = getattr(agent, "settings", dict), held(agent)
+    code = _codes(agent, inside)
+    made = {
         "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
-        "weights": _weights(agent),
+        "weights": _weights(inside),
         "settings": settings() if callable(settings) else settings,
         "sensors": {name: asdict(sensor) for name, sensor in sorted(sensors.items())},
         "front": front,
-        **code,
+        **({"code": code} if code else {}),
     }
-    text = json.dumps(held, sort_keys=True, default=_plain)
+    text = json.dumps(made, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
+def source_of(kind: type) -> list[str]:
+    """The source of a class and of those that it builds on, but for this project's, torch's,
+    Python's own and those of installed packages, which nobody edits; as it was when it was first
+    asked for, whatever becomes of the file."""
+    return list(_source_of(kind))
+
+
+def _codes(agent: Any, inside: Held) -> list[str]:
+    """What :func:`source_of` has of the agent's class and of those of its networks' modules, each
+    class once."""
+    modules = [module for net in inside.networks.values() for module in net.modules()]
+    kinds = dict.fromkeys(map(type, (agent, *modules)))
+    return [*dict.fromkeys(source for kind in kinds for source in source_of(kind))]
+
+
 @cache
-def _code(kind: type) -> list[str]:
-    """The source of a class and of those that it builds on, but torch's and Python's own; as it was
-    when it was first asked for, whatever becomes of the file."""
+def _source_of(kind: type) -> tuple[str, ...]:
     found = []
     for each in kind.__mro__:
-        if each.__module__.partition(".")[0] in ("builtins", "abc", "typing", "torch"):
+        if each.__module__.partition(".")[0] in _BY_VERSION:
             continue
         with suppress(OSError, TypeError):  # typed in, or made while it ran
-            found.append(inspect.getsource(each))
-    return found
+            if not _is_installed(PurePath(inspect.getsourcefile(each) or "")):
+                found.append(inspect.getsource(each))
+    return tuple(found)
 
 
-def _weights(agent: Any) -> str | dict[str, str]:
-    """The hash of the weights of a network, or of each of those in the attributes of another
-    object; empty if there are none."""
-    if isinstance(agent, nn.Module):
-        return weights_sha(agent)
-    own = getattr(agent, "__dict__", {})
-    return {k: weights_sha(v) for k, v in own.items() if isinstance(v, nn.Module)} or ""
+def _is_installed(file: PurePath) -> bool:
+    return bool(_INSTALLED & {*file.parts}) or file.is_relative_to(sysconfig.get_path("stdlib"))
+
+
+def _weights(inside: Held) -> str | dict[str, str]:
+    """The hash of the weights of the network that the agent is, or of each of those that it holds,
+    else of its arrays; empty if there are none."""
+    found = {place: weights_sha(net) for place, net in inside.networks.items()}
+    if [*found] == [""]:
+        return found[""]
+    return found or {place: _sha(array) for place, array in inside.arrays.items()} or ""
+
+
+def _sha(array: Any) -> str:
+    """The hash of an array's type, shape and bytes."""
+    if isinstance(array, torch.Tensor):
+        bytes_of = array.detach().cpu().contiguous().reshape(-1).view(torch.uint8).numpy().tobytes()
+    else:
+        array = np.asarray(array)
+        bytes_of = array.tobytes()
+    kind = f"{array.dtype} {tuple(array.shape)}"
+    return hashlib.sha256(kind.encode() + bytes_of).hexdigest()[:DIGITS]
 
 
 def _plain(value: Any) -> Any:

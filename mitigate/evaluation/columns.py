@@ -1,4 +1,4 @@
-"""How a column of a table is called: by its weights, its recipe and the options that changed it."""
+"""How a column of a table and the folder of its rows are called: by weights, recipe and options."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from omegaconf import DictConfig
+
+from mitigate.core.conf import CONF
 
 
 def name_of(weights: str) -> str:
@@ -35,6 +37,20 @@ def column_of(cfg: DictConfig, folder: Path) -> str:
     that other settings are no other seeds of it."""
     options = folder.name.partition(f"-seed{cfg.seed}-")[2]
     return f"{cfg.name}+{options}" if options else cfg.name
+
+
+def default_folder(cfg: DictConfig, name: str) -> str:
+    """Return ``runs/evaluate/<name>-[<world>-]<split>-s<severity>``; the world is named unless its
+    config is of this project, whose worlds have splits of their own."""
+    own = not (CONF / "env" / f"{cfg.env.name}.yaml").is_file()
+    split = f"{cfg.env.name}-{cfg.split}" if own else cfg.split
+    return f"{cfg.runs}/evaluate/{name}-{split}-s{_severities(cfg)}"
+
+
+def _severities(cfg: DictConfig) -> str:
+    """The severities, as part of a folder's name."""
+    depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
+    return f"{cfg.severity:g}{depth}"
 
 
 def _plain(text: str) -> str:

@@ -26,7 +26,7 @@ from mitigate.core.options import check_dashes, config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import list_hash, rows
+from mitigate.evaluation import rows, walked
 from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import episodes
@@ -68,12 +68,13 @@ def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
     in the folder ``out`` too. Those that it has count."""
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     with FolderLock(out):
-        list_hash.keep(out, cfg.split, cfg.env.episodes[cfg.split])
-        return _walked(cfg, chosen, out / rows.ROWS)
+        make = maker(cfg.env.world)
+        world = make()
+        walked.keep(out, make, world, cfg.split, chosen, cfg.env.episodes[cfg.split])
+        return _walked(world, cfg.split, chosen, out / rows.ROWS)
 
 
-def _walked(cfg: DictConfig, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
-    world = maker(cfg.env.world)()
+def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
     controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": RandomAgent()}
     held = {rows.identity(row): row for row in rows.read(out)} if out.exists() else {}
     found = []
@@ -83,7 +84,7 @@ def _walked(cfg: DictConfig, chosen: Sequence[Episode], out: Path) -> list[rows.
             "name": name,
             "corruption": "clean",
             "severity": 0.0,
-            "split": cfg.split,
+            "split": split,
             "seed": 0,
             "suite": SUITE_VERSION,
             "rule": world.rule,

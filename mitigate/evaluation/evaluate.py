@@ -20,8 +20,7 @@ from omegaconf import MISSING, DictConfig
 from mitigate.core import conf, seeding
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
-from mitigate.evaluation import list_hash
-from mitigate.evaluation.columns import changed, column_of, name_of
+from mitigate.evaluation.columns import changed, column_of, default_folder, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
@@ -117,6 +116,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     met = conditions(names, cfg.severity, cfg.severity_depth)
     from mitigate.core import build
+    from mitigate.evaluation import walked
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.restoration.restorer import restorer_of
     from mitigate.safeguard import choices
@@ -125,13 +125,13 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     agent = load(cfg.agent, cfg.checkpoint, cfg.seed, overrides)
     check_walks(agent)
     world, name = build.maker(cfg.env.world), _column(cfg, overrides)
-    sensors = world().sensors
-    restorer = restorer_of(cfg.restore, sensors)
-    check_sensors(met, sensors, cfg.env.name)
+    first = world()
+    restorer = restorer_of(cfg.restore, first.sensors)
+    check_sensors(met, first.sensors, cfg.env.name)
     choices.check(cfg.safeguard)
-    out = Path(cfg.out or f"{cfg.runs}/evaluate/{name}-{cfg.split}-s{_severities(cfg)}")
+    out = Path(cfg.out or default_folder(cfg, name))
     with FolderLock(out):
-        list_hash.keep(out, cfg.split, cfg.env.episodes[cfg.split])
+        walked.keep(out, world, first, cfg.split, chosen, cfg.env.episodes[cfg.split])
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
@@ -168,12 +168,6 @@ def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
     if cfg.restore and restorers.label(cfg.restore) != "none":
         before.append(restorers.label(cfg.restore))
     return "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
-
-
-def _severities(cfg: DictConfig) -> str:
-    """The severities, as part of a folder's name."""
-    depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
-    return f"{cfg.severity:g}{depth}"
 
 
 def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
@@ -229,6 +223,7 @@ def report_before_after(
     pictures in ``folder/pictures`` show episodes that the training won back.
     """
     from mitigate.core import build
+    from mitigate.evaluation import walked
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.evaluation.trajectories import write_pictures
 
@@ -237,8 +232,9 @@ def report_before_after(
     suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
     agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
     agents = {name: agent for name, agent in agents.items() if agent is not None}
-    list_hash.keep(folder, quick.split, cfg.env.episodes[quick.split])
     world, rows = build.maker(cfg.env.world), []
+    first = world()
+    walked.keep(folder, world, first, quick.split, chosen, cfg.env.episodes[quick.split])
     for name, agent in agents.items():
         rows += evaluate(
             agent,
@@ -252,7 +248,7 @@ def report_before_after(
             workers=quick.workers,
         )
     write_table([folder / ROWS], folder)
-    written = write_pictures(agents, world(), chosen, rows, folder / "pictures", seed=cfg.seed)
+    written = write_pictures(agents, first, chosen, rows, folder / "pictures", seed=cfg.seed)
     print("\n".join(f"wrote {path}" for path in written), flush=True)
 
 

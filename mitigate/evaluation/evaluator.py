@@ -24,7 +24,9 @@ import torch
 from mitigate.agents.agent import Agent, SideBySide
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
+from mitigate.core.held import in_eval_mode, networks
 from mitigate.core.identity import identity
+from mitigate.core.names import counted
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
@@ -66,15 +68,14 @@ class EpisodeTask:
     @contextmanager
     def ready(self) -> Iterator[None]:
         """One thread for torch, and fp32 whoever calls: results are then the same in any number of
-        processes, and inside a training in bf16."""
+        processes, and inside a training in bf16. The agent's networks are in eval mode, and as they
+        were afterwards."""
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
-        if isinstance(self.agent, torch.nn.Module):
-            self.agent.eval()
         self.world = self.world or self.make_world()
         device = next((p.device for p in _parameters(self.agent)), torch.device("cpu"))
         try:
-            with computing("fp32", device):
+            with computing("fp32", device), in_eval_mode(self.agent):
                 yield
         finally:
             torch.set_num_threads(threads)
@@ -111,7 +112,7 @@ def _together(agent: Any, world: Any) -> int:
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
-    return agent.parameters() if isinstance(agent, torch.nn.Module) else iter(())
+    return (parameter for net in networks(agent) for parameter in net.parameters())
 
 
 def evaluate(
@@ -162,8 +163,11 @@ def evaluate(
     heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
     decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
     repaired = {decision.original: decision.text for decision in decided}
-    if todo:
-        task, title = EpisodeTask(agent, world, repaired, restorer), f"{name}, {split}"
+    title = f"{name}, {split}"
+    if not todo:
+        print(f"{title}: {counted(len(jobs), 'walk')}, all done before, in {out}", flush=True)
+    else:
+        task = EpisodeTask(agent, world, repaired, restorer)
         at_once = _together(agent, made)
         groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
         _run(task, groups, len(jobs), out, workers, launcher, title)

@@ -20,6 +20,7 @@ from mitigate.core import checkpoint, settings
 from mitigate.core.files import PACKAGE, ROOT, sha256
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
+from mitigate.shipping import given
 
 FORMAT = 1
 CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
@@ -51,9 +52,11 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
             the card says, looked for below the current folder, the folders above ``folder`` and
             the checkout.
         agent: an agent of a class of your own, with the settings of the one that was exported, to
-            be filled in place; None: one of ours, built here.
+            be filled in place; if it has no ``settings()``, it is given the folder's. None: one of
+            ours, built here.
     Raises FileNotFoundError or ValueError, naming the file, if the folder is not whole or not what
-    its card states, TypeError for a folder that is no path.
+    its card states, TypeError for a folder that is no path. Warns of attributes of ``agent`` that
+    are called as settings and differ from them.
     """
     if not isinstance(folder, (str, os.PathLike)):
         raise TypeError(
@@ -64,8 +67,10 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     card = check(folder)
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
         if agent is not None:
-            _check_same(agent, folder / CONFIG)
-            return _filled(agent, folder, card, base)
+            given.check_same(agent, folder / CONFIG, _AGAIN)
+            filled = _filled(agent, folder, card, base)
+            given.give_settings(filled, folder / CONFIG, _AGAIN)
+            return filled
         agent = build(folder / CONFIG)
         if card["vocabulary"] != vocabulary_sha(agent):
             made = f" (commit {short(card['commit'])})" if card["commit"] else ""
@@ -89,20 +94,6 @@ def _filled(agent: Any, folder: Path, card: dict[str, Any], base: str | Path | N
     return agent.eval()
 
 
-def _check_same(agent: Any, config: Path) -> None:
-    """Raise ValueError if ``agent`` says of itself other settings than those in ``config``."""
-    held = settings.read(config).get("agent")
-    own: dict[str, Any] = getattr(agent, "settings", dict)()
-    if not isinstance(held, dict):
-        raise ValueError(f"{config} has no settings of an agent. {_AGAIN}")
-    wrong = [name for name, value in own.items() if name in held and held[name] != value]
-    if wrong:
-        raise ValueError(
-            f"{config} is of an agent with {wrong[0]}={held[wrong[0]]!r:.60}, but the one given "
-            f"has {own[wrong[0]]!r:.60}. Build it with the settings in that file."
-        )
-
-
 def build(config: Path) -> Any:
     """Return an agent of ours with the settings in ``config`` (YAML, read as data), its weights
     random.
@@ -110,9 +101,9 @@ def build(config: Path) -> Any:
     Raises ValueError if the file is damaged or names another kind of agent.
     """
     kind = kind_of(config)
-    given = agent_settings(config, kind)
+    found = agent_settings(config, kind)
     try:
-        return schema.class_of(kind)(**given)
+        return schema.class_of(kind)(**found)
     except (TypeError, RuntimeError) as error:
         raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
 

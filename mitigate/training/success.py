@@ -39,7 +39,7 @@ def measure(
     drawn = [training.draw(rng, (0, 1)) for _ in range(episodes)]
     met = [schedule.corruption(name) for name in schedule.names]
     groups = [[(e, c, {"corruption": c.name, "seed": seed}) for c in met] for e in drawn]
-    task = EpisodeTask(agent, world)
+    task = EpisodeTask(agent.eval(), world)
     on_gpu = any(p.device.type != "cpu" for p in agent.parameters())
     if workers == 0 or (workers is None and on_gpu):
         workers = 1

@@ -6,13 +6,15 @@ import copy
 import importlib
 import linecache
 import sys
+from collections import OrderedDict
 
 import torch
+from torch import nn
 
 from mitigate.agents.text import WORDS
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import seeding
-from mitigate.core.identity import identity
+from mitigate.core.identity import identity, source_of
 from mitigate.core.observation import cameras
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
@@ -75,3 +77,50 @@ def test_an_agent_is_what_was_loaded_whatever_becomes_of_its_file(tmp_path, monk
     linecache.clearcache()
     assert identity(agent, {}) == before
     sys.modules.pop("edited_agent")
+
+
+NETWORK = """
+from torch import nn
+
+class Head(nn.Linear):
+    def forward(self, x):
+        return super().forward(x)
+
+class Agent(nn.Module):
+    settings = dict
+
+    def __init__(self):
+        super().__init__()
+        self.head = Head(1, 1)
+        nn.init.ones_(self.head.weight)
+        nn.init.ones_(self.head.bias)
+"""
+
+
+def test_the_code_of_installed_packages_does_not_count(tmp_path, monkeypatch):
+    folder = tmp_path / "site-packages"
+    folder.mkdir()
+    monkeypatch.syspath_prepend(folder)
+    (folder / "installed_agent.py").write_text(PLAIN)
+    assert source_of(importlib.import_module("installed_agent").Plain) == []
+    assert source_of(nn.Linear) == source_of(OrderedDict) == source_of(TopologicalAgent) == []
+    assert source_of(Here)
+    sys.modules.pop("installed_agent")
+
+
+class Here:
+    """A class of no package."""
+
+
+def test_the_code_of_an_agents_networks_counts_also_where_it_has_settings(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    found = []
+    for number, source in enumerate((NETWORK, NETWORK.replace("return ", "return -"), NETWORK)):
+        (tmp_path / "own_network.py").write_text(source + "#" * number)  # of other lengths
+        sys.modules.pop("own_network", None)
+        importlib.invalidate_caches()
+        linecache.clearcache()
+        found.append(identity(importlib.import_module("own_network").Agent(), {}))
+    sys.modules.pop("own_network")
+    first, edited, again = found
+    assert first == again != edited

@@ -6,6 +6,7 @@ import pytest
 
 from mitigate.core import conf
 from mitigate.evaluation import evaluate, rows
+from mitigate.evaluation.columns import default_folder
 from tests.evaluation.made_rows import cell
 
 
@@ -31,12 +32,13 @@ def test_a_safeguard_that_does_not_exist_leaves_no_folder(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
-def test_another_severity_of_depth_is_another_folder():
-    folders = {
-        evaluate._severities(conf.load_config("evaluate", options))
-        for options in ([], ["severity_depth=0.9"], ["severity_depth=0.6"])
-    }
-    assert folders == {"0.6", "0.6-d0.9", "0.6-d0.6"}
+def test_another_severity_of_depth_or_a_world_of_ones_own_is_another_folder():
+    folders = [
+        default_folder(conf.load_config("evaluate", options), "mine")
+        for options in ([], ["severity_depth=0.9"], ["severity_depth=0.6"], ["env.name=maze"])
+    ]
+    ends = ["val_unseen-s0.6", "val_unseen-s0.6-d0.9", "val_unseen-s0.6-d0.6"]
+    assert folders == [f"runs/evaluate/mine-{end}" for end in (*ends, "maze-val_unseen-s0.6")]
 
 
 @pytest.mark.parametrize("option", ["finetune.lr=9", "++cost.evaluation=4"])

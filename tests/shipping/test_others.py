@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
+
 import pytest
 import yaml
 
 from mitigate.shipping.card import rows_agent
 from mitigate.shipping.export import _of_one_agent
-from mitigate.shipping.hardened import _check_same
+from mitigate.shipping.given import check_same, give_settings
 from tests.evaluation.made_rows import row
 
 
@@ -45,6 +47,30 @@ class Mine:
 def test_an_agent_with_other_settings_than_the_folders_is_refused(tmp_path):
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Mine", "gain": -1.0}}))
-    _check_same(Mine(-1.0), config)
+    check_same(Mine(-1.0), config, "")
     with pytest.raises(ValueError, match=r"with gain=-1.0, but the one given has 5.0"):
-        _check_same(Mine(5.0), config)
+        check_same(Mine(5.0), config, "")
+
+
+class Silent:
+    """Without settings(); its ``net`` is no plain value."""
+
+    def __init__(self, gain: float) -> None:
+        self.gain, self.net = gain, object()
+
+
+def test_of_an_agent_without_settings_attributes_are_compared_and_it_has_the_folders(tmp_path):
+    """So an evaluation and ``benchmark(load_hardened(...))`` have one hash for it."""
+    config = tmp_path / "config.yaml"
+    config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))
+    with pytest.warns(UserWarning, match=r"with gain=1, but the one given has 5\.0"):
+        check_same(Silent(5.0), config, "")
+    agent = Silent(1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_same(agent, config, "")
+    give_settings(agent, config, "")
+    assert agent.settings() == {"gain": 1, "net": "a"}
+    told = Mine(2.0)
+    give_settings(told, config, "")
+    assert told.settings() == {"gain": 2.0}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import re
 import sys
 import time
@@ -13,32 +11,30 @@ from typing import Any
 
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
-from torch import nn
 
 from mitigate.core import conf, seeding
-from mitigate.core.build import agent_option, maker
-from mitigate.core.files import atomic_text
-from mitigate.core.json_files import read_json
+from mitigate.core.build import agent_option, located, maker
+from mitigate.core.held import held, in_eval_mode
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.progress import duration
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
+from mitigate.evaluation import walked
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_episodes
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
-from mitigate.evaluation.rows import ROWS
+from mitigate.evaluation.rows import ROWS, read
 from mitigate.scale.launcher import count
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
 OUT = Path("runs/benchmark")
-WALKED = "walked.json"  # in which world the rows beside it were walked, and by which episodes
 TIMED = 2  # clean walks, by the last of which the time is told (ours)
 
 
@@ -66,38 +62,38 @@ def benchmark(
     Args:
         agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
         name: heading of the entry; None: of the weights' folder, or the agent's class.
-        split: list of episodes of the world; None: its own first. episodes: how many, spread over
-            the list; None: all, as entries of the leaderboard have.
+        split: list of episodes of the world; None: its own first, or the name of your own world.
+            episodes: how many, spread over the list; None: all, as entries of the leaderboard have.
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
             the corruptions. workers: processes; None: one a core if there is work. More than one
             read the script again, which keeps its call under ``if __name__ == "__main__":``.
         options: of ``mitigate evaluate``, such as "agent=recurrent" or "env.views=1".
         world, listed: makes a world of your own, and its episodes, in place of those of
-            ``options``.
+            ``options``; a world of another class than theirs needs both.
         training_data, link: for the entry. out: folder of the rows; None: one in
             ``runs/benchmark``.
-    Raises ValueError for what is no agent, unknown names, numbers out of range and texts that an
-    entry cannot hold, FileNotFoundError for missing weights.
+    Raises ValueError for no agent, unknown names, numbers out of range, texts that an entry cannot
+    hold and a folder with rows of another world, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
     agent, name = _agent(agent, name, cfg, seed)
     check_texts(name=name, training_data=training_data, link=link)
-    split, made = split or cfg.split, world or maker(cfg.env.world)
-    chosen = evaluation.episodes(cfg.env, split, episodes) if listed is None else list(listed)
-    check_episodes("listed" if listed is not None else split, chosen)
-    _check_world(made, met)
-    _tell(agent, made, chosen, len(met), workers)
+    made = world or maker(cfg.env.world)
+    first = _first_world(made, met)
+    split, chosen = _episodes(first, cfg, split, episodes, listed)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
+    _check_known(agent, name, file)
+    _tell(agent, made, chosen, len(met), workers)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     with FolderLock(file.parent):
         _tell_reused(agent, file)
-        _check_walked(file.parent / WALKED, made(), split, chosen)
+        walked.keep(file.parent, made, first, split, chosen)
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
         rows,
         name,
         severity=severity,
-        sensors=sensors_of(made().sensors, getattr(agent, "sensors", None)),
+        sensors=sensors_of(first.sensors, getattr(agent, "sensors", None)),
         training_data=training_data,
         link=link,
         file="" if file.is_absolute() else file.as_posix(),
@@ -136,6 +132,20 @@ def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]
     return agent, name or type(agent).__name__
 
 
+def _check_known(agent: Any, name: str, file: Path) -> None:
+    """Raise ValueError if there are rows of that name, and nothing tells whether the agent has the
+    weights that they were walked with."""
+    inside = held(agent)
+    known = hasattr(agent, "settings") or inside.networks or inside.arrays or not inside.unknown
+    if not known and file.exists() and any(row["name"] == name for row in read(file)):
+        raise ValueError(
+            f"{file} holds rows of {name}, perhaps of other weights: a {type(agent).__name__} has "
+            "no settings(), no networks or arrays that can be seen, and its "
+            f"{inside.unknown[0]} cannot be looked into. Name another folder (out=...), or give it "
+            "settings() that say which weights it has."
+        )
+
+
 def _tell_reused(agent: Any, file: Path) -> None:
     """Print that rows of before count, where they may be of an agent that was changed since."""
     if file.exists() and not hasattr(agent, "settings"):
@@ -151,59 +161,41 @@ def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
-def _check_world(make_world: Any, met: Sequence[Corruption]) -> None:
+def _first_world(make_world: Any, met: Sequence[Corruption]) -> World:
+    """Return a world; raise ValueError if it is not made anew, or shows too little."""
     if not callable(make_world):
         raise ValueError(
             f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
             "since each process has its own."
         )
-    world = make_world()
+    world: World = make_world()
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
+    return world
 
 
-def _check_walked(note: Path, world: World, split: str, episodes: Sequence[Episode]) -> None:
-    """Keep beside the rows in which world they were walked, and a sum of each episode; raise
-    ValueError if either is another now: a row names its episode by id alone. What a note of an
-    older version does not say may be anything."""
-    kind = f"{type(world).__module__}.{type(world).__qualname__}"
-    told = {"world": kind, "env": _env(world)}
-    sums = {e.episode_id: _sum(e) for e in episodes}
-    known = read_json(note, "Delete its folder.") if note.is_file() else {}
-    before = {**told, "sums": {}, **known.get(split, {})}
-    other = [n for n, s in before["sums"].items() if sums.get(n, s) != s]
-    world_before = f"{before['world']} {before['env']}".strip()
-    if any(before[key] != told[key] for key in told) or other:
-        what = f"episode {other[0]} of another list" if other else f"the world {world_before}"
+def _is_own(world: World, cfg: Any) -> bool:
+    """Whether the world is none of the config's, whose lists of episodes mean nothing in it."""
+    usual = located(cfg.env.world._target_)
+    return not (isinstance(usual, type) and isinstance(world, usual))
+
+
+def _episodes(
+    world: World, cfg: Any, split: str | None, count: int | None, listed: Sequence[Episode] | None
+) -> tuple[str, list[Episode]]:
+    """Return the split and the episodes to walk; raise ValueError for none, and for a world of
+    another class than the config's without a list of its own."""
+    own = _is_own(world, cfg)
+    split = split or (walked.name_of(world) if own else cfg.split)
+    if listed is None and own:
         raise ValueError(
-            f"{note.parent} holds rows of {what}: name another folder (out=...), or delete it."
+            f"The episodes of {cfg.env.name} are none of {walked.name_of(world)}: give its own, "
+            'listed=[*read_episodes("mine.json")] (mitigate.worlds.episodes, '
+            "docs/bring-your-own.md). A gymnasium or torchrl environment reads of each its seed "
+            "alone, info={'seed': 7}."
         )
-    known[split] = {**told, "sums": before["sums"] | sums}
-    with atomic_text(note) as file:
-        json.dump(known, file)
-
-
-def _sum(episode: Episode) -> str:
-    """Return 12 hex digits of what an agent and a world are told of an episode; whatever else it
-    carries may look otherwise in another process."""
-    held = {
-        "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],
-        "start": [*map(float, (*episode.start_position, *episode.start_rotation))],
-        "goals": [[[*map(float, goal.position)], goal.radius] for goal in episode.goals],
-        "instruction": episode.instruction.text,
-        "seed": str(episode.info.get("seed")),
-    }
-    return hashlib.sha256(json.dumps(held, default=float).encode()).hexdigest()[:12]
-
-
-def _env(world: World) -> str:
-    """Return what the environment inside a world, if there is one, says it was made of: worlds of
-    one class differ in it alone."""
-    spec = getattr(getattr(world, "env", None), "spec", None)
-    name = getattr(spec, "id", None)
-    if name is None:
-        return ""
-    made = json.dumps(getattr(spec, "kwargs", {}), sort_keys=True, default=lambda x: str(type(x)))
-    return f"{name} {made}"
+    chosen = evaluation.episodes(cfg.env, split, count) if listed is None else list(listed)
+    check_episodes("listed" if listed is not None else split, chosen)
+    return split, chosen
 
 
 def _check_copies(*things: Any) -> None:
@@ -232,12 +224,11 @@ def _tell(
     if processes > 1:
         _check_copies(agent, make_world)
     world = make_world()
-    if isinstance(agent, nn.Module):
-        agent.eval()
-    for episode in episodes[:TIMED]:  # the first one loads what is needed
-        started = time.monotonic()
-        run_episode(agent, world, episode, CLEAN, 0)
-        each = time.monotonic() - started
+    with in_eval_mode(agent):
+        for episode in episodes[:TIMED]:  # the first one loads what is needed
+            started = time.monotonic()
+            run_episode(agent, world, episode, CLEAN, 0)
+            each = time.monotonic() - started
     grid = f"{counted(len(episodes), 'episode')} x {counted(conditions, 'condition')}"
     print(
         f"benchmark: {grid} = {counted(total, 'walk')} of about "

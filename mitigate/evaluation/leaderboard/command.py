@@ -10,13 +10,15 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
+from omegaconf import DictConfig
+
 from mitigate.core import conf
-from mitigate.core.build import maker
+from mitigate.core.build import located, maker
 from mitigate.core.files import find
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
@@ -155,13 +157,16 @@ def add(
     training_data: str = "",
     link: str = "",
     options: Sequence[str] = (),
+    config_dir: Path | None = None,
     folder: Path | str = FOLDER,
     overwrite: bool = False,
 ) -> Path:
     """Write the entry of the column ``name`` of the rows in ``paths``; return its file.
 
-    The sensors are those of the world of ``options`` (of ``mitigate evaluate``) that the kind of
-    agent among them reads. Raises ValueError if the file is there already, and as ``entry_of``.
+    The sensors are those of the world of ``options`` (of ``mitigate evaluate``, with the user's
+    configs in ``config_dir``) that the kind of agent among them reads; none, and it is said so, if
+    the rows are of another world, by their split or rule. Raises ValueError if the file is there
+    already, and as ``entry_of``.
     """
     place = Path(folder) / f"{_OTHERS.sub('-', name).strip('.-') or 'entry'}.json"
     if place.exists() and not overwrite:
@@ -169,20 +174,34 @@ def add(
             f"{place} exists already: replace it with --overwrite, or name another folder "
             "(--folder) if it is another agent's."
         )
-    cfg = conf.load_config("evaluate", options)
+    cfg = conf.composed("evaluate", options, config_dir)
     entry = entry_of(
         result_rows.gather(paths),
         name,
         severity=severity,
         split=split,
-        sensors=sensors_of(maker(cfg.env.world)().sensors, cfg.agent.get("sensors")),
         training_data=training_data,
         link=link,
         file=_named(paths),
     )
-    entry.save(place)
+    replace(entry, sensors=_sensors(cfg, entry)).save(place)
     load(place)
     return place
+
+
+def _sensors(cfg: DictConfig, entry: LeaderboardEntry) -> tuple[str, ...]:
+    """A line for each sensor that the config's agent reads; none if its world is not the rows'."""
+    world = maker(cfg.env.world)()
+    if entry.split not in cfg.env.episodes or entry.rule != world.rule:
+        print(
+            f"The rows are not of {cfg.env.name} ({entry.split}, {entry.rule}), so the entry says "
+            "nothing of sensors. Name the world and the kind of agent: env=..., agent=..., of your "
+            "own with --config-dir.",
+            flush=True,
+        )
+        return ()
+    read = cfg.agent.get("sensors", getattr(located(cfg.agent._target_), "sensors", None))
+    return sensors_of(world.sensors, read)
 
 
 def _named(paths: Sequence[Path | str]) -> str:
@@ -241,6 +260,9 @@ def _parser() -> argparse.ArgumentParser:
     added.add_argument("--split", help="needed where the rows are of several")
     added.add_argument("--training-data", default="", help="what the agent was trained on")
     added.add_argument("--link", default="", help="where its weights or paper are")
+    added.add_argument(
+        "--config-dir", type=Path, help="folder of configs of your own, that env= and agent= name"
+    )
     added.add_argument("--folder", default=FOLDER, help=f"where to write (default {FOLDER})")
     added.add_argument("--overwrite", action="store_true", help="replace an entry of that name")
     return parser

