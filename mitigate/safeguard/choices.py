@@ -21,7 +21,7 @@ FOLDER = (
     "RECIPE=safeguard_tagger` or RECIPE=safeguard_reader), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (RECIPE=safeguard_lora)."
 )
-VERSION = "7"  # of what the rules give on: another one where any text is repaired otherwise
+VERSION = "8"  # of what the rules give on: another one where any text is repaired otherwise
 ANSWERS = "2"  # of what is taken of a language model's answers
 
 

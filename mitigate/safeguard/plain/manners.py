@@ -98,14 +98,19 @@ def plainer(text: str) -> str:
     said, found = text, sentences(text)
     if not restyled(text) and not any(_mannered(sentence) for sentence in found):
         return text
+    done, rest = "", text  # what was gone through, and what is to come
     for place, sentence in enumerate(found):
-        plain, last = _plain(sentence), sentence is found[-1]
+        before, _, rest = rest.partition(sentence)
+        done, plain, last = done + before, _plain(sentence), sentence is found[-1]
         if _cheers(sentence, not place, last):
-            less = _less(said, sentence)
-            said = said if gate.result_refused(said, less) else less
+            less = f"{done.rstrip()} {rest.lstrip()}".strip()
+            if not gate.result_refused(f"{done}{sentence}{rest}", less):
+                done, rest = less[: len(less) - len(rest.strip())], rest.strip()
+                continue
         elif plain != sentence and not gate.rewrite_refused(sentence, plain, last):
-            said = said.replace(sentence, plain, 1)
-    return said
+            sentence = plain
+        done += sentence
+    return done + rest
 
 
 def _requests(sentence: str) -> bool:
@@ -164,11 +169,6 @@ def _cheers(sentence: str, first: bool, last: bool) -> bool:
 def _not_minded(match: re.Match[str]) -> str:
     verb = _DOING.get(match["doing"].lower())
     return f"please {verb}" if verb else match[0]
-
-
-def _less(text: str, sentence: str) -> str:
-    before, _, behind = text.partition(sentence)
-    return f"{before.rstrip()} {behind.lstrip()}".strip()
 
 
 def _plain(sentence: str) -> str:
