@@ -1,4 +1,4 @@
-"""Texts of any length take seconds, are read as far as is said, and hide nothing by their padding."""
+"""Texts of any length take seconds; what is not read is told, and padding hides nothing."""
 
 from __future__ import annotations
 

@@ -95,7 +95,7 @@ def restyled(text: str) -> bool:
 
 def plainer(text: str) -> str:
     """Return a text with its orders in plain words; ``text`` itself if they are plain."""
-    said, found = text, sentences(text)
+    found = sentences(text)
     if not restyled(text) and not any(_mannered(sentence) for sentence in found):
         return text
     done, rest = "", text  # what was gone through, and what is to come
