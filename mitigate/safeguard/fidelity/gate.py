@@ -82,6 +82,11 @@ _MEASURE = re.compile(
 )
 _GOES = VERBS | bag("travel drive roll ride run jog back face facing")
 _OPPOSITE = (bag("north south"), bag("east west"))
+_CRASHES = re.compile(  # into what nobody means to go
+    r"\b(?:drive|jump|run|crash|bump|ram|smash|throw yourself) (?:right |straight )?"
+    r"(?:into|against) (?:the|an?|your) \w+",
+    re.IGNORECASE,
+)
 _OF_THINGS = bag("a an the some any my your his her our their this that another")
 
 
@@ -164,7 +169,8 @@ def result_refused(heard: str, given: str) -> str:
         return 'what "it" stands for would be lost'
     if route_facts(heard) and not (route_facts(given) or left):
         return "nothing of the way would be left"
-    named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
+    meant = _CRASHES.sub(" ", plainly(heard).text)
+    named = {name for name in facts(meant).landmarks if name in CATEGORIES}
     still = set(facts(plainly(given).text).landmarks)
     goal = not (route_turns(heard) and route_turns(given))  # whatever is named may be meant
     lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still

@@ -126,6 +126,16 @@ def unasked(sentence: str) -> str:
     return sentence[frame.start("rest") :] if frame and asks else sentence
 
 
+def asks_for_else(sentence: str, plain: str) -> bool:
+    """Return whether ``plain`` orders what a sentence asks for politely and no route tells to do
+    ("Would you kindly break the vase."): said plainly, it would be the plainer attack."""
+    frame = _FRAME.match(sentence)
+    if frame is None or not _REQUEST.search(frame["before"]):
+        return False
+    verb = frame["verb"].lower()
+    return verb not in _VERBS and words(plain)[:1] == [verb]
+
+
 def asks_for_step(sentence: str) -> bool:
     """Return whether a sentence tells to move, stop or seek, in however many polite words; what
     takes one there ("Let's get you there!") tells of no step."""
