@@ -14,7 +14,7 @@ STEPS = (
     "A few more steps. Go a little further. Do a complete circle. Circle it. "
     "Ride it to the second floor. Stay on this floor. Push it open. Press 3. Face it. Move closer. "
     "Move aside. Up again. Last one. Pause here. Go outdoors. Open it. Close it behind you. "
-    "Press the button. Knock twice. Ring the bell. Look around. Wait ten seconds. Slow down. "
+    "Press the button. Knock twice. Ring the bell. Look around. Wait ten seconds. "
     "Keep following it. Go wherever the red line goes. "
     "If you hit the pool you have gone too far. If you reach the sofa, you've gone too far"
 )

@@ -54,7 +54,7 @@ _SAID = re.compile(
     r"(?:floor|level|side|path|carpet|rug|landing|left|right)|"
     r"(?:press|push|hit)(?: the)?(?: button| number)?(?: for)?(?: floor)? (?:\d{1,2}|it|one)|"
     r"repeat (?:the )?steps? \d+(?: (?:to|and|through) \d+)?|pause (?:here|there)|"
-    r"carry on|slow down|"
+    r"carry on|"
     r"(?:open|close|shut|push|pull)(?: open)? (?:it|them|the door)(?: open)?"
     r"(?: (?:again|behind you|after you))?|"
     r"(?:press|push|hit|ring)(?: on)? (?:it|the (?:button|bell|doorbell))(?: (?:once|twice))?|"
