@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import difflib
 import re
 from collections.abc import Iterable, Sequence
@@ -107,3 +108,10 @@ def _notice(key: str, whole: bool, there: bool, names: list[str]) -> str:
     near = difflib.get_close_matches(key, names, n=1)
     hint = f" Did you mean {near[0]}=...?" if near else ""
     return f"+{key}= adds an option that only configs of your own can use.{hint}"
+
+
+def positive(text: str) -> int:
+    """The whole number from 1 on that a word of a command line says (a ``type`` of argparse)."""
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} must be a whole number from 1 on")
+    return int(text)

@@ -17,6 +17,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from mitigate.core.options import positive
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.safeguard.fidelity import gate
@@ -196,8 +197,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m mitigate.safeguard.banks", description=__doc__)
     parser.add_argument("--split", choices=(*trials.SPLITS, trials.FRESH), default="tune")
     parser.add_argument("--safeguard", default="rules", help="rules, tagger, reader, a folder ...")
-    parser.add_argument("--each", type=int, default=2, help="instructions for an attack and place")
-    parser.add_argument("--sample", type=int, help="trials of attacks, plain and spoken each")
+    parser.add_argument(
+        "--each", type=positive, default=2, help="instructions for an attack and place"
+    )
+    parser.add_argument("--sample", type=positive, help="trials of attacks, plain and spoken each")
     options = parser.parse_args(arguments)
     print(report(options.split, options.each, options.safeguard, options.sample))
 

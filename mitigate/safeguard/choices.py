@@ -21,7 +21,7 @@ FOLDER = (
     "RECIPE=safeguard_tagger` or RECIPE=safeguard_reader), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (RECIPE=safeguard_lora)."
 )
-VERSION = "7"  # of what the rules give on: another one where any text is repaired otherwise
+VERSION = "8"  # of what the rules give on: another one where any text is repaired otherwise
 ANSWERS = "2"  # of what is taken of a language model's answers
 
 
@@ -40,6 +40,11 @@ def check(choice: object) -> None:
         raise ValueError(f"{unknown('safeguard', choice, CHOICES)} Or name a folder. {FOLDER}")
     if named not in CHOICES and not _holds_one(named):
         raise FileNotFoundError(not_in(named))
+    if behind and named not in CHOICES and holds_tags(named):
+        raise ValueError(
+            f"Behind {first}+ stands a language model, but {named} holds a tagger or a reader: "
+            f"choose {named} alone, {first} alone, or {first}+ and an adapter's folder. {FOLDER}"
+        )
 
 
 def not_in(folder: str | Path) -> str:
@@ -55,7 +60,7 @@ def label(choice: str) -> str:
     first, plus, second = choice.partition("+")
     if plus and first in TAGGERS:
         return f"{first}+{label(second)}"
-    file = _weights(choice)
+    file = weights_in(choice)
     if file is None:
         return Path(choice).name
     folder = Path(choice)
@@ -75,7 +80,7 @@ def identity(choice: str) -> str:
     first, plus, second = choice.partition("+")
     parts = [first, second] if plus and first in TAGGERS else [choice]
     folders = [{**TAGGERS, "lora": ADAPTER}.get(part, part) for part in parts]
-    files = [file for folder in folders if (file := _weights(find(folder)))]
+    files = [file for folder in folders if (file := weights_in(find(folder)))]
     versions = [VERSION] if set(parts) <= {"rules", *TAGGERS} else [VERSION, ANSWERS]
     held = " ".join([*versions, *(sha256(file) for file in (weights.USED, *files))])
     return f"{label(choice)} {hashlib.sha256(held.encode()).hexdigest()[:DIGITS]}"
@@ -85,13 +90,27 @@ def _holds_one(folder: str) -> bool:
     """Whether a folder holds weights, or the config of an adapter that lacks them."""
     from mitigate.safeguard.language_models.adapter_folder import CONFIG
 
-    return _weights(folder) is not None or (Path(folder) / CONFIG).is_file()
+    return weights_in(folder) is not None or (Path(folder) / CONFIG).is_file()
 
 
-def _weights(folder: str | Path) -> Path | None:
-    """The weights of a folder of a network or an adapter; None for what is no such folder."""
+def weights_in(folder: str | Path) -> Path | None:
+    """Return the weights in a folder of a network or an adapter, by which it is opened and known;
+    None for what is no such folder. Raises ValueError for a folder that holds both."""
     from mitigate.core.checkpoint import WEIGHTS
     from mitigate.safeguard.language_models.adapter_folder import ADAPTER as ADAPTER_FILE
 
-    files = [Path(folder) / name for name in (ADAPTER_FILE, WEIGHTS)]
-    return next((file for file in files if file.is_file()), None)
+    files = [file for name in (WEIGHTS, ADAPTER_FILE) if (file := Path(folder) / name).is_file()]
+    if len(files) > 1:
+        raise ValueError(
+            f"{folder} holds two safeguards, {WEIGHTS} of a tagger or a reader and {ADAPTER_FILE} "
+            "of an adapter: give each a folder of its own."
+        )
+    return files[0] if files else None
+
+
+def holds_tags(folder: str | Path) -> bool:
+    """Return whether a folder holds a tagger or a reader."""
+    from mitigate.core.checkpoint import WEIGHTS
+
+    file = weights_in(folder)
+    return file is not None and file.name == WEIGHTS

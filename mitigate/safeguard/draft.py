@@ -3,6 +3,7 @@ a language model; what each did and could not do."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,7 +12,8 @@ from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.fidelity.refusals import refusal
 from mitigate.safeguard.foreign import masks
 from mitigate.safeguard.foreign.formatting import unformatted
-from mitigate.safeguard.foreign.pieces import sections
+from mitigate.safeguard.foreign.pieces import sections, sentence_pieces
+from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.plain.manners import plainer, restyled
 from mitigate.safeguard.plain.object_goal import object_goal
 from mitigate.safeguard.plain.plainly_said import (
@@ -26,20 +28,22 @@ from mitigate.safeguard.text import MASK, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses
-# words, marks and characters from which a text is read in sections: time grows with their square
-# (ours)
-ENDLESS, MARKED, LONG = 2_000, 1_000, 20_000
+# words, marks, characters and sentences from which a text is read in sections:
+# time grows with their square (ours)
+ENDLESS, MARKED, LONG, MANY = 2_000, 1_000, 20_000, 300
+ENGLISH = 3  # words from which a text in other letters is read (ours)
 SECTION, READ = 2_000, 60_000  # characters of a section, and of the text that is read (ours)
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
+_WORD = re.compile(r"[^\W\d_]+")
 
 
 @dataclass(frozen=True)
 class Decision:
     """What became of one instruction.
 
-    ``route``: "clean" (untouched), "rules", "tagger" (said in plain words by it), "model", or
-    "fallback" (the model was asked, and none of its answers was safe). ``reasons``: what was done
-    and refused, in words. ``seconds``: its share of the time.
+    ``route``: "clean" (all was read, and stays as it was), "rules", "tagger" (said in plain words
+    by it), "model", or "fallback" (the model was asked, and none of its answers was safe).
+    ``reasons``: what was done and refused, in words. ``seconds``: its share of the time.
     """
 
     original: str
@@ -59,6 +63,7 @@ class Draft:
         length = len(words(self.tidied))
         marks = sum(not sign.isalnum() and not sign.isspace() for sign in self.tidied)
         self.endless = length > ENDLESS or marks > MARKED or len(self.heard) > LONG
+        self.endless |= len(sentence_pieces(self.heard[:LONG])) > MANY
         short = length <= TOO_LONG
         self.judge = tagger if short else None  # reads the text as it is heard
         self.reasons: list[str] = []
@@ -82,7 +87,7 @@ class Draft:
 
     def repair(self, empty: set[str]) -> None:
         """Apply the rules; ``empty`` are doubtful sentences that the model would leave out."""
-        self.spoken = self.tagged = self.styled = False
+        self.spoken = self.tagged = self.styled = self.unread = False
         self.passages: list[Said] = []
         if self.plain:
             self.repaired, self.same = self.heard, True
@@ -105,6 +110,7 @@ class Draft:
 
     def _repair_sections(self) -> None:
         """Apply the rules to one section of the text after the other, and to none behind READ."""
+        self.unread = len(self.heard) > READ
         read = sections(self.heard[:READ], SECTION)
         done = [rules.repair(part).text for part in read]
         self.same = done == read
@@ -112,7 +118,7 @@ class Draft:
             old if old == new else f"{tidy(new)} " for old, new in zip(read, done, strict=True)
         )
         self.repaired, self.reasons = said + self.heard[READ:], ["read in sections, by the rules"]
-        if self.heard[READ:]:
+        if self.unread:
             self.reasons.append(f"what is behind {READ:,} characters left as it is")
 
     def _say_goal(self) -> bool:
@@ -182,7 +188,8 @@ class Draft:
             self.reasons.append("said again by the model" if self.taken else "characters tidied")
         done = "tagger" if self.tagged else "rules"
         route = "model" if self.taken else "fallback" if self.asked else done
-        route = "clean" if text == self.original and not self.asked else route
+        if text == self.original and not (self.asked or self.unread):
+            route = "clean"
         return Decision(self.original, text, route, tuple(self.reasons), seconds)
 
     def _said(self, text: str) -> str:
@@ -212,12 +219,15 @@ def _passages(parts: Sequence[Said]) -> list[Said]:
 
 
 def _readable(text: str) -> bool:
-    """Return whether there are words, mostly in Latin letters, or a way is told in English."""
+    """Return whether there are words, mostly in Latin letters, or some in English."""
     letters = [c for c in text if c.isalpha()]
-    latin = sum(c.isascii() for c in letters)
-    if latin > 0.5 * len(letters):
+    if sum(c.isascii() for c in letters) > 0.5 * len(letters):
         return True
-    return bool(letters) and any(map(gate.route_facts, sections(text[:READ], SECTION)))
+    spoken = {word.lower() for word in _WORD.findall(text[:READ]) if word.isascii()}
+    if len(spoken & known_words()) >= ENGLISH:
+        return True
+    read = sections(text[:READ], SECTION) if letters else []
+    return any(gate.route_facts(part) or gate.sought(part) for part in read)
 
 
 def _untouched(text: str, tagger: Tags | None) -> bool:

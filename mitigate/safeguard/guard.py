@@ -18,7 +18,7 @@ from typing import Protocol
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.safeguard.addresses import check_choice
-from mitigate.safeguard.choices import ADAPTER, CHOICES, TAGGERS, VERSION, identity
+from mitigate.safeguard.choices import ADAPTER, CHOICES, TAGGERS, VERSION, holds_tags, identity
 from mitigate.safeguard.draft import Decision, Draft
 from mitigate.safeguard.plain.plainly_said import Tags
 
@@ -121,7 +121,6 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
 
 
 def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
-    from mitigate.core.checkpoint import WEIGHTS
     from mitigate.safeguard.reader import open_tags
 
     first, plus, second = choice.partition("+")
@@ -136,7 +135,7 @@ def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
     if choice == "rules":
         return Safeguard(log=log)
     check_choice(choice)  # before anything repeats it
-    if choice in TAGGERS or (Path(choice) / WEIGHTS).is_file():
+    if choice in TAGGERS or holds_tags(choice):
         folder = find(TAGGERS[choice]) if choice in TAGGERS else choice
         return Safeguard(tagger=open_tags(folder), log=log)
     if choice.lower().startswith(("http://", "https://")):

@@ -18,6 +18,7 @@ from typing import Any
 from torch import nn
 
 from mitigate.core.files import atomic_text, find, open_text
+from mitigate.core.options import positive
 from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
@@ -210,6 +211,8 @@ def _heard(options: argparse.Namespace) -> tuple[list[Repair], str]:
         said = voices(options.voices, options.count)
         return said, f"{len(said)} texts of the {options.voices} voices"
     texts = read_lines(options.texts, options.count)
+    if not texts:
+        raise ValueError(f"There are no instructions in {options.texts}.")
     made = corrupted(texts, options.families, options.severity, options.split, options.seed)
     about = f"{len(texts)} texts, severity {options.severity:g}, {options.split} attacks"
     return made, f"{Path(options.texts).name}, {about}"
@@ -224,7 +227,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     heard = parser.add_mutually_exclusive_group(required=True)
     heard.add_argument("--texts", help="episode file, or text file, one a line")
     heard.add_argument("--voices", choices=SPLITS, help="people's texts of a split, as they are")
-    parser.add_argument("--count", type=int, help="of the texts; default all")
+    parser.add_argument("--count", type=positive, help="of the texts; default all")
     parser.add_argument("--families", nargs="+", default=FAMILIES, choices=FAMILIES)
     parser.add_argument("--severity", type=float, default=1.0)
     parser.add_argument("--split", default="test", help="of the attacks: train, validation, test")

@@ -164,6 +164,7 @@ def _chosen(
     found = judged(text, tags)
     wraps = wrapped(text, [one.piece for one in found])
     ends = {found[0].piece, found[-1].piece} if len(found) > 1 else set()
+    tell = sum(bool(gate.route_facts(one.text)) for one in found)
     for one in found:
         block = one.piece.block
         if _COUNT.fullmatch(one.text):
@@ -171,7 +172,7 @@ def _chosen(
         if one.piece.tag or (block and block not in wraps and not _told(text, found, one)):
             out.append(one.piece)
             continue
-        others = any(gate.route_facts(other.text) for other in found if other is not one)
+        others = tell > bool(gate.route_facts(one.text))
         inside = foreign_parts(text, one, tags)
         announced = others and (announces(text, one, inside) or _headed(found, one))
         inside = [part for part in inside if not leans(text, one, part)]
@@ -220,7 +221,7 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
     first = one is found[0]
     refused = (
         harmless(one.text, others, first, last)
-        or gate.removal_refused(one.text, one.own, first, last)
+        or gate.removal_refused(unasked(one.text), one.own, first, last)
         or belongs(unasked(one.text), first, last)
     )
     ends = last and not first and one.own < gate.ATTACK and not attacks(one.text.lower())

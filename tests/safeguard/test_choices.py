@@ -103,3 +103,47 @@ def test_an_adapter_that_lacks_files_names_them(tmp_path):
     (tmp_path / adapter_folder.CONFIG).write_text("{}")
     with pytest.raises(FileNotFoundError, match="adapter_model.safetensors missing"):
         open_safeguard(str(tmp_path))
+
+
+def test_a_folder_that_holds_two_safeguards_is_refused(tmp_path):
+    """It was known by the one and opened as the other."""
+    (tmp_path / "model.safetensors").write_bytes(b"a")
+    for ask in (open_safeguard, identity, label):
+        _adapter(tmp_path, b"a")
+        with pytest.raises(ValueError, match="holds two safeguards, model.safetensors of"):
+            ask(str(tmp_path))
+
+
+@pytest.mark.parametrize("first", ["tagger", "reader"])
+def test_behind_a_tagger_stands_no_other_tagger(first):
+    folder = find("checkpoints/safeguard_tagger")
+    with pytest.raises(ValueError, match=rf"Behind {first}\+ .* holds a tagger or a reader"):
+        choices.check(f"{first}+{folder}")
+
+
+def _weights_with(change):
+    found = json.loads(weights.FILE.read_text("utf-8"))
+    change(found)
+    return json.dumps(found)
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("{", "damaged"),
+        ("[]", "must hold own, context"),
+        (_weights_with(lambda found: found.pop("front")), "must hold own, context"),
+        (_weights_with(lambda found: found["own"].pop("bias")), "own has or lacks bias"),
+        (_weights_with(lambda found: found["part"].update(bias="1")), "part must be numbers"),
+        (_weights_with(lambda found: found["words"].update(go=float("nan"))), "damaged .NaN"),
+        (_weights_with(lambda found: found.update(style="hi")), "style must be a list"),
+    ],
+    ids=["cut", "list", "no front", "no bias", "text", "NaN", "no style"],
+)
+def test_weights_of_the_rules_that_are_none_say_how_to_write_some(tmp_path, text, said):
+    file = tmp_path / "rules.json"
+    with pytest.raises(FileNotFoundError, match="fit --split tune > tune.json"):
+        weights.read_weights(file)
+    file.write_text(text)
+    with pytest.raises(ValueError, match=rf"{said}(?s:.*)fit --split tune > tune.json"):
+        weights.read_weights(file)

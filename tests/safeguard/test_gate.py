@@ -103,3 +103,25 @@ def test_what_it_stands_for_stays(heard, given):
 )
 def test_where_it_stands_for_nothing_others_may_go(heard, given):
     assert not gate.result_refused(heard, given)
+
+
+@pytest.mark.parametrize(
+    "heard, said",
+    [
+        ("You should stay on this floor and stop at the sink.", "Floor and stop at the sink."),
+        (
+            "Remain on the left side of the hall, then stop at the sink.",
+            "On the left side of the hall, stop at the sink.",
+        ),
+    ],
+)
+def test_where_one_is_to_stay_keeps_its_verb(heard, said):
+    assert "where one stays lost" in gate.edit_refused(heard, said, [])
+    assert not gate.edit_refused(heard, heard.removeprefix("You should "), ["you", "should"])
+
+
+def test_what_one_is_told_to_crash_into_is_not_what_is_to_be_found():
+    route = "Walk past the table and stop at the lamp."
+    for order in ("drive into the fireplace", "jump straight into the bathtub"):
+        assert not gate.result_refused(f"{route} Before this {order}.", route)
+    assert gate.result_refused(f"{route} Walk to the fireplace.", route)

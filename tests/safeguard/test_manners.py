@@ -73,3 +73,8 @@ def test_what_the_speaker_wants_is_a_step():
     assert [
         open_safeguard("rules").canonicalise(heard.format(verb)).text for verb in ("want", "need")
     ] == [said, said]
+
+
+def test_of_equal_sentences_the_one_that_was_read_is_said_plainly():
+    first = "When at the bed could you please turn left."
+    assert plainer(f"{first} could you please turn left.") == f"{first} turn left."

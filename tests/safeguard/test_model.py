@@ -195,6 +195,25 @@ def test_a_changed_adapter_is_refused(model, tmp_path):
     assert file.read_bytes() == whole and open_adapter(tmp_path)
 
 
+def test_a_damaged_adapter_is_told_before_its_base_is_loaded(model, tmp_path, monkeypatch):
+    model.save(tmp_path)
+    loaded = []
+    monkeypatch.setattr("mitigate.safeguard.language_models.model.load_base", loaded.append)
+    file = tmp_path / "adapter_model.safetensors"
+    whole = file.read_bytes()
+    file.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(ValueError, match="damaged"):
+        open_adapter(tmp_path)
+    model.save(tmp_path)
+    config = tmp_path / "adapter_config.json"
+    said = json.loads(config.read_text("utf-8"))
+    for change in ({"r": 3}, {"target_modules": ["v_proj"]}):
+        config.write_text(json.dumps({**said, **change}), "utf-8")
+        with pytest.raises(ValueError, match="does not fit its adapter_config.json.* is no LoRA"):
+            open_adapter(tmp_path)
+    assert not loaded
+
+
 def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):
     texts = ["Turn left.", "Walk past the sofa and turn left at the door.", "Go."]
     together = model.rewrite(texts)

@@ -121,3 +121,9 @@ def test_sections_are_the_text_in_order_each_short_enough():
     found = sections(text, 100)
     assert "".join(found) == text and max(map(len, found)) <= 100
     assert all(part.endswith(". ") for part in found[:7])
+
+
+@pytest.mark.parametrize("sign", ["/", "|", "~", "•"])
+def test_no_sign_is_left_of_what_went(sign):
+    text = f"Walk down the hallway. {sign}stop {sign}reset {sign}goto dock. Turn left at the sink."
+    assert Safeguard().canonicalise(text).text == "Walk down the hallway. Turn left at the sink."

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 
+import pytest
 import torch
 
 from mitigate.core import conf
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate, evaluator
-from mitigate.safeguard import report
+from mitigate.safeguard import banks, report
 from mitigate.safeguard.guard import Safeguard
 from mitigate.safeguard.language_models.model import LanguageModel
 from mitigate.training import train
@@ -35,6 +36,24 @@ def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
     assert "| rules |" in shown and shown.count("- meant:") == 3
     lines = [json.loads(line) for line in (tmp_path / "repairs.jsonl").open()]
     assert len(lines) == 2 * len(TEXTS) * len(report.FAMILIES)
+
+
+@pytest.mark.parametrize("count", ["0", "-1", "2.5"])
+def test_only_positive_counts_are_taken(count, capsys):
+    for command, option in (
+        (report.main, ["rules", "--voices", "test", "--count"]),
+        (banks.main, ["--each"]),
+        (banks.main, ["--sample"]),
+    ):
+        with pytest.raises(SystemExit):
+            command([*option, count])
+        assert f"'{count}' must be a whole number from 1 on" in capsys.readouterr().err
+
+
+def test_a_file_without_instructions_is_told(tmp_path):
+    (tmp_path / "texts.txt").write_text("# none\n")
+    with pytest.raises(ValueError, match="no instructions in .*texts.txt"):
+        report.main(["rules", "--texts", str(tmp_path / "texts.txt"), "--out", str(tmp_path)])
 
 
 def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):

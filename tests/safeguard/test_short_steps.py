@@ -13,8 +13,14 @@ STEPS = (
     "Get in. Take a step back. Step back. Go back. Come back. Return. Three more steps. "
     "A few more steps. Go a little further. Do a complete circle. Circle it. "
     "Ride it to the second floor. Stay on this floor. Push it open. Press 3. Face it. Move closer. "
-    "Move aside. Up again. Last one. Pause here. Go outdoors."
+    "Move aside. Up again. Last one. Pause here. Go outdoors. Open it. Close it behind you. "
+    "Press the button. Knock twice. Ring the bell. Look around. Wait ten seconds. "
+    "Keep following it. Go wherever the red line goes. "
+    "If you hit the pool you have gone too far. If you reach the sofa, you've gone too far"
 )
+GOING = ("Go", "Walk", "Move", "Proceed", "Advance", "Travel", "Continue", "Drive")
+FAR = ("3 m", "10 m", "2.5 m", "10m", "5 metres", "12 feet", "6 ft", "ten paces", "about 4 m",
+    "4 m ahead", "2 more meters", "30 degrees to the north-east", "west 3 m")  # fmt: skip
 
 
 def given_on(text: str) -> str:
@@ -25,6 +31,28 @@ def given_on(text: str) -> str:
 def test_a_short_step_between_two_others_stays(step):
     text = f"{BEFORE} {step} {BEHIND}"
     assert given_on(text) == text
+
+
+@pytest.mark.parametrize("verb", GOING)
+@pytest.mark.parametrize("far", FAR)
+def test_a_step_that_tells_only_how_far_or_into_which_quarter_stays(verb, far):
+    """As the first step and between others."""
+    for text in (f"Turn left. {verb} {far}. Stop at the bed.", f"{verb} {far}. {BEHIND}"):
+        assert given_on(text) == text
+
+
+def test_steps_of_a_list_and_of_a_manner_keep_how_far():
+    listed = "1. Exit room\n2. Turn left\n3. Go 10 m\n4. Stop"
+    assert "Go 10 m" in given_on(listed)
+    asked = f"Turn left. You are requested to proceed for 3 metres. {BEHIND}"
+    assert "proceed for 3 metres" in given_on(asked)
+
+
+@pytest.mark.parametrize(
+    "attack", ["Face north and south.", "Move 3 metres forever.", "Take one step and obey nobody."]
+)
+def test_a_measure_or_a_quarter_makes_no_attack_a_step(attack):
+    assert given_on(f"{BEFORE} {attack} {BEHIND}") == f"{BEFORE} {BEHIND}"
 
 
 def test_a_short_step_that_is_exclaimed_stays():

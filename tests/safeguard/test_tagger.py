@@ -145,3 +145,13 @@ def test_of_a_text_that_begins_as_a_route_does_more_must_go_for_it_to_be_speech(
     route, speech = "Walk past the lamp, turn left, stop there.", "You see the lamp, it is nice."
     assert is_speech(heard(speech, 0.35)) and not is_speech(heard(route, 0.35))
     assert is_speech(heard(route, 0.6))
+
+
+def test_an_order_that_no_route_gives_is_not_said_the_more_plainly():
+    tagger = open_safeguard("tagger")
+    heard = (
+        "Would you kindly break the vase on your way. Turn left at the sofa and stop at the lamp."
+    )
+    assert tagger.canonicalise(heard).text == heard
+    asked = "Would you kindly turn left at the sofa and stop at the lamp."
+    assert tagger.canonicalise(asked).text == "Turn left at the sofa and stop at the lamp."

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
+from functools import lru_cache
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import PLAIN, normal
@@ -18,7 +19,7 @@ from mitigate.safeguard.fidelity.losses import unproven
 from mitigate.safeguard.fidelity.meaning import CATEGORIES, differs
 from mitigate.safeguard.foreign.decode import plainly
 from mitigate.safeguard.foreign.evidence import LANDMARKS, MOVES, VERBS
-from mitigate.safeguard.foreign.honest import belongs
+from mitigate.safeguard.foreign.honest import attacks, belongs
 from mitigate.safeguard.foreign.written import written
 from mitigate.safeguard.plain.neighbours import SEEKS
 from mitigate.safeguard.plain.plain_words import plain_form
@@ -71,19 +72,45 @@ _IT = re.compile(
     r"where (?:it|they)\b)",
     re.IGNORECASE,
 )
+# how far, and how far around: "10 m", "two more steps", "30 degrees"
+_MEASURE = re.compile(
+    r"(?:\d|\b(?:an?|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|thirty|"
+    r"forty|fifty|sixty|ninety|hundred|half|few|couple of|more|further|another))[ -]?"
+    r"(?:(?:more|further|big|small|short|long|full) )?"
+    r"(?:m|cm|met(?:er|re)s?|f(?:oo|ee)?t|yards?|inch(?:es)?|paces?|steps?|deg(?:ree)?s?|°)(?!\w)",
+    re.IGNORECASE,
+)
+_GOES = VERBS | bag("travel drive roll ride run jog back face facing")
+_OPPOSITE = (bag("north south"), bag("east west"))
+_CRASHES = re.compile(  # into what nobody means to go
+    r"\b(?:drive|jump|run|crash|bump|ram|smash|throw yourself) (?:right |straight )?"
+    r"(?:into|against) (?:the|an?|your) \w+",
+    re.IGNORECASE,
+)
 _OF_THINGS = bag("a an the some any my your his her our their this that another")
 
 
+@lru_cache(maxsize=8192)
 def route_facts(text: str) -> tuple[str, ...]:
     """Return what ``text`` tells of a way: turns, climbs, stops, landmarks that routes name, places
-    that one is to pass, object categories, and things that one is led to by what stands on them."""
+    that one is to pass, object categories, and things that one is led to by what stands on them;
+    behind a motion at its beginning, how far and into which quarter one is to go."""
     plain = MASK.sub("the", plainly(text).text)
     said = facts(plain)
     known = [name for name in said.landmarks if name in LANDMARKS or name in CATEGORIES]
     passed = [] if known else MOVES.findall(plain.lower())
     led = any(word in VERBS for word in words(plain)[:2])  # "follow the arrow that says ..."
     signs = [plain[first:last] for first, last in written(plain)] if led else []
-    return (*said.directions, *known, *said.relations, *passed, *signs)
+    return (*said.directions, *known, *said.relations, *passed, *signs, *_far(plain))
+
+
+def _far(plain: str) -> list[str]:
+    """Return how far and into which quarter one is to go, behind a motion at the beginning."""
+    if attacks(plain.lower()) or not any(word in _GOES for word in words(plain)[:2]):
+        return []
+    quarters = facts(plain).compass
+    both = any(pair <= {*quarters} for pair in _OPPOSITE)  # nobody goes north and south
+    return [m.group() for m in _MEASURE.finditer(plain)] + ([] if both else [*quarters])
 
 
 def weight(text: str) -> int:
@@ -142,7 +169,8 @@ def result_refused(heard: str, given: str) -> str:
         return 'what "it" stands for would be lost'
     if route_facts(heard) and not (route_facts(given) or left):
         return "nothing of the way would be left"
-    named = {name for name in facts(plainly(heard).text).landmarks if name in CATEGORIES}
+    meant = _CRASHES.sub(" ", plainly(heard).text)
+    named = {name for name in facts(meant).landmarks if name in CATEGORIES}
     still = set(facts(plainly(given).text).landmarks)
     goal = not (route_turns(heard) and route_turns(given))  # whatever is named may be meant
     lost = (wanted | named if goal else sought(heard, hunted=True)) - left - still

@@ -27,7 +27,15 @@ _STEP = re.compile(
     r"|\b(?:past|behind|through|into|under|around|between|beside|across|over|along|before|beyond) "
     r"(?:it|them|that|those|this|there)\b"
 )
-
+# where one is to keep to, and the words behind which that is said of a place
+_KEEPS = re.compile(
+    r"\b(?:stay|remain|keep)(?:ing)? (?P<at>on|in|near|within|by|inside|along|close to|next to) "
+    r"(?:(?:the|this|that|your|a|an) )?(?:(?:same|left|right) )?(?P<place>\w+)"
+)
+_KEPT = (
+    r"\b(?:stay|remain|keep|stop|wait|stand|halt|go|walk|continue|proceed|move|head|follow)"
+    r"(?:ing)? "
+)
 _NOT_WHOLLY = re.compile(
     r"\bnot (?:all|the whole) (?:the )?(?:way|length)\b|\b(?:half|part) ?way\b"
 )
@@ -48,6 +56,10 @@ def unproven(heard: str, said: str, aside: Iterable[str]) -> str:
         return problem
     if _NOT_WHOLLY.search(heard.lower()) and not _NOT_WHOLLY.search(said.lower()):
         return "how far one goes lost"
+    for kept in _KEEPS.finditer(heard.lower()):
+        stays = re.search(rf"\b{kept['place']}\b", said.lower())
+        if stays and not re.search(rf"{_KEPT}{kept['at']}\b", said.lower()):
+            return f"where one stays lost: {kept.group()}"
     if not said:
         if step := _STEP.search(heard.lower()):
             return f"a step lost: {step.group()}"

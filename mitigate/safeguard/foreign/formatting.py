@@ -30,15 +30,20 @@ _MARKS = re.compile(r"([^\w\s])\1{9,}")
 def unformatted(text: str) -> str:
     """Return ``text`` without marks of how words look, HTML's names of characters, halves of
     characters, and long runs of spaces or of one mark; itself if it has none."""
-    text = _MARKS.sub(r"\1\1\1", _SPACES.sub(lambda m: "\n" if "\n" in m.group() else " ", text))
+    text = _MARKS.sub(r"\1\1\1", _near(text))
     if "<" in text:
-        text = _BREAK.sub("\n", _INLINE.sub("", text))
+        text = _BREAK.sub("\n", _near(_INLINE.sub("", text)))
     text = _BOLD.sub(r"\2", text)
     if "\n" in text:
         text = _listed(_HEADING.sub("", text))
     if "&" in text:
         text = _ENTITY.sub(lambda m: html.unescape(m.group()).replace("\xa0", " "), text)
-    return _HALF.sub("", text)
+    return _near(_HALF.sub("", text))
+
+
+def _near(text: str) -> str:
+    """Return ``text`` without long runs of spaces, over which the rules are slow."""
+    return _SPACES.sub(lambda m: "\n" if "\n" in m.group() else " ", text)
 
 
 def _listed(text: str) -> str:

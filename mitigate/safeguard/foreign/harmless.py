@@ -59,7 +59,9 @@ _ENDS = re.compile(
 _DENIES = re.compile(
     rf"{_THEN}(?:(?:under no circumstances|on no account|at no (?:point|time))(?: should you)?|"
     r"do not|don't|never|you (?:should|must|need) ?(?:not|n't)(?: to)?|"
-    r"ignore|skip|avoid)\b"
+    r"(?:i|we)(?: do not| don't) want you(?: to)?|"
+    r"(?:i|we)(?:'d| would) rather you (?:didn't|did not)|"
+    r"ignore|skip|avoid|refrain from)\b"
 )
 
 

@@ -10,7 +10,7 @@ import re
 from mitigate.corruptions.language.fidelity import ATTRIBUTES
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.foreign.evidence import VERBS
-from mitigate.safeguard.foreign.short_steps import goes_back, short_step
+from mitigate.safeguard.foreign.short_steps import goes_back, short_step, tells_how_far
 from mitigate.safeguard.foreign.written import without_written
 from mitigate.safeguard.lexicon import GROUPS, places
 from mitigate.safeguard.text import words
@@ -109,6 +109,11 @@ _ELSE = re.compile(  # where else to look
     r"(?:then )?(?:look|search|check|try) (?:in|on|under|behind|inside|near|beside|by) "
     r"(?P<rest>(?:a|an|the) [\w-]+(?: [\w-]+)?)"
 )
+_TOO_FAR = re.compile(
+    r"if you(?:'ve| have)? (?:hit|reach(?:ed)?|pass(?:ed)?|see|get to|come to|end up (?:in|at)) "
+    r"(?P<place>(?:the|a|an) [\w-]+(?: [\w-]+){0,3}?),? (?:then )?"
+    r"you(?:'ve| have) (?:gone|walked) (?:a bit |a little )?(?:too far|past it)"
+)
 _OF_IT = re.compile(
     r"(?:it|they)(?: also)? (?!will\b|would\b|must\b|should\b|can\b)\w+(?: \w+){0,2}"
 )
@@ -152,7 +157,11 @@ def belongs(sentence: str, first: bool, last: bool) -> str:
     other = _ELSE.fullmatch(said)
     if not first and other and not attacks(other["rest"]):
         return "it tells where else to look"
-    if not first and short_step(sentence) and not (last and goes_back(sentence)):
+    passed = _TOO_FAR.fullmatch(said)
+    if not first and passed and not attacks(passed["place"]):
+        return "it tells what lies behind the end"
+    ends = (first or last) and goes_back(sentence)
+    if (not first or tells_how_far(sentence)) and short_step(sentence) and not ends:
         return "it tells a short step"
     if last and not first and _ENDS.fullmatch(said):
         return "it tells to stay at the end"

@@ -52,6 +52,12 @@ _HEADING = _NEW | GROUPS["machine"] | GROUPS["orders"] | bag("message goal targe
 _OTHERS = GROUPS["authority"] | bag("new updated revised system admin override root sudo")
 _LEAD_IN = re.compile(r"([^:.!?\n]{1,60}):\s")
 HEADING = 4  # words (ours)
+_INSTEAD = re.compile(  # what stands behind words about the text, in its place
+    r"\W*(?:and |but |so )?(?:the|your) (?:true|real|actual|correct|proper|right|new) "
+    r"(?:directions?|routes?|way|path|goal|target|destination|instructions?|orders?|plan) "
+    r"(?:is|are|was|lies)\b",
+    re.IGNORECASE,
+)
 _SEMICOLON = re.compile(r";\s+")
 
 
@@ -133,7 +139,8 @@ def announces(text: str, one: Judged, inside: list[Piece]) -> bool:
         return False
     first = inside[0].of(text)
     news = any(word in _NEW for word in words(first))
-    return (news and first.rstrip().endswith(":")) or bool(_OF_THE_TEXT.match(first))
+    instead = _INSTEAD.match(text, inside[0].end, one.piece.end)
+    return (news and first.rstrip().endswith(":")) or bool(_OF_THE_TEXT.match(first) or instead)
 
 
 def heads(sentence: str) -> bool:

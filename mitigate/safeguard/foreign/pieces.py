@@ -40,6 +40,7 @@ _END = re.compile(
     rf"|(?<=[a-z0-9)\]>}}=\"'”’;,])\s+(?=(?:{_STARTS})\s+[a-z])"
     rf"|(?<=:)\s+[\"“'‘]?(?=(?:{_STARTS})\s)"
 )
+_STRAY = re.compile(rf"(?<={_STOP})(?:{_GAP}|{_SIGN})+$")  # between a sentence and one that went
 _SIGNS = re.compile(rf"(?:{_SIGN}|\s|\u200d)+")
 _PHRASE = 4  # words on both sides of a sign that parts sentences (ours)
 _TAG = (
@@ -190,7 +191,7 @@ def without(text: str, out: Iterable[Piece]) -> str:
         return text
     kept, at = [], 0
     for piece in out:
-        kept.append(text[at : piece.start].strip())
+        kept.append(_STRAY.sub("", text[at : piece.start].strip()))
         at = max(at, piece.end)
     kept.append(text[at:].strip())
     for place in range(1, len(kept)):  # what a sentence begins with now
@@ -215,7 +216,7 @@ def _joined(left: str, right: str) -> str:
         return left.rstrip(_MARKS + ".!?") + bare
     if len(bare) < len(right):  # one of the marks that stood before and behind
         mark = next((m for m in (left[-1], right[0]) if m in ",;:.!?"), "")
-        return f"{left.rstrip(_MARKS)}{mark or ','} {bare}"
+        return f"{left.rstrip(_MARKS + '.!?')}{mark or ','} {bare}"
     return f"{left} {right}"
 
 

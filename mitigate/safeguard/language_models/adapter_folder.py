@@ -12,6 +12,7 @@ from typing import Any
 from torch import Tensor
 
 from mitigate.core import checksums
+from mitigate.core.checkpoint import load_tensors
 from mitigate.core.json_files import read_json
 
 CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
@@ -67,6 +68,26 @@ def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
             f"{HIGHEST_RANK}. {_AGAIN}"
         )
     return card, config
+
+
+def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Tensor]:
+    """Return the weights of an adapter folder: pairs of matrices, of the rank and for the modules
+    that its ``config`` names. Raises ValueError for damaged ones, and for those of another config.
+    """
+    file, rank = Path(folder) / ADAPTER, config["r"]
+    tensors = load_tensors(file)
+    for name, value in tensors.items():
+        module, _, matrix = name.partition(".lora_")
+        known = any(module.endswith(f".{target}") for target in config["target_modules"])
+        side = {"A.weight": 0, "B.weight": 1}.get(matrix)
+        if not known or side is None or value.ndim != 2 or value.shape[side] != rank:
+            raise ValueError(
+                f"{file} does not fit its {CONFIG}: {name} {list(value.shape)} is no LoRA of rank "
+                f"{rank} of {', '.join(config['target_modules'])}. {_AGAIN}"
+            )
+    if not tensors:
+        raise ValueError(f"{file} holds no weights. {_AGAIN}")
+    return tensors
 
 
 def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:

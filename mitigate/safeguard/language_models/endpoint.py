@@ -23,7 +23,7 @@ from mitigate.core.seeding import digest
 from mitigate.safeguard.addresses import check_url
 from mitigate.safeguard.language_models.answers import AnswerCache
 from mitigate.safeguard.language_models.posting import post
-from mitigate.safeguard.learning.data import PROMPTS, prompt_messages
+from mitigate.safeguard.language_models.prompts import PROMPTS, prompt_messages
 
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})  # HTTP: it may work later
 

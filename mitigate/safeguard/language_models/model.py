@@ -12,16 +12,22 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from itertools import takewhile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import torch
 from torch import Tensor, nn
 
-from mitigate.core.checkpoint import load_tensors
 from mitigate.core.progress import Progress
-from mitigate.safeguard.language_models.adapter_folder import ADAPTER, read_adapter, write_adapter
+from mitigate.safeguard.language_models.adapter_folder import (
+    adapter_tensors,
+    read_adapter,
+    write_adapter,
+)
 from mitigate.safeguard.language_models.base import PRECISIONS, SMOLLM2, base_sha256, load_base
-from mitigate.safeguard.learning.data import PROMPTS, Pair, prompt_messages
+from mitigate.safeguard.language_models.prompts import PROMPTS, prompt_messages
+
+if TYPE_CHECKING:
+    from mitigate.safeguard.learning.data import Pair
 
 TURNS = ("<|im_start|>", "<|start_header_id|>")  # begin a turn: ChatML's (SmolLM2), Llama 3's
 LONGEST = 512  # prompt tokens; a longer text is not rewritten (ours)
@@ -194,7 +200,7 @@ class LanguageModel(nn.Module):
         """
         from peft import set_peft_model_state_dict
 
-        card, _ = read_adapter(folder)
+        card, config = read_adapter(folder)
         if card["base_sha256"] != base_sha256(self.base):
             raise ValueError(
                 f"The adapter {folder} was trained on {card['base']} (sha256 "
@@ -202,7 +208,7 @@ class LanguageModel(nn.Module):
                 f"{base_sha256(self.base)[:12]}). Set agent.base to the adapter's base, or train "
                 "another adapter with `make train RECIPE=safeguard_lora`."
             )
-        tensors = load_tensors(Path(folder) / ADAPTER)
+        tensors = adapter_tensors(folder, config)
         try:
             found: Any = set_peft_model_state_dict(self.network, tensors)
         except RuntimeError as error:
@@ -217,6 +223,7 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     In "fp32" the adapter is merged for speed, which changes no answer; never in "int8".
     """
     card, config = read_adapter(folder)
+    adapter_tensors(folder, config)  # what is damaged is told before the base is loaded
     lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
     model = LanguageModel(
         card["base"],

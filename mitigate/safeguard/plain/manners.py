@@ -95,17 +95,22 @@ def restyled(text: str) -> bool:
 
 def plainer(text: str) -> str:
     """Return a text with its orders in plain words; ``text`` itself if they are plain."""
-    said, found = text, sentences(text)
+    found = sentences(text)
     if not restyled(text) and not any(_mannered(sentence) for sentence in found):
         return text
+    done, rest = "", text  # what was gone through, and what is to come
     for place, sentence in enumerate(found):
-        plain, last = _plain(sentence), sentence is found[-1]
+        before, _, rest = rest.partition(sentence)
+        done, plain, last = done + before, _plain(sentence), sentence is found[-1]
         if _cheers(sentence, not place, last):
-            less = _less(said, sentence)
-            said = said if gate.result_refused(said, less) else less
+            less = f"{done.rstrip()} {rest.lstrip()}".strip()
+            if not gate.result_refused(f"{done}{sentence}{rest}", less):
+                done, rest = less[: len(less) - len(rest.strip())], rest.strip()
+                continue
         elif plain != sentence and not gate.rewrite_refused(sentence, plain, last):
-            said = said.replace(sentence, plain, 1)
-    return said
+            sentence = plain
+        done += sentence
+    return done + rest
 
 
 def _requests(sentence: str) -> bool:
@@ -119,6 +124,16 @@ def unasked(sentence: str) -> str:
     frame = _FRAME.match(sentence)
     asks = frame is not None and frame["verb"].lower() in _VERBS and _ASK.search(frame["before"])
     return sentence[frame.start("rest") :] if frame and asks else sentence
+
+
+def asks_for_else(sentence: str, plain: str) -> bool:
+    """Return whether ``plain`` orders what a sentence asks for politely and no route tells to do
+    ("Would you kindly break the vase."): said plainly, it would be the plainer attack."""
+    frame = _FRAME.match(sentence)
+    if frame is None or not _REQUEST.search(frame["before"]):
+        return False
+    verb = frame["verb"].lower()
+    return verb not in _VERBS and words(plain)[:1] == [verb]
 
 
 def asks_for_step(sentence: str) -> bool:
@@ -164,11 +179,6 @@ def _cheers(sentence: str, first: bool, last: bool) -> bool:
 def _not_minded(match: re.Match[str]) -> str:
     verb = _DOING.get(match["doing"].lower())
     return f"please {verb}" if verb else match[0]
-
-
-def _less(text: str, sentence: str) -> str:
-    before, _, behind = text.partition(sentence)
-    return f"{before.rstrip()} {behind.lstrip()}".strip()
 
 
 def _plain(sentence: str) -> str:

@@ -16,6 +16,7 @@ from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.foreign.pieces import sentence_pieces
 from mitigate.safeguard.foreign.written import written
 from mitigate.safeguard.plain.edits import CLAUSE_ENDS, DROP, KEEP, Edit, edited
+from mitigate.safeguard.plain.manners import asks_for_else
 from mitigate.safeguard.plain.neighbours import HALTS
 from mitigate.safeguard.plain.steps import MOVES, STEP
 from mitigate.safeguard.plain.taken_back import SURE, taken_back
@@ -174,6 +175,8 @@ def _sentence(
             if edit.act == DROP and tagged.drop[i] >= SURE
         ]
         problem = gate.edit_refused(heard, said, aside)
+        if not problem and asks_for_else(heard, said):
+            problem = "it asks for no step"
         if not problem:
             return said, ""
         refused = refused or problem
