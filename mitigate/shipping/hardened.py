@@ -64,7 +64,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     card = check(folder)
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
         if agent is not None:
-            _check_same(agent, folder / CONFIG)
+            check_same(agent, folder / CONFIG)
             return _filled(agent, folder, card, base)
         agent = build(folder / CONFIG)
         if card["vocabulary"] != vocabulary_sha(agent):
@@ -89,7 +89,7 @@ def _filled(agent: Any, folder: Path, card: dict[str, Any], base: str | Path | N
     return agent.eval()
 
 
-def _check_same(agent: Any, config: Path) -> None:
+def check_same(agent: Any, config: Path) -> None:
     """Raise ValueError if ``agent`` says of itself other settings than those in ``config``."""
     held = settings.read(config).get("agent")
     own: dict[str, Any] = getattr(agent, "settings", dict)()
@@ -248,7 +248,7 @@ def read_card(folder: Path) -> dict[str, Any]:
         raise FileNotFoundError(
             f"{folder} is no hardened checkpoint: {CARD} is missing. Name a folder such as "
             "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`; "
-            "mitigate.load(folder) reads weights without a card, too."
+            "mitigate.load reads weights without a card, too, by the same agent=..."
         )
     card = read_json(file, _AGAIN)
     if isinstance(card, dict) and "format" in card and "sha256" not in card:
