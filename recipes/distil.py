@@ -267,8 +267,7 @@ def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
     candidate, and must be so in both."""
     p = (teacher / temperature).log_softmax(-1)
     q = (student / temperature).log_softmax(-1)
-    possible = torch.isfinite(teacher)
-    each = p.exp() * (p - q).masked_fill(~possible, 0.0)
+    each = p.exp() * (p - q).masked_fill(teacher == float("-inf"), 0.0)
     return each.sum(-1).mean()
 
 

@@ -13,7 +13,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import torch
 from torch import Tensor
 
 from mitigate.agents.agent import Decisions, Output
@@ -123,7 +122,7 @@ def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -
             f"weights {list(decisions.weight.shape)}: they must be [B, n], [B, n] and [B], of all "
             "decisions that join() put together."
         )
-    log_p = logits.log_softmax(-1).masked_fill(~torch.isfinite(logits), 0.0)
+    log_p = logits.log_softmax(-1).masked_fill(logits == float("-inf"), 0.0)
     entropy = -(target * target.clamp(min=1e-9).log()).sum(-1)
     each = -(target * log_p).sum(-1) - entropy
     loss = imitated = (each * decisions.weight).sum() / decisions.weight.sum()

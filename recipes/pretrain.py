@@ -22,8 +22,9 @@ from mitigate.training.recipe import Recipe
 from mitigate.worlds.world import TrainingEpisodes, World
 
 VIEWS_ALONE = (
-    f"This recipe teaches encoders on views alone. {OWN} Or leave the stages that do out "
-    "(stages.NAME=null)."
+    f"This stage teaches encoders on views alone. {OWN} Of the recipes, imitation, da_per_frame, "
+    "da_per_episode, da_success and ts_distill do without, for agents that learn on episodes; so "
+    "does one of your own with recipes/adapt.py (Adapt)."
 )
 
 

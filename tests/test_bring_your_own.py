@@ -15,6 +15,9 @@ from pathlib import Path
 import pytest
 
 import mitigate
+from mitigate.core import conf
+from mitigate.core.checkpoint import weights_sha
+from mitigate.training import fitting
 
 # one worker of pytest trains, not each its own
 pytestmark = pytest.mark.xdist_group("bring your own")
@@ -84,6 +87,34 @@ def test_the_saved_agent_is_the_one_that_was_trained(folder):
         json.loads(f.read_text().splitlines()[0]) for f in (trained, folder / "again" / rows)
     )
     assert first["agent"] == again["agent"]
+
+
+def test_the_folder_of_the_run_fills_an_agent_that_its_user_built(folder):
+    place, mine = "runs/corridor-s0.6-seed0/agent", sys.modules["corridor"].Policy
+    row = json.loads((folder / "again/rows.jsonl").read_text().splitlines()[0])
+    agent = mitigate.load(place, agent=mine(adapters=True))
+    assert weights_sha(agent) == row["weights"] and not agent.training
+    for told in (mitigate.load, mitigate.load_hardened):  # each names what does it
+        with pytest.raises((ValueError, FileNotFoundError), match=r"mitigate\.load.*agent=\.\.\."):
+            told(place)
+    with pytest.raises(ValueError, match="do not fit this Policy"):
+        mitigate.load(place, agent=mine(width=4, adapters=True))
+
+
+def test_recipes_and_python_take_the_agent_and_the_world_of_the_page(folder):
+    cfg = conf.load_config(
+        "train", ["--config-dir=mine", "recipe=imitation", "agent=policy", "env=corridor"]
+    )
+    fitting.leave_out(cfg, sys.modules["corridor"].Policy())
+    assert [name for name, stage in cfg.stages.items() if stage is not None] == ["imitation"]
+    entry = mitigate.benchmark(
+        "runs/corridor-s0.6-seed0/agent",
+        options=["--config-dir=mine", "agent=policy", "env=corridor"],
+        episodes=1,
+        suite=["spatter"],
+        out=folder / "bench",
+    )
+    assert entry.name.startswith("corridor")
 
 
 def test_the_exported_folder_fills_an_agent_that_its_user_built(folder):

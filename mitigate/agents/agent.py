@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
+import torch
 from torch import Tensor, nn
 
 if TYPE_CHECKING:
@@ -67,6 +68,22 @@ class Output:
     features: dict[str, Tensor] = field(default_factory=dict)
     losses: dict[str, Tensor] = field(default_factory=dict)
     figures: dict[str, Tensor] = field(default_factory=dict)
+
+
+def check_logits(logits: Tensor, agent: Any) -> Tensor:
+    """Return ``logits`` [..., n], in which -inf is what may not be chosen.
+
+    Raises ValueError, naming the kind of ``agent``, for NaN, for infinity, and where nothing may be
+    chosen: the likeliest action would be the first, STOP.
+    """
+    if not torch.isfinite(logits.amax(-1)).all():
+        shown = logits[~torch.isfinite(logits.amax(-1))][0] if logits.ndim > 1 else logits
+        numbers = ", ".join(f"{value:g}" for value in shown.flatten()[:8].tolist())
+        raise ValueError(
+            f"{type(agent).__name__} gave logits that choose no action ({numbers}): of what may be "
+            "chosen all must be finite, and the rest -inf. Look for NaN in what it computes."
+        )
+    return logits
 
 
 class Decisions(Protocol):

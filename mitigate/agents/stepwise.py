@@ -14,7 +14,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.agent import Output
+from mitigate.agents.agent import Output, check_logits
 from mitigate.core.observation import RGB, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
@@ -78,9 +78,10 @@ class StepwiseAgent(nn.Module):
 
     @torch.inference_mode()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """The likeliest action."""
+        """The likeliest action. Raises ValueError for logits that choose none."""
         seen = {name: np.asarray(observation[name])[None] for name in self.needs}
-        return int(self(self._tensors(seen), [self.instruction])[0][0].argmax())
+        logits = self(self._tensors(seen), [self.instruction])[0][0]
+        return int(check_logits(logits, self).argmax())
 
     @torch.no_grad()
     def collect(
@@ -93,18 +94,19 @@ class StepwiseAgent(nn.Module):
         clean: bool = False,
     ) -> list[dict[str, Any]]:
         """One dict a step. The agent's own STOP is not taken, so that what follows a wrong one is
-        learned, too. Raises ValueError for a world without an expert."""
+        learned, too. Raises ValueError for a world without an expert, and for logits that choose no
+        action."""
         seen = [world.reset(episode) for world, episode in zip(worlds, episodes, strict=True)]
         experts = [expert_of(world) for world in worlds]
         steps: list[dict[str, Any]] = []
         running = list(range(len(worlds)))
-        for _ in range(self.limit):
+        for number in range(1, self.limit + 1):
             fresh = [self._step(seen[i], experts[i], episodes[i], clean) for i in running]
             steps += fresh
             for i, step in zip(running, fresh, strict=True):
                 action = step["answer"]
                 if rngs[i].random() >= expert_share:
-                    own = self._sample(step, rngs[i])
+                    own = self._sample(step, rngs[i], number)
                     action = action if own == STOP else own
                 seen[i] = worlds[i].step(action)
             running = [i for i in running if not worlds[i].done]
@@ -142,9 +144,13 @@ class StepwiseAgent(nn.Module):
             "episode_id": episode.episode_id,
         }
 
-    def _sample(self, step: dict[str, Any], rng: np.random.Generator) -> int:
+    def _sample(self, step: dict[str, Any], rng: np.random.Generator, number: int) -> int:
         frames = {name: frame[None] for name, frame in step["frames"].items()}
         logits = self(self._tensors(frames), [step["text"]])[0][0]
+        try:
+            check_logits(logits, self)
+        except ValueError as error:
+            raise ValueError(f"Episode {step['episode_id']}, step {number}: {error}") from None
         total = np.cumsum(logits.double().softmax(-1).cpu().numpy())
         return int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
 

@@ -30,7 +30,13 @@ from omegaconf.errors import OmegaConfBaseException
 from mitigate.core.errors import said, too_much
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
-from mitigate.core.options import check_dashes, config_folder, flags_first, notices
+from mitigate.core.options import (
+    check_dashes,
+    config_folder,
+    flags_first,
+    notices,
+    without_config_folder,
+)
 from mitigate.core.signals import raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
@@ -167,7 +173,9 @@ def load_config(
     primary: str, overrides: Iterable[str] = (), further: Path | None = None
 ) -> DictConfig:
     """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program; ``further``: a
-    folder with more configs."""
+    folder with more configs, which ``overrides`` may name, too (``--config-dir=mine``)."""
+    own, overrides = without_config_folder([*overrides])
+    further = further or config_folder(own)
     if further is not None:
         overrides = [*overrides, f"hydra.searchpath=[file://{further.resolve()}]"]
     import_module(TYPES[primary])

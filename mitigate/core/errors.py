@@ -3,13 +3,23 @@
 from __future__ import annotations
 
 import errno
+import sysconfig
+import traceback
+from pathlib import Path
+
+from mitigate.core.files import PACKAGE
+
+RECIPES = (PACKAGE / "recipes").resolve()  # of a checkout: a link
+_STANDARD = Path(sysconfig.get_path("stdlib")).resolve()
+_INSTALLED = {"site-packages", "dist-packages"}
 
 
 def said(error: ValueError | OSError) -> str:
-    """An error in one paragraph: ours as it is; of the system's what it said, of which file, and
-    what may help."""
+    """An error in one paragraph: ours as it is; out of the user's own code with its place there; of
+    the system's what it said, of which file, and what may help."""
     if not isinstance(error, OSError) or error.strerror is None:
-        return str(error)
+        place = own_place(error)
+        return f"{error} (raised in {place})" if place else str(error)
     told = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         told += (
@@ -17,6 +27,19 @@ def said(error: ValueError | OSError) -> str:
             "there."
         )
     return told
+
+
+def own_place(error: BaseException) -> str:
+    """File, line and function of the user's own code in which ``error`` was raised, by it or by a
+    library that it called; empty if it was raised by this project, or by a library for it."""
+    found = ""
+    for frame in traceback.extract_tb(error.__traceback__):
+        file = Path(frame.filename).resolve()
+        if file.is_relative_to(PACKAGE) or file.is_relative_to(RECIPES):
+            found = ""
+        elif file.is_file() and not (_INSTALLED & {*file.parts} or file.is_relative_to(_STANDARD)):
+            found = f"{frame.filename}, line {frame.lineno}, {frame.name}()"
+    return found
 
 
 def too_much(error: Exception) -> str:

@@ -16,6 +16,7 @@ from omegaconf import OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
 MULTIRUN = ("-m", "--multirun")
+CONFIG_DIR = ("--config-dir", "-cd")
 
 
 def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
@@ -49,6 +50,18 @@ def config_folder(options: Sequence[str]) -> Path | None:
     """The user's own folder of configs, if ``options`` name one."""
     found = re.search(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
     return Path(found[1]) if found else None
+
+
+def without_config_folder(options: Sequence[str]) -> tuple[list[str], list[str]]:
+    """The words of ``options`` that name the user's own folder of configs (``--config-dir mine``),
+    and the others."""
+    own: list[str] = []
+    rest: list[str] = []
+    for word in options:
+        behind = bool(own) and own[-1] in CONFIG_DIR
+        own_word = behind or word.partition("=")[0] in CONFIG_DIR
+        (own if own_word else rest).append(word)
+    return own, rest
 
 
 def check_dashes(options: Sequence[str]) -> None:

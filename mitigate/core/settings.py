@@ -74,7 +74,7 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
         raise ValueError(
             f"{file} is of the agent {_short(found)}, but the agent here is {target}: choose the "
             f"agent that the weights belong to (agent={named(found) or '...'}; in Python, "
-            "load_hardened(folder, agent=...) fills one that you built)."
+            "mitigate.load(folder, agent=...) fills one that you built)."
         )
     for key, _ in _entries(settings):
         if any(part.startswith("_") for part in key.split(".")):

@@ -21,6 +21,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any, ClassVar, Protocol
 
+from mitigate.core.errors import said
 from mitigate.core.progress import Progress, duration
 from mitigate.core.signals import ENDING, held
 
@@ -259,7 +260,7 @@ def _serve(pipe: Connection, copy: bytes) -> None:
     """A worker's life: groups of jobs in, (result, None) or (None, error) out."""
     leave_to_parent()
     try:
-        task: Task = pickle.loads(copy)
+        task: Task = _unpacked(copy)
         with task.ready():
             while jobs := _next(pipe):
                 for result in task.work(jobs):
@@ -268,6 +269,14 @@ def _serve(pipe: Connection, copy: bytes) -> None:
     except Exception as error:
         with suppress(OSError):  # the parent is gone
             pipe.send((None, portable(error)))
+
+
+def _unpacked(copy: bytes) -> Any:
+    """What :func:`packed` made; ValueError for a class below ``if __name__ == "__main__":``."""
+    try:
+        return pickle.loads(copy)
+    except AttributeError as error:
+        raise ValueError(f"A worker process cannot read its task ({error}): {ALONE}.") from error
 
 
 def _next(pipe: Connection) -> list[Any]:
@@ -279,9 +288,10 @@ def _next(pipe: Connection) -> list[Any]:
 
 
 def portable(error: Exception) -> tuple[Exception, Exception]:
-    """``error`` and a cause that shows the worker's traceback; a RuntimeError with
-    its text in place of one that cannot be pickled."""
+    """``error``, a ValueError with the place in a user's code, and a cause that shows the worker's
+    traceback; a RuntimeError with its text in place of one that cannot be pickled."""
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")
+    error = ValueError(said(error)) if type(error) is ValueError else error
     try:
         pickle.loads(pickle.dumps(error))
     except Exception:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import operator
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from mitigate.agents.agent import Agent, SideBySide
+from mitigate.core.errors import said
 from mitigate.corruptions import (
     Corruption,
     Key,
@@ -37,13 +39,29 @@ def run_episode(
     looked.
 
     ``repaired``: what a safeguard makes of instructions; one that is not in it stays as it is.
-    ``restorer``: goes over the frames before the agent reads them.
+    ``restorer``: goes over the frames before the agent reads them. A ValueError out of a step names
+    the episode, the condition and the step; one is raised for an action that is no whole number.
     """
     walk = _Walk(world, episode, corruption, seed, restorer)
     with instructed(agent, episode, corruption, seed, repaired):
-        while not walk.done:
-            walk.step(agent.act(walk.observation))
+        try:
+            while not walk.done:
+                walk.step(action_of(agent.act(walk.observation), agent))
+        except ValueError as error:
+            raise walk.failed(error) from error
     return walk.measures()
+
+
+def action_of(answer: Any, agent: Any) -> int:
+    """What ``agent`` answered as an action. Raises ValueError for what is no whole number."""
+    try:
+        return operator.index(answer)
+    except TypeError:
+        shown = " ".join(repr(answer).split())[:80]
+        raise ValueError(
+            f"act() of {type(agent).__name__} returned {shown} ({type(answer).__name__}), which is "
+            "no action: return a whole number, such as int(logits.argmax())."
+        ) from None
 
 
 def run_side_by_side(
@@ -74,7 +92,10 @@ def run_side_by_side(
                 walks, _, memories = zip(*under_way.values(), strict=True)
                 actions = agent.act_all([walk.observation for walk in walks], memories)
                 for walk, action in zip(walks, actions, strict=True):
-                    walk.step(action)
+                    try:
+                        walk.step(action_of(action, agent))
+                    except ValueError as error:
+                        raise walk.failed(error) from error
         yield measured.pop(number)
 
 
@@ -89,6 +110,7 @@ class _Walk:
         seed: int,
         restorer: Restorer | None,
     ) -> None:
+        self.name, self.steps = f"Episode {episode.episode_id}, {corruption.name}", 0
         self.met = Corrupted(world, corruption, seed)
         self.shown: World = self.met if restorer is None else Restored(self.met, restorer)
         self.observation = self.shown.reset(episode)
@@ -99,6 +121,11 @@ class _Walk:
 
     def step(self, action: int) -> None:
         self.observation = self.shown.step(action)
+        self.steps += 1
+
+    def failed(self, error: ValueError) -> ValueError:
+        """What is raised in place of an ``error`` of the agent or the world: it says where."""
+        return ValueError(f"{self.name}, step {self.steps + 1}: {said(error)}")
 
     def measures(self) -> dict[str, Any]:
         found = {**self.met.measures(), "decisions": self.met.looks}

@@ -11,7 +11,7 @@ import numpy as np
 from mitigate.agents.agent import Agent
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.corruptions import Corruption
-from mitigate.evaluation.episode import instructed
+from mitigate.evaluation.episode import action_of, instructed
 from mitigate.restoration.restorer import Restorer
 from mitigate.restoration.world import Restored
 from mitigate.worlds.recorded import RecordedWorld, Recording
@@ -61,7 +61,7 @@ def walk(
     with instructed(agent, episode, corruption, seed):
         for step in range(len(recording.times)):
             try:
-                action = int(agent.act(observation))
+                action = action_of(agent.act(observation), agent)
             except KeyError as error:
                 raise ValueError(
                     f"{recording.name} does not fit {type(agent).__name__}: {error.args[0]}"

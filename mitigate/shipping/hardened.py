@@ -239,7 +239,7 @@ def read_card(folder: Path) -> dict[str, Any]:
         raise FileNotFoundError(
             f"{folder} is no hardened checkpoint: {CARD} is missing. Name a folder such as "
             "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`; "
-            "mitigate.load(folder) reads weights without a card, too."
+            "mitigate.load reads weights without a card, too, by the same agent=..."
         )
     card = read_json(file, _AGAIN)
     if isinstance(card, dict) and "format" in card and "sha256" not in card:

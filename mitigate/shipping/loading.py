@@ -14,20 +14,24 @@ import torch
 
 from mitigate.core import checkpoint
 from mitigate.core.files import find
-from mitigate.shipping import hardened
+from mitigate.shipping import given, hardened
 from mitigate.shipping.finished import refuse_what_ships_as_it_is
 
+_AGAIN = "Name the folder `agent` of a run."
 
-def load(folder: str | Path) -> Any:
+
+def load(folder: str | Path, *, agent: Any = None) -> Any:
     """Return the agent in ``folder`` on the CPU, in eval mode, ready for ``reset``.
 
     Args:
         folder: a hardened one (as :func:`hardened.load_hardened`), shipped weights
             (``checkpoints/recurrent/base``), or the folder ``agent`` of a run; looked for from
             here, then in this project.
+        agent: an agent of a class of your own, with the settings of the one that was trained, to be
+            filled in place; None: one of ours, built here.
     Raises FileNotFoundError or ValueError, naming the file, for weights that are missing, damaged
-    or do not say what agent they are of, and for an agent that is not ours; TypeError for a folder
-    that is no path.
+    or do not say what agent they are of, and for an agent that is not ours and not given, or is
+    not the one given; TypeError for a folder that is no path.
     """
     if not isinstance(folder, (str, os.PathLike)):
         raise TypeError(
@@ -36,14 +40,28 @@ def load(folder: str | Path) -> Any:
         )
     place = find(folder)
     if (place / hardened.CARD).is_file():
-        return hardened.load_hardened(place)
+        return hardened.load_hardened(place, agent=agent)
     refuse_what_ships_as_it_is(place)
     if (place / "agent").is_dir():
         raise ValueError(f"{folder} is the folder of a run: name its agent, {place / 'agent'}.")
     config = hardened.config_of(place)
+    if agent is not None:
+        return _filled(agent, place, config)
     if not config.is_file():
         raise FileNotFoundError(f"{config} is missing, so nobody knows what agent {folder} is of.")
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are
         agent = hardened.build(config)
     checkpoint.load_agent(agent, place)
+    return agent.eval()
+
+
+def _filled(agent: Any, place: Path, config: Path) -> Any:
+    """``agent`` in eval mode with the weights of ``place``, whose settings, if it has any, must not
+    be others."""
+    said = config.is_file()
+    if said:
+        given.check_same(agent, config, _AGAIN)
+    checkpoint.load_agent(agent, place)
+    if said:
+        given.give_settings(agent, config, _AGAIN)
     return agent.eval()

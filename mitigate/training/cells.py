@@ -21,6 +21,7 @@ from mitigate.training import train
 
 LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
+OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")  # of a training, for evaluations
 CELLS = ("agent", "checkpoint", "name", "seed", "out")  # a further evaluation does not say these
 PLACES = ("seed", "folder", "out", "workers", "evaluation")  # nor a column these
 MEASURED = ("split", "episodes", "conditions", "severity")  # nor, if it does not train, these
@@ -46,7 +47,7 @@ class Cell:
         """What an evaluation must know of the agent: its kind, its world and its weights."""
         if self.trains:
             given = (*self.options, *self.train)
-            kind = tuple(o for o in given if o.startswith(("agent=", "env=", "env.", "+env.")))
+            kind = tuple(o for o in given if o.startswith(OF_AGENT))
             return (*kind, f"checkpoint={self.folder / 'run' / 'agent'}")
         return self.options
 

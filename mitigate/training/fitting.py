@@ -24,7 +24,7 @@ from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality, names
 from mitigate.training import states
-from mitigate.training.parts import POLICY, policy_parts
+from mitigate.training.parts import POLICY, SEEING, policy_parts
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe
 from mitigate.training.stages import (
@@ -35,6 +35,7 @@ from mitigate.training.stages import (
     recipe_of,
     trainer_settings,
 )
+from mitigate.worlds.world import Placeable
 
 OURS = "mitigate.recipes."
 OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
@@ -51,6 +52,7 @@ def leave_out(cfg: DictConfig, agent: nn.Module) -> None:
         if idle:
             cfg.stages[name] = None
             say(f"{name}: left out, {idle}")
+    _leave_out_views(cfg, agent)
     if any(cfg.stages.values()):
         return
     if not (cfg.evaluation.enabled and cfg.agent.get("blind")):
@@ -76,6 +78,26 @@ def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
     if parts == POLICY and encoders and not policy_parts(agent):
         return f"nothing but encoders is learned in {kind}"
     return None
+
+
+def _leave_out_views(cfg: DictConfig, agent: nn.Module) -> None:
+    """Set the stages that teach encoders on random poses to None where ``agent`` or the world lacks
+    what that takes, and say so. Where no other stage could train the agent they stay, and are
+    refused (:func:`check`)."""
+    held = {name: stage for name, stage in cfg.stages.items() if stage is not None}
+    kinds = {name: located(stage.recipe._target_) for name, stage in held.items()}
+    views = [name for name, kind in kinds.items() if getattr(kind, "needs", ()) == SEEING]
+    others = [kind for name, kind in kinds.items() if name not in views]
+    if all(getattr(kind, "misfit", lambda _: "")(agent) for kind in others):
+        return
+    for name in views:
+        lacking = [part for part in SEEING if not hasattr(agent, part)]
+        cause = f"{type(agent).__name__} has no {', '.join(lacking)}" if lacking else ""
+        if not cause and not isinstance(world := maker(held[name].recipe.world)(), Placeable):
+            cause = f"{type(world).__name__} has no random poses (scenes, enter, point, put)"
+        if cause:
+            cfg.stages[name] = None
+            say(f"{name}: left out, {cause} (docs/bring-your-own.md)")
 
 
 def tell_of_schedule(cfg: DictConfig) -> None:

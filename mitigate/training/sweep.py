@@ -2,7 +2,7 @@
 
 Each combination of values is a run in a folder of its own, on this machine or on those of
 ``launcher``. A failed one does not stop the others; the same command again goes on with what is
-missing. All end in one table.
+missing. All end in one table. ``--config-dir FOLDER`` names configs of your own, for all runs.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf, seeding
 from mitigate.core.names import unknown
+from mitigate.core.options import without_config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.workers import cores
 from mitigate.evaluation.evaluate import write_table
@@ -57,7 +58,8 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
         raise ValueError(unknown("command", cfg.command, COMMANDS))
     if cfg.jobs < 1:
         raise ValueError(f"jobs={cfg.jobs} is none: give 1 or more runs at a time.")
-    made = combinations(options)
+    configs, options = without_config_folder(options)
+    made = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)
     from mitigate.core.build import with_kind  # brings torch
 
@@ -113,9 +115,10 @@ def combinations(options: Sequence[str]) -> list[list[str]]:
 
 def chain(cfg: DictConfig, options: Sequence[str]) -> programs.Chain:
     """The run of one combination."""
-    name = re.sub(r"[^A-Za-z0-9._+-]+", "_", ",".join(options).replace("=", "-")) or "default"
+    _, named = without_config_folder(options)
+    name = re.sub(r"[^A-Za-z0-9._+-]+", "_", ",".join(named).replace("=", "-")) or "default"
     if len(name) > LONGEST:
-        name = f"{name[:LONGEST]}-{seeding.digest(*options):032x}"[: LONGEST + 9]
+        name = f"{name[:LONGEST]}-{seeding.digest(*named):032x}"[: LONGEST + 9]
     words = [f"mitigate.{cfg.command}", *options, f"runs={cfg.runs}"]
     if cfg.command == "evaluate":  # which would put two seeds into one folder
         words.append(f"out={Path(cfg.runs) / name}")
@@ -123,7 +126,7 @@ def chain(cfg: DictConfig, options: Sequence[str]) -> programs.Chain:
     count = max(1, cores() // cfg.jobs) if cfg.launcher.name == "local" else 1
     count = max(count, int(cfg.launcher.get("cpus", 1)))
     return programs.Chain(
-        " ".join(options) or "as it is",
+        " ".join(named) or "as it is",
         ((cfg.command, programs.python(*words)),),
         (Path(cfg.runs) / LOGS / f"{name}.txt").resolve(),
         Path.cwd(),
@@ -137,7 +140,7 @@ def main() -> int:
     given = sys.argv[1:]
     own = [option for option in given if OWN.match(option)]
     options = [option for option in given if not OWN.match(option)]
-    if not options:
+    if not without_config_folder(options)[1]:
         print(conf.help_text(__doc__ or "", "sweep"))
         print("sweep: give options to combine, such as seed=0,1.", file=sys.stderr)
         return 2

@@ -20,8 +20,9 @@ class SeededWorld:
     Args: found: shape, dtype and greatest value of each entry of the environment's observations.
     entries: names of its frames by ours ("rgb", "depth", "pose"). success: the entry that says at
     the end whether it went well; None: a reward above 0 in the last step. unit: metres of one unit
-    of depth, which whole numbers need; None: 1. limit: steps after which an episode is over at the
-    latest. rule: what success means, in words, for the rows; None: what ``success`` says.
+    of depth, which whole numbers need, and depth that ends at 1 or below; None: 1. limit: steps
+    after which an episode is over at the latest. rule: what success means, in words, for the rows;
+    None: what ``success`` says.
 
     Depth that is not finite or below 0 reads 0, no reading. Raises ValueError if an entry is not
     there, RGB is not uint8, or ``unit`` or ``limit`` is none; and for the first depth of an episode
@@ -54,7 +55,7 @@ class SeededWorld:
         for name, entry in self.entries.items():
             shape, dtype, most = found[entry]
             if name == DEPTH:
-                _check_unit(entry, dtype, unit)
+                _check_unit(entry, dtype, most, unit)
             of_depth = {"unit": "m", "high": most * self.unit} if name == DEPTH else {}
             self.sensors[name] = Sensor(name, tuple(shape), dtype, **of_depth)  # type: ignore[arg-type]
         if RGB in self.sensors and self.sensors[RGB].dtype != "uint8":
@@ -111,7 +112,7 @@ class SeededWorld:
         return metres
 
 
-def _check_unit(entry: str, dtype: str, unit: float | None) -> None:
+def _check_unit(entry: str, dtype: str, most: float, unit: float | None) -> None:
     """Raise ValueError for a unit of depth that is none, or is not said and must be."""
     if unit is not None and not (type(unit) in (int, float) and 0 < unit < math.inf):
         raise ValueError(f"unit={unit!r} is no unit of depth: give a number of metres above 0.")
@@ -119,4 +120,10 @@ def _check_unit(entry: str, dtype: str, unit: float | None) -> None:
         raise ValueError(
             f"The depth {entry!r} is {dtype}, which may be anything: give unit=, the metres of one "
             "unit of it (0.001 for millimetres)."
+        )
+    if unit is None and most <= 1:
+        raise ValueError(
+            f"The depth {entry!r} ends at {most:g}, as depth does that is normalised to [0, 1] "
+            "(habitat does so): give unit=, the metres of 1 (10 for a sensor of 0 to 10 m), or "
+            "unit=1.0 if it is in metres."
         )

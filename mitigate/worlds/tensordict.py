@@ -169,7 +169,8 @@ class EnvWorld(SeededWorld):
         return self._seen()
 
     def step(self, action: int) -> Observation:
-        """Raises ValueError for an action that the environment does not have."""
+        """Raises ValueError for an action that the environment does not have, and at the end of an
+        episode that has no entry ``success``."""
         self._check_going()
         spec = self.env.action_spec
         if not 0 <= action < spec.space.n:
@@ -181,6 +182,12 @@ class EnvWorld(SeededWorld):
         self._now = self.env.step(self._now)["next"]
         reward = float(self._now.get(self.env.reward_key).sum())
         self._end_step(reward, bool(self._now["done"].any()))
+        if self.done and self.success is not None and self.success not in self._now.keys(True):
+            raise ValueError(
+                f"At the end of the episode the environment has no entry {self.success!r}, only "
+                f"{', '.join(map(repr, self._now.keys()))}: name another, or write it there, False "
+                "for a failure."
+            )
         return self._seen()
 
     def _flag(self) -> bool:
@@ -206,11 +213,18 @@ def _spec_of(sensor: Sensor) -> Any:
     dtype = getattr(torch, sensor.dtype)
     if sensor.dtype == "uint8":
         return Bounded(0, 255, shape=sensor.shape, dtype=dtype)
+    if math.isfinite(sensor.high):
+        others = [] if sensor.missing is None else [sensor.missing]
+        ends = torch.tensor([sensor.low, sensor.high, *others], dtype=dtype)
+        return Bounded(ends.min(), ends.max(), shape=sensor.shape, dtype=dtype)
     return Unbounded(shape=sensor.shape, dtype=dtype)
 
 
 def _measured(spec: Any) -> tuple[tuple[int, ...], str, float]:
-    """Shape, dtype and greatest value of an entry."""
+    """Shape, dtype and greatest value of an entry; infinity where it has no end, for which torchrl
+    has the greatest number of the dtype."""
     most = getattr(getattr(spec, "space", None), "high", None)
     shape, dtype = tuple(spec.shape), str(spec.dtype).removeprefix("torch.")
-    return shape, dtype, math.inf if most is None else float(torch.as_tensor(most).max())
+    far = math.inf if most is None else float(torch.as_tensor(most).max())
+    endless = dtype.startswith("float") and far >= torch.finfo(spec.dtype).max / 2
+    return shape, dtype, math.inf if endless else far

@@ -10,6 +10,7 @@ import time
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from pkgutil import resolve_name
 from threading import Timer
 
 import pytest
@@ -231,6 +232,18 @@ def test_what_cannot_be_sent_to_workers_is_told_with_a_way_out(tmp_path):
 
     with pytest.raises(ValueError, match=r"cannot be sent to other processes.*workers=1"):
         list(results(Local(tmp_path), groups(1, 2), 2, Lines()))
+
+
+class Guarded(Squares):
+    """As a class below ``if __name__ == "__main__":``, which a worker does not find."""
+
+    def __reduce__(self):
+        return resolve_name, ("os:Guarded",)
+
+
+def test_a_task_that_workers_do_not_find_is_told_with_a_way_out(tmp_path):
+    with pytest.raises(ValueError, match="cannot read its task.*Guarded.*head of a module"):
+        list(results(Guarded(tmp_path), groups(1, 2), 2, Lines()))
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from types import SimpleNamespace
 
 import pytest
 import torch
@@ -13,7 +14,8 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
-from mitigate.recipes.imitate import Imitate, check_losses
+from mitigate.recipes.distil import policy_kl
+from mitigate.recipes.imitate import Imitate, check_losses, imitation
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -111,3 +113,18 @@ def test_measuring_success_leaves_the_agent_in_training_mode():
     ).train()
     assert made.jobs(0)[0][-1] == {"success": {"flare": schedule.success["flare"]}}
     assert all(module.training for module in made.modules())
+
+
+def test_logits_that_are_no_numbers_give_a_loss_that_is_none():
+    """Else the loss is 0, and what went wrong shows as the gradient's norm alone."""
+    target, weight = torch.tensor([[0.0, 1.0, 0.0]]), torch.ones(1)
+    decisions = SimpleNamespace(target=target, weight=weight)
+
+    def loss(*logits, mask=None):
+        found = imitation(Output(torch.tensor([logits]), mask), decisions, {})["loss"]
+        return float(found)
+
+    nan, far = float("nan"), float("-inf")
+    assert loss(nan, nan, nan) != loss(nan, nan, nan)
+    assert loss(nan, 1.0, 0.0, mask=torch.tensor([[False, True, True]])) == loss(far, 1.0, 0.0)
+    assert float(policy_kl(torch.zeros(1, 3), torch.full((1, 3), nan), 2.0)) != 0

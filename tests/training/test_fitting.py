@@ -7,6 +7,7 @@ from collections import Counter
 
 import pytest
 from omegaconf import OmegaConf, open_dict
+from torch import nn
 
 from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.recurrent import RecurrentAgent
@@ -140,6 +141,46 @@ def test_a_stage_that_ends_in_its_warmup_is_told(capsys):
 )
 def test_a_run_in_which_nothing_trains_is_refused(tmp_path, options):
     assert "Nothing of" in refusal(tmp_path, *options)
+
+
+class Walker(StepwiseAgent):
+    """Learns on episodes, and shows no encoders."""
+
+    def __init__(self):
+        super().__init__()
+        self.head = nn.Linear(2, 2)
+
+
+def left(cfg) -> list[str]:
+    return [str(name) for name, stage in cfg.stages.items() if stage is not None]
+
+
+@pytest.mark.parametrize(
+    ("recipe", "stage"),
+    [("imitation", "imitation"), ("da_success", "imitation"), ("ts_distill", "episodes")],
+)
+def test_an_agent_that_shows_no_encoders_learns_on_episodes_alone(recipe, stage, capsys):
+    cfg = conf.load_config("train", [f"recipe={recipe}"])
+    fitting.leave_out(cfg, Walker())
+    assert left(cfg) == [stage]
+    assert "left out, Walker has no encoders, labels, see" in capsys.readouterr().out
+
+
+def test_in_a_world_without_random_poses_an_agent_learns_on_episodes_alone(monkeypatch, capsys):
+    cfg = conf.load_config("train", ["recipe=imitation"])
+    fitting.leave_out(cfg, TopologicalAgent(16))
+    assert len(left(cfg)) == 3  # the apartments have them
+    monkeypatch.setattr(fitting, "maker", lambda node: Walker)  # any class without them
+    fitting.leave_out(cfg, TopologicalAgent(16))
+    assert left(cfg) == ["imitation"] and "no random poses" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("recipe", ["conv_adapter", "harden"])
+def test_what_an_agent_lacks_for_a_recipe_of_views_and_which_do_without_is_told(recipe, tmp_path):
+    cfg = conf.load_config("train", [f"recipe={recipe}"])
+    fitting.leave_out(cfg, Walker())
+    with pytest.raises(ValueError, match=r"Walker .*no encoders, labels, see\..*da_per_episode"):
+        fitting.check(cfg, Walker(), tmp_path)
 
 
 def test_a_blinded_agent_that_learns_nothing_is_evaluated_as_it_is(tmp_path, monkeypatch, capsys):

@@ -74,6 +74,26 @@ def test_options_to_combine_are_run(monkeypatch, fake, tmp_path):
     assert [len(chains) for chains, _, _ in fake] == [2]
 
 
+@pytest.mark.parametrize("named", [["--config-dir", "mine"], ["--config-dir=mine"]])
+def test_configs_of_ones_own_are_those_of_every_run(monkeypatch, fake, tmp_path, named):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine/recipe").mkdir(parents=True)
+    own = "# @package _global_\ndefaults: [imitation]\nname: own\n"
+    (tmp_path / "mine/recipe/own.yaml").write_text(own)
+    words = ["mitigate sweep", *named, f"runs={tmp_path}", "recipe=own", "seed=0,2"]
+    monkeypatch.setattr(sys, "argv", words)
+    assert sweep.main() == 0
+    chains, _, _ = fake[0]
+    assert [chain.name for chain in chains] == ["recipe=own seed=0", "recipe=own seed=2"]
+    assert all(" ".join(named) in " ".join(chain.programs[0][1]) for chain in chains)
+    assert {chain.log.name for chain in chains} == {
+        "recipe-own_seed-0.txt",
+        "recipe-own_seed-2.txt",
+    }
+    monkeypatch.setattr(sys, "argv", ["mitigate sweep", *named])
+    assert sweep.main() == 2  # nothing to combine
+
+
 def test_runs_have_a_log_each_share_the_cores_and_evaluations_a_folder_each(tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHON_CPU_COUNT", "8")
     cfg = config(tmp_path, "command=evaluate", "jobs=4")

@@ -412,6 +412,13 @@ def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
     assert "severity=0.9" in train and "severity=0.6" in evaluate
 
 
+def test_a_column_may_have_configs_of_ones_own(tmp_path):
+    cfg = conf.load_config("table2", [f"out={tmp_path}"])
+    cfg.columns = {"mine": ["--config-dir=mine", "recipe=own"]}
+    commands = tables.cells(cfg)[0].commands(cfg)
+    assert all("--config-dir=mine" in words for _, words in commands)
+
+
 def test_a_cell_that_left_no_whole_row_does_not_hide_why(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)

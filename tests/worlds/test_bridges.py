@@ -112,10 +112,10 @@ def test_a_success_that_info_never_says_is_told_at_the_end():
 class Deep(Room):
     """A room of which depth is seen, the same everywhere."""
 
-    def __init__(self, depth):
+    def __init__(self, depth, most=60000):
         super().__init__("rgb")
         self.depth = np.asarray(depth)
-        box = gymnasium.spaces.Box(0, 60000, (SIZE, SIZE, 1), self.depth.dtype.type)
+        box = gymnasium.spaces.Box(0, most, (SIZE, SIZE, 1), self.depth.dtype.type)
         self.observation_space = gymnasium.spaces.Dict({**self.observation_space, "depth": box})
 
     def _look(self):
@@ -135,6 +135,41 @@ def test_depth_in_whole_numbers_needs_its_unit():
     for unit in (0, -1.0, float("nan"), "0.001", True):
         with pytest.raises(ValueError, match="no unit of depth"):
             GymWorld(Deep(np.float32(2)), unit=unit)
+
+
+def test_depth_that_ends_at_one_needs_its_unit():
+    from mitigate.worlds.gym import GymWorld
+
+    near = Deep(np.float32(0.25), most=1.0)
+    with pytest.raises(ValueError, match=r"'depth' ends at 1, .*normalised.*give unit="):
+        GymWorld(near)
+    for unit in (10, 1.0):
+        world = GymWorld(near, unit=unit)
+        assert np.allclose(world.reset(episode(3))["depth"], 0.25 * unit)
+        assert world.sensors["depth"].high == unit
+
+
+@pytest.mark.parametrize(("most", "far"), [(np.inf, np.inf), (8.0, 8.0)])
+def test_depth_is_as_far_in_torchrl_as_it_is_in_the_world(most, far):
+    """torchrl writes down an end that there is not as the greatest number of the dtype."""
+    from torchrl.envs import GymWrapper
+
+    from mitigate.worlds.gym import GymWorld
+
+    room = Deep(np.float32(2.5), most=most)
+    back = EnvWorld(WorldEnv(GymWorld(room), [episode(3)]))
+    for world in (GymWorld(room), EnvWorld(GymWrapper(room)), back):
+        assert world.sensors["depth"].high == far
+    missing = Corrupted(back, Corruption("missing_data", 0.6), 0).reset(episode(3))["depth"]
+    assert missing.max() <= 10
+
+
+def test_a_success_that_torchrl_never_says_is_told_at_the_end():
+    from mitigate.worlds.gym import GymWorld
+
+    env = WorldEnv(GymWorld(Room("rgb")), [episode(1)])
+    with pytest.raises(ValueError, match=r"no entry 'won', only .*'rgb'"):
+        run_episode(Brightness(), EnvWorld(env, success="won"), episode(1), CLEAN, 0)
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])

@@ -20,7 +20,7 @@ from torch import Tensor, nn
 from mitigate.agents import camera
 from mitigate.agents import observation as checked
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Output
+from mitigate.agents.agent import Output, check_logits
 from mitigate.agents.camera import CameraDepth, CameraRGB
 from mitigate.agents.encoders import SIZE
 from mitigate.agents.recurrent import learning
@@ -178,7 +178,8 @@ class RecurrentAgent(nn.Module):
         text = Text(*map(torch.cat, zip(*(walk.text for walk in walks), strict=True)))
         state = State.join([walk.state for walk in walks])
         state = self.policy.step(text, columns, moves.to(self.device), state)
-        actions = self.policy.answer(state.hidden).argmax(-1).tolist()[:count]
+        logits = check_logits(self.policy.answer(state.hidden), self)
+        actions = logits.argmax(-1).tolist()[:count]
         for row, (walk, action) in enumerate(zip(walks, actions, strict=False)):
             walk.state = state.rows(torch.tensor([row], device=self.device))
             walk.odometer.add(action)

@@ -12,7 +12,7 @@ import torch.nn.functional as F
 from torch import Tensor
 
 from mitigate.agents import observation as checked
-from mitigate.agents.agent import Output
+from mitigate.agents.agent import Output, check_logits
 from mitigate.agents.camera import free_metres
 from mitigate.agents.losses import free_loss, presence_loss
 from mitigate.agents.recurrent.odometer import Odometer
@@ -92,7 +92,8 @@ def collect(
             text.rows(rows), agent.policy.look(views), moves.to(agent.device), state.rows(rows)
         )
         state.put(rows, fresh)
-        chances = agent.policy.answer(fresh.hidden).double().softmax(-1).cpu().numpy()
+        logits = check_logits(agent.policy.answer(fresh.hidden), agent)
+        chances = logits.double().softmax(-1).cpu().numpy()
         for row, i in enumerate(running):
             kept = {} if frames_kept else {"views": views[row].float().cpu().numpy()}
             walks[i].note(kept, clean, frames_kept)

@@ -19,7 +19,7 @@ from torch import Tensor, nn
 
 from mitigate.agents import observation as checked
 from mitigate.agents.adapters import insert_adapters, remove_adapters
-from mitigate.agents.agent import Output
+from mitigate.agents.agent import Output, check_logits
 from mitigate.agents.controller import Controller
 from mitigate.agents.encoders import SIZE, DepthEncoder, RGBEncoder
 from mitigate.agents.schema import RGB_ENCODERS, SENSES
@@ -264,7 +264,7 @@ class TopologicalAgent(nn.Module):
         )["logits"][0]
         self.decisions += 1
         self._stop_scores.append((float(logits.softmax(0)[0]), self.map.current))
-        best = int(logits.argmax())
+        best = int(check_logits(logits, self).argmax())
         if best == 0 or not decision.ghosts:
             return False
         if self.decisions >= MAX_DECISIONS:

@@ -14,6 +14,7 @@ import numpy as np
 import torch
 
 from mitigate.agents import observation as checked
+from mitigate.agents.agent import check_logits
 from mitigate.agents.controller import Controller
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
@@ -205,7 +206,8 @@ def _planned(
     batch = collate(decisions, own, list(offsets)).to(views.device)
     logits = planner(text, views, batch)["logits"]
     first = 1 + batch.nodes.shape[1]
-    probabilities = logits[:, first:].softmax(-1).double().cpu().numpy()
+    chances = check_logits(logits[:, first:], planner).softmax(-1)
+    probabilities = chances.double().cpu().numpy()
     counts = [len(traces[i].steps[-1].decision.ghosts) for i in own]
     return [_draw(p[:n], rngs[i]) for i, p, n in zip(own, probabilities, counts, strict=True)]
 

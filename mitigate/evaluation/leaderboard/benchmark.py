@@ -67,7 +67,7 @@ def benchmark(
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
             the corruptions. workers: processes; None: one a core if there is work. More than one
             read the script again, which keeps its call under ``if __name__ == "__main__":``.
-        options: of ``mitigate evaluate``, such as "agent=recurrent" or "env.views=1".
+        options: of ``mitigate evaluate``, such as "agent=recurrent" or "--config-dir=mine".
         world, listed: makes a world of your own, and its episodes, in place of those of
             ``options``; a world of another class than theirs needs both.
         training_data, link: for the entry. out: folder of the rows; None: one in

@@ -117,12 +117,17 @@ def main(argv: Sequence[str] | None = None) -> int:
         metavar="NAME=WEIGHTS",
         help="draw walks of this agent of the rows; the plain one first, then hardened ones",
     )
+    parser.add_argument(
+        "--config-dir", type=Path, help="where the configs are of agents and worlds of your own"
+    )
     parser.add_argument("--walks", type=int, default=12, help="how many episodes (default 12)")
     parser.add_argument("--seed", type=int, default=0, help="of the rows that are walked again")
     given = vars(parser.parse_intermixed_args(argv))
-    words = given.pop("rows")
+    words, configs = given.pop("rows"), given.pop("config_dir")
     paths = [word for word in words if "=" not in word or Path(word).exists()]
     options = [word for word in words if word not in paths]
+    if configs is not None and given["walk"]:
+        options = [f"--config-dir={configs}", *options]
     if not 1 <= given["walks"] <= MOST_WALKS:
         parser.error(f"--walks {given['walks']}: give 1 to {MOST_WALKS}.")
     return told("report", lambda: run(paths or [_shipped()], options=options, **given))

@@ -236,6 +236,15 @@ def test_the_command_writes_one_file_and_names_what_is_wrong(tmp_path, capsys, r
     assert "Did you mean base?" in capsys.readouterr().err
 
 
+def test_walks_may_be_of_an_agent_with_configs_of_ones_own(tmp_path, monkeypatch, rows):
+    write(tmp_path / "rows.jsonl", rows)
+    asked = []
+    monkeypatch.setattr(command, "_walks", lambda *given: asked.append(given[-1]) or [])
+    words = ["--walk", "base=x", "--config-dir", "mine", "env=own", "--out", f"{tmp_path}/p.html"]
+    assert command.main([str(tmp_path / "rows.jsonl"), *words]) == 0
+    assert asked == [["--config-dir=mine", "env=own"]]
+
+
 def test_a_page_replaces_no_rows_and_a_place_that_cannot_be_is_told(tmp_path, capsys, rows):
     file = tmp_path / "rows.jsonl"
     write(file, rows)

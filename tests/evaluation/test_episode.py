@@ -1,0 +1,128 @@
+"""What an agent answers is an action, or the episode, the step and the user's line are named."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from torch import nn
+
+from mitigate.agents.stepwise import StepwiseAgent
+from mitigate.core.errors import said
+from mitigate.core.observation import Observation
+from mitigate.core.workers import portable
+from mitigate.corruptions import CLEAN
+from mitigate.evaluation.episode import run_episode, run_side_by_side
+from mitigate.worlds.episodes import Episode, Instruction
+
+EPISODE = Episode("e7", "0", "room", (0, 0, 0), (0, 0, 0, 1), (), Instruction("Go."), ())
+
+
+class Cell:
+    """A dark cell, in which STOP is right."""
+
+    rule, sensors = "STOP", {}
+
+    def reset(self, episode):
+        self.done = False
+        return self.look()
+
+    def step(self, action):
+        self.done = action == 0
+        return self.look()
+
+    def look(self):
+        return Observation({}, lambda: {"rgb": np.zeros((4, 4, 3), np.uint8)}, ("rgb",))
+
+    def measures(self):
+        return {"success": 1, "spl": 1.0}
+
+    def expert(self):
+        return self
+
+    def action(self):
+        return 1
+
+
+class Answers:
+    """Gives ``answers``, one after the other; what is callable is asked."""
+
+    together = 1
+
+    def __init__(self, *answers):
+        self.answers = [*answers]
+
+    def reset(self, instruction):
+        pass
+
+    def begin(self, instruction):
+        return None
+
+    def act(self, observation):
+        answer = self.answers.pop(0)
+        return answer() if callable(answer) else answer
+
+    def act_all(self, observations, memories):
+        return [self.act(seen) for seen in observations]
+
+
+class Logits(StepwiseAgent):
+    def __init__(self, *logits):
+        super().__init__()
+        self.scale, self.logits = nn.Linear(1, 1), torch.tensor([logits])
+
+    def forward(self, frames, texts):
+        return self.logits, {}
+
+
+@pytest.mark.parametrize("answer", [0, np.int64(0), torch.tensor(0), np.array(0)])
+def test_a_whole_number_is_an_action(answer):
+    assert run_episode(Answers(1, answer), Cell(), EPISODE, CLEAN, 0)["success"] == 1
+
+
+@pytest.mark.parametrize("answer", [1.7, None, np.zeros(4), "0", torch.zeros(4)])
+def test_what_is_no_whole_number_is_refused_with_the_agent_the_episode_and_the_step(answer):
+    words = r"Episode e7, clean, step 2: act\(\) of Answers returned .*no action"
+    with pytest.raises(ValueError, match=words):
+        run_episode(Answers(1, answer), Cell(), EPISODE, CLEAN, 0)
+    with pytest.raises(ValueError, match=words):
+        list(run_side_by_side(Answers(1, answer), [Cell()], [(EPISODE, CLEAN, 0)]))
+
+
+NAN, INF = float("nan"), float("inf")
+
+
+@pytest.mark.parametrize("logits", [(NAN,) * 4, (0.0, NAN, 0.0, 0.0), (INF, 0, 0, 0), (-INF,) * 4])
+def test_logits_that_are_no_numbers_are_no_stop(logits):
+    with pytest.raises(ValueError, match="Episode e7, clean, step 1: Logits gave logits"):
+        run_episode(Logits(*logits), Cell(), EPISODE, CLEAN, 0)
+    walks = {"expert_share": 0.0, "rngs": [np.random.default_rng(0)]}
+    with pytest.raises(ValueError, match="Episode e7, step 1: Logits gave logits"):
+        Logits(*logits).collect([Cell()], [EPISODE], **walks)
+
+
+def test_what_may_not_be_chosen_is_not():
+    assert run_episode(Logits(0.0, -INF, -9.0, -INF), Cell(), EPISODE, CLEAN, 0)["success"] == 1
+
+
+def broken():
+    return int(np.ones(3) @ np.ones(4))
+
+
+def test_an_error_in_ones_own_code_names_its_line_and_the_episode():
+    own = rf"raised in {Path(__file__)}, line \d+, broken\(\)"
+    with pytest.raises(ValueError, match=rf"Episode e7, clean, step 2: matmul.* \({own}\)"):
+        run_episode(Answers(1, broken), Cell(), EPISODE, CLEAN, 0)
+    with pytest.raises(ValueError, match="matmul") as caught:
+        broken()
+    error, _ = portable(caught.value)  # as a worker process gives it back
+    assert said(pickle.loads(pickle.dumps(error))).endswith("broken())")
+
+
+def test_a_mistake_that_this_project_tells_is_told_as_it_is():
+    with pytest.raises(ValueError) as caught:
+        run_episode(Answers(None), Cell(), EPISODE, CLEAN, 0)
+    assert "raised in" not in said(caught.value)
