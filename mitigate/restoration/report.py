@@ -163,7 +163,7 @@ def sheet(
 ) -> np.ndarray | None:
     """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean, under
     these headings. None if no corruption is of a sensor that there is."""
-    rows = []
+    rows: list[np.ndarray] = []
     for corruption in met:
         sensor = next((s for s in corruption.modalities if s in restorer.nets and s in clean), None)
         if sensor is None:
