@@ -8,6 +8,7 @@ import pytest
 import torch
 
 from mitigate.core import conf
+from mitigate.core.files import ROOT
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate, evaluator
 from mitigate.safeguard import banks, report
@@ -26,6 +27,20 @@ def test_every_text_meets_every_family_and_rules_repair_some():
     assert all(r.injected for r in hurt if r.family == "black_box")
     loud = [r for r in report.repaired(hurt, report.choose("rules")) if r.family == "capitalize"]
     assert [r.repaired for r in loud] == TEXTS and all(r.heard != r.clean for r in loud)
+
+
+def test_the_page_has_what_the_rules_reach_now(tmp_path, capsys):
+    """docs/safeguard.md, the 66 hand-written texts: a change of the rules changes the page."""
+    report.main(["rules", "--texts", "tests/safeguard/handwritten.txt", "--out", str(tmp_path)])
+    found = _row(capsys.readouterr().out, "| rules |")
+    page = (ROOT / "docs/safeguard.md").read_text().partition("| 66 hand-written texts |")[2]
+    assert found == _row(page, "| rules |")[: len(found)]
+
+
+def _row(text, start):
+    """The cells of the first line of a table that begins so."""
+    line = next(line for line in text.splitlines() if line.startswith(start))
+    return [cell.strip() for cell in line.strip("|").split("|")]
 
 
 def test_the_command_writes_tables_and_repairs(tmp_path, capsys):
