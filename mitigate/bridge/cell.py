@@ -42,8 +42,9 @@ class Cell:
     settings: what its result depends on, by which a finished one is known again. files: of the
     command, as it was started with (``identity.py``). clean: the folder of the clean condition,
     whose episodes it is to have; None for that itself. recording: the folder that is asked for.
-    chosen: says which episodes were asked for. tied: whether the command ends when this process is
-    killed. loaded: whether a Python process of it loaded the hook.
+    chosen: says which episodes were asked for. count_closed: see ``results.read``. tied: whether
+    the command ends when this process is killed. loaded: whether a Python process of it loaded
+    the hook.
     """
 
     name: str
@@ -61,6 +62,7 @@ class Cell:
     clean: Path | None = None
     recording: Path | None = None
     chosen: Subset | None = None
+    count_closed: bool = False
     tied: bool = False
     loaded: bool = False
     listener: Listener | None = None
@@ -95,10 +97,12 @@ class Cell:
         """Why it is measured anew, though it was finished; empty if it need not be."""
         if self.held() is None:
             return ""
-        missing = self.missing()
-        if missing:
+        if missing := self.missing():
             return lacking(self, missing)
-        if self.recording is not None and not is_whole(self.recording, self.told().ends.values()):
+        told = self.told()
+        if told.lost:  # measured with another count_closed, or by an older version
+            return verdict.left_out(told)
+        if self.recording is not None and not is_whole(self.recording, told.ends.values()):
             return f"it was not recorded in {self.recording}, or not all of it"
         return ""
 
@@ -113,7 +117,9 @@ class Cell:
 
     def of_clean(self) -> set[str]:
         """The episodes that ended under the clean condition; empty for itself."""
-        return set() if self.clean is None else set(results.read(self.clean).ends)
+        return (
+            set() if self.clean is None else set(results.read(self.clean, self.count_closed).ends)
+        )
 
     def beyond(self) -> list[str]:
         """Episodes that ended under this condition and not under clean, whose run lost them."""
@@ -279,7 +285,7 @@ class Cell:
 
     def told(self) -> Told:
         """What its processes told so far."""
-        return results.read(self.folder)
+        return results.read(self.folder, self.count_closed)
 
     def rows(self) -> list[Row]:
         """The result rows."""

@@ -68,6 +68,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
                 clean=made[0].folder if made else None,
                 recording=recording,
                 chosen=chosen,
+                count_closed=cfg.count_closed,
             )
         )
     return made

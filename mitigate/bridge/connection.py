@@ -116,11 +116,12 @@ class Connection:
         except (OSError, ValueError, RecursionError):
             return None
 
-    def _leave(self) -> None:
-        """Note an episode that was left in the middle: Habitat's was only reset after one call,
-        and of a loop each call is a step."""
+    def _leave(self, fault: str | None = None) -> None:
+        """Note an episode that was left in the middle, for a ``fault`` if one is known: Habitat's
+        was only reset after one call, and of a loop each call is a step."""
         if self.open and self.calls > (0 if self.loop else 1):
-            note(self.folder, event="dropped", scene=self.scene, episode=self.episode)
+            said = {"scene": self.scene, "episode": self.episode, "fault": fault}
+            note(self.folder, event="dropped", **said)
         if self.open:
             for observer in self.condition.observers:
                 observer.leave()
@@ -219,7 +220,7 @@ class Connection:
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """How the episode went; one that an exception broke off counts as left in the middle."""
         if message.get("how") == BROKEN:
-            self._leave()
+            self._leave(_line(message.get("fault")))
             return {}
         said = ended(message, self.episode)
         failed = self.loop and not said.get("metrics", {}).get("success")  # before its first look
@@ -277,6 +278,13 @@ class Connection:
 
     def on_stopped(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """A process of the command ended itself, for this reason."""
-        problem = "".join(c if c.isprintable() else " " for c in str(message["problem"]))
-        note(self.folder, event="stopped", problem=" ".join(problem.split())[:LONGEST])
+        note(self.folder, event="stopped", problem=_line(message["problem"]))
         return {}
+
+
+def _line(text: object) -> str | None:
+    """What a process says, on one line, printable, and not too long; None if it says nothing."""
+    if text is None:
+        return None
+    said = "".join(c if c.isprintable() else " " for c in str(text))
+    return " ".join(said.split())[:LONGEST]

@@ -14,7 +14,7 @@ import numpy as np
 
 from mitigate.bridge.episodes import MEASURES, name_of
 from mitigate.bridge.events import EVENTS
-from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER, RESET
+from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 from mitigate.evaluation.metrics import RULES, Rule, path_length, spl
@@ -23,6 +23,11 @@ from mitigate.evaluation.rows import Row
 OWN = "own: the agent's Success measure"
 NEAR = 1.01  # metres: depth that reads no more may be normalised (ours)
 NORMALISED = "is it normalised? Say so: normalize_depth, min_depth, max_depth"
+CUT_OFF = (
+    "its Env was closed before the episode was over, and other Envs walked beside it, as where an "
+    "evaluator cuts them off: choose by episodes= and let it walk all, or, if the program ends "
+    "its episodes so, count_closed=true"
+)
 COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}  # need no STOP: some never say it
 
 
@@ -31,7 +36,8 @@ class Told:
     """What was told under one condition, so far.
 
     ends: of each episode, by its name, the first that was over, or else the first; again: episodes
-    that ended once more; dropped: left in the middle. cameras: of all calls, as first described;
+    that ended once more; dropped: left in the middle, and why, where that is known. beside: whether
+    an episode ended while another was on. cameras: of all calls, as first described;
     first: what the first episode says; languages: of the episodes' words, by name. refused: what
     the server could not do, and why processes stopped themselves, in words. adapted: encoders that
     got adapters. connected: environments that are there now.
@@ -41,7 +47,8 @@ class Told:
     cameras: list[dict[str, Any]] = field(default_factory=list)
     ends: dict[str, dict[str, Any]] = field(default_factory=dict)
     again: int = 0
-    dropped: list[str] = field(default_factory=list)
+    dropped: dict[str, str] = field(default_factory=dict)
+    beside: bool = False
     refused: list[str] = field(default_factory=list)
     first: dict[str, Any] = field(default_factory=dict)
     languages: dict[str, str | None] = field(default_factory=dict)
@@ -51,7 +58,7 @@ class Told:
     @property
     def lost(self) -> list[str]:
         """Episodes that were left in the middle, and did not end later."""
-        return sorted(set(self.dropped) - self.ends.keys())
+        return sorted(self.dropped.keys() - self.ends.keys())
 
     def end(self, name: str, event: dict[str, Any]) -> None:
         """Take how an episode ended: what was over is in place of a try that was given up."""
@@ -67,19 +74,23 @@ class Told:
             )
 
     def without_closed(self) -> Told:
-        """Drop episodes whose Env was closed in the middle; where a program's own Envs are never
-        over, or it ends episodes itself by a reset, a close ends the last one."""
-        how = {_how(end) for end in self.ends.values()}
-        if OVER in how and RESET not in how:
+        """Drop episodes whose Env was closed before they were over, if Envs walked side by side: an
+        evaluator cuts them off so. An Env that walks alone ends its episode by a close."""
+        if self.beside:
             closed = [name for name, end in self.ends.items() if _how(end) == CLOSE]
-            self.dropped += closed
+            self.dropped.update(dict.fromkeys(closed, CUT_OFF))
             self.ends = {n: end for n, end in self.ends.items() if n not in closed}
         return self
 
 
-def read(folder: Path) -> Told:
-    """Return what the events in ``folder`` tell; a last line that is not whole is left out."""
-    told = Told()
+def read(folder: Path, count_closed: bool = False) -> Told:
+    """Return what the events in ``folder`` tell; a last line that is not whole is left out.
+
+    count_closed: episodes whose Env was closed before they were over count as they stood, though
+    Envs walked side by side.
+    """
+    told, ended = Told(), 0
+    began: dict[int, int] = {}  # by connection: how many had ended as its episode began
     for event in _events(folder / EVENTS):
         kind, name = event.get("event"), name_of(event.get("scene", ""), event.get("episode", ""))
         if kind == "hello":
@@ -93,15 +104,18 @@ def read(folder: Path) -> Told:
         elif kind == "episode":
             told.first = told.first or event
             told.languages[name] = event.get("language")
+            began[event.get("pid", 0)] = ended
         elif kind == "end":
             told.end(name, event)
+            told.beside = told.beside or began.get(event.get("pid", 0), ended) < ended
+            ended += 1
         elif kind == "dropped":
-            told.dropped.append(name)
+            told.dropped[name] = str(event.get("fault") or "")
         elif kind == "adapted":
             told.adapted.append(event["module"])
         elif kind in ("refused", "stopped"):
             told.refused.append(event["problem"])
-    return told.without_closed()
+    return told if count_closed else told.without_closed()
 
 
 def _how(end: dict[str, Any]) -> str:

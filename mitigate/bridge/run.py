@@ -62,6 +62,7 @@ class RunConfig:
     record: str | None = None
     adapters: str | None = None
     watch: list[str] | None = None
+    count_closed: bool = False
     check: bool = False
     suite: Any = MISSING
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.hook.mitigate_hook import RESET
-from mitigate.bridge.results import NORMALISED, Told, near, unjudged, without_path
+from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
+from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, unjudged, without_path
 from mitigate.bridge.subset import SETTLED
 from mitigate.core.names import counted
 
@@ -42,9 +42,10 @@ def summary(cell: Cell) -> str:
     for rule, count in list(unknown.items())[: 1 if alike else None]:
         by = "" if alike else f" by {rule}"
         said.append(f"{count} without a path{by}: SPL is success")
-    left = sum(end.get("how") == RESET for end in told.ends.values())
-    if 0 < left < len(told.ends):
-        said.append(f"{left} reset before the end (counted as it stood)")
+    for how, name in ((RESET, "reset"), (CLOSE, "closed")):
+        left = sum(end.get("how") == how for end in told.ends.values())
+        if 0 < left < len(told.ends):
+            said.append(f"{left} {name} before the end (counted as it stood)")
     said += [f"{told.again} ended twice (the first counts)"] if told.again else []
     silent = len(told.ends) - len(own)
     said += [f"{silent} without a result"] if silent and found else []
@@ -133,10 +134,8 @@ def _unfinished(cell: Cell, told: Told) -> str:
     """What if episodes are not there, or say nothing."""
     if told.lost:
         return (
-            f"the command ended, but {counted(len(told.lost), 'episode')} "
-            f"{'was' if len(told.lost) == 1 else 'were'} left in the middle, such as "
-            f"{told.lost[0]}: a process of it died, its loop gave up, or its Env was closed before "
-            f"the episode was over. Run again; the condition is measured anew. {CRASH}{cell.said()}"
+            f"the command ended, but {left_out(told)}. Run again; the condition is measured anew. "
+            f"{CRASH}{cell.said()}"
         )
     if told.connected > 0:
         return (
@@ -169,6 +168,20 @@ def _unfinished(cell: Cell, told: Told) -> str:
             "Add the Success measure to the task, or call episode.finish(success=...)."
         )
     return ""
+
+
+def left_out(told: Told) -> str:
+    """Return "2 episodes were left in the middle, such as s0/2: a process of it died ..."; one
+    whose reason is known comes first."""
+    name = next((name for name in told.lost if told.dropped[name]), told.lost[0])
+    why = told.dropped[name] or "a process of it died, or its loop gave up"
+    if told.dropped[name] not in ("", CUT_OFF):
+        why = (
+            f"it was reset or closed as an exception went by, {why}; if the program ends its "
+            "episodes by that, let it reset or close behind the except block"
+        )
+    verb = "was" if len(told.lost) == 1 else "were"
+    return f"{counted(len(told.lost), 'episode')} {verb} left in the middle, such as {name}: {why}"
 
 
 def lacking(cell: Cell, missing: list[str]) -> str:

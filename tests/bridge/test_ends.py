@@ -52,6 +52,93 @@ def test_an_env_that_is_closed_in_the_middle_ends_no_episode(tmp_path):
     assert list(found.ends) == ["s0/0"] and found.lost == ["s0/2"]
 
 
+def test_a_close_in_the_middle_counts_though_envs_are_side_by_side_where_that_is_asked(tmp_path):
+    told(tmp_path, STOPS)
+    found = read(tmp_path, count_closed=True)
+    assert sorted(found.ends) == ["s0/0", "s0/2"] and not found.lost
+
+
+def test_a_reset_does_not_have_the_envs_count_that_an_evaluator_cuts_off(tmp_path):
+    found, _ = told(tmp_path, STOPS.replace("walk(a, [1, 0])", "walk(a, [1]); a.reset()"))
+    assert list(found.ends) == ["s0/0"] and found.lost == ["s0/2"]
+
+
+LIMITS = ["[1, 0], [1, 1, 1], [1, 0]", "[1, 0], [1, 0], [1, 1]", "[1, 1], [1, 0], [1, 1]"]
+
+
+@pytest.mark.parametrize("acts", LIMITS)
+@pytest.mark.parametrize("each", [True, False])
+def test_an_env_that_walks_alone_ends_its_episode_by_a_close(tmp_path, acts, each):
+    """A program has a limit of steps of its own; whether others were over changes nothing."""
+    new = "env = over(one); env.reset()" if each else "env.reset()"
+    code = (
+        "env = over(*episodes[:3])\n"
+        f"for one, some in zip(episodes, ({acts})):\n    {new}; walk(env, some)\n"
+        f"    if {each}: env.close()\nenv.close()"
+    )
+    found, _ = told(tmp_path, code)
+    assert len(found.ends) == 3 and not found.lost
+
+
+ORDERLY = {
+    "the end of an iterator": """
+for acts in ([1, 3], [1, 3]):
+    some = iter(acts)
+    try:
+        while True: env.step(next(some))
+    except StopIteration:
+        if acts and env.current_episode is episodes[1]: env.close()
+        else: env.reset()
+""",
+    "a generator that is left": """
+def frames():
+    try:
+        for _ in range(2):
+            for _ in range(2): yield env.step(1)
+            if env.current_episode is episodes[0]: env.reset()
+    finally: env.close()
+for number, _ in enumerate(frames()):
+    if number == 3: break
+""",
+    "an exit without a fault": """
+import sys
+try:
+    walk(env, [1, 3]); env.reset(); walk(env, [1, 3])
+    sys.exit(0)
+finally: env.close()
+""",
+}
+
+
+@pytest.mark.parametrize("how", ORDERLY)
+def test_an_exception_that_only_says_that_a_loop_is_at_its_end_is_no_fault(tmp_path, how):
+    found, _ = told(tmp_path, f"env = over(*episodes[:2]); env.reset()\n{ORDERLY[how]}")
+    assert sorted(found.ends) == ["s0/0", "s1/1"] and not found.lost
+
+
+def test_another_exception_is_named_with_its_file_and_line(run, tmp_path):
+    file = tmp_path / "nav.py"
+    code = "class Done(Exception): pass\nenv = over(episodes[0]); env.reset()\nwalk(env, [1, 1])\n"
+    file.write_text(f"{BEGIN}{code}try: raise Done('far')\nexcept Done: env.close()\n")
+    ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
+    line = file.read_text().count("\n") - 1
+    assert f"s0/0: it was reset or closed as an exception went by, Done: far ({file}:{line})" in (
+        ran.stderr
+    )
+
+
+def test_a_run_says_what_was_closed_and_how_to_count_it(run, tmp_path):
+    file, out = tmp_path / "nav.py", tmp_path / "o"
+    file.write_text(BEGIN + STOPS)
+    lost = run(out, "conditions=[clean]", f"{sys.executable} {file}")
+    assert "such as s0/2: its Env was closed before" in lost.stderr
+    assert "count_closed=true" in lost.stderr
+    counts = run(out, "conditions=[clean] count_closed=true", f"{sys.executable} {file}")
+    assert "1 closed before the end (counted as it stood)" in counts.stdout, counts.stderr
+    again = run(out, "conditions=[clean]", f"{sys.executable} {file}")
+    assert "measured anew: 1 episode was left in the middle" in again.stdout and again.stderr
+
+
 def test_a_close_ends_the_last_episode_of_a_program_whose_envs_are_never_over(tmp_path):
     code = "env = over(*episodes[:2])\nfor _ in range(2): env.reset(); walk(env, [1, 3])\n"
     found, _ = told(tmp_path, f"{code}env.close()")

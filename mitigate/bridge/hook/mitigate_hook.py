@@ -45,6 +45,7 @@ FAREWELL = 3.0  # seconds at most in which a process that stops tells the server
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
 # how an episode ends: it was over; its Env was reset, or closed, before; behind an exception
 OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
+ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)  # how loops end, no fault of a program
 _thread = threading.local()  # .walk: of connect
 # by id, corrupted frames that the program still holds
 _given: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValueDictionary()
@@ -201,6 +202,21 @@ class Channel:
 def _named(error):
     """Return an exception with its kind."""
     return f"{type(error).__name__}: {error}"
+
+
+def _is_orderly(error):
+    """Whether an exception only says that a loop, or the program without a fault, is at its end."""
+    ended = isinstance(error, SystemExit) and error.code in (None, 0)
+    return ended or isinstance(error, ORDERLY)
+
+
+def _placed(error):
+    """Return an exception with its kind, and the file and line that raised it."""
+    at = error.__traceback__
+    while at is not None and at.tb_next is not None:
+        at = at.tb_next
+    where = "" if at is None else f" ({at.tb_frame.f_code.co_filename}:{at.tb_lineno})"
+    return f"{_named(error)[:LONGEST]}{where}"
 
 
 def _load_numpy():
@@ -367,13 +383,23 @@ class Walk:
         if not self.begun or self.pid != os.getpid():
             return
         self.begun = False
-        if how != OVER and id(sys.exc_info()[1]) not in (id(None), self.handled):
+        fault = None if how == OVER else self._fault()
+        if fault is not None:
             how = BROKEN
         if self.steps or self.sim is None:
             said = {"metrics": _numbers(metrics), "steps": self.steps, "calls": self.calls}
+            said.update({} if fault is None else {"fault": _placed(fault)})
             said.update(how=how, stopped=stopped, farthest=self.farthest)
             said.update(path=self.path, actions=self.actions, **self._distances())
             self.channel.ask("end", **said)
+
+    def _fault(self):
+        """Return the exception that goes by, or is handled, since the episode began, and is no
+        orderly end of a loop or of the program; None if there is none."""
+        error = sys.exc_info()[1]
+        while error is not None and _is_orderly(error) and id(error) != self.handled:
+            error = error.__context__
+        return None if id(error) == self.handled else error
 
     def _distances(self):
         """Geodesic metres to the goals from the start and from here, and whether it said STOP."""
