@@ -158,7 +158,9 @@ class Cell:
             "{seed}": str(self.label["seed"]),
             "{out}": str(self.folder.resolve()),
         }
-        filled = [_filled(word, words) for word in self.command]
+        filled = list(self.command)
+        for name, value in words.items():
+            filled = [word.replace(name, value) for word in filled]
         with open(self.log, "w", encoding="utf-8") as log:
             try:
                 self.process = subprocess.Popen(
@@ -289,14 +291,9 @@ class Cell:
 
     def rows(self) -> list[Row]:
         """The result rows."""
-        return results.rows(self.told(), self.corruption, self.label, self.rule)
+        clean = None if self.clean is None else results.read(self.clean, self.count_closed)
+        return results.rows(self.told(), self.corruption, self.label, self.rule, clean)
 
     def summary(self) -> str:
         """How far it is: "41 episodes, success 58.5"."""
         return verdict.summary(self)
-
-
-def _filled(word: str, values: dict[str, str]) -> str:
-    for name, value in values.items():
-        word = word.replace(name, value)
-    return word

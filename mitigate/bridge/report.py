@@ -12,6 +12,7 @@ from mitigate.bridge.cell import DONE, Cell
 from mitigate.bridge.identity import met
 from mitigate.bridge.randomness import randomness
 from mitigate.bridge.results import OWN
+from mitigate.bridge.verdict import lacks
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import report, rows
 from mitigate.evaluation.metrics import RULES
@@ -51,6 +52,7 @@ def earlier(made: Sequence[Cell], out: Path) -> list[Cell]:
         cell, reason = _cell(made[0], file), "by an older version, or of a corruption that is gone"
         if cell is not None:
             reason = ", ".join(f"another {name}" for name in cell.others()) or cell.why_anew()
+            reason = reason or lacks(cell)
         if cell is None or reason:
             name = file.parent.name
             print(f"{name}: measured before, but not in the table: {reason}", flush=True)

@@ -132,13 +132,20 @@ def _events(file: Path) -> Iterator[dict[str, Any]]:
             return
 
 
-def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | None) -> list[Row]:
+def rows(
+    told: Told,
+    corruption: Corruption,
+    label: dict[str, Any],
+    rule: str | None,
+    clean: Told | None = None,
+) -> list[Row]:
     """Return the rows of one condition, by the agent's own rule of success and by a common one.
 
     label: what all rows say ("agent", "name", "split", "seed"). rule: of ``RULES``, in place of the
-    agent's Success measure. An agent without either has the common one alone.
+    agent's Success measure. An agent without either has the common one alone. clean: what was told
+    of the clean condition, if that is another.
     """
-    found = []
+    found, rules = [], _rules(told, rule, clean)
     for name, end in told.ends.items():
         row = {
             "agent": label["agent"],
@@ -151,7 +158,7 @@ def rows(told: Told, corruption: Corruption, label: dict[str, Any], rule: str | 
             "suite": SUITE_VERSION,
             **version(corruption.name),
         }
-        for own in _by_rules(end, rule, _common(told)):
+        for own in _by_rules(end, rule, rules):
             found.append(row | own | _measures(end))
     return found
 
@@ -161,7 +168,18 @@ def _common(told: Told) -> Rule:
     return COMMON["words" if routes else "objects"]
 
 
-def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[Row]:
+def _rules(told: Told, rule: str | None, clean: Told | None = None) -> list[Rule]:
+    """The rule that is asked for, and the common one. This is left out where it cannot judge an
+    episode that the agent's own rule judges, and where nobody tells a distance, here or in clean:
+    it would be of some episodes alone."""
+    common, ends = _common(told), [*told.ends.values()]
+    left = any(_unknown(end, common) for end in ends if "success" in end.get("metrics", {}))
+    tell = [*ends, *(clean.ends.values() if clean is not None else ())]
+    far = all(_metres(end) is None for end in tell)
+    return ([RULES[rule]] if rule else []) + ([] if left or far else [common])
+
+
+def _by_rules(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iterable[Row]:
     """Success and SPL of one episode by each rule that can be applied, each once."""
     metrics, judged = end.get("metrics", {}), {}
     if rule is None and "success" in metrics:
@@ -170,9 +188,10 @@ def _by_rules(end: dict[str, Any], rule: str | None, common: Rule) -> Iterable[R
             "success": float(won),
             "spl": metrics["spl"] if "spl" in metrics else _spl(end, won),
         }
-    for known in ([RULES[rule]] if rule else []) + [common]:
+    for known in rules:
         if not _unknown(end, known):
-            won = known.met(_metres(end), bool(end.get("stopped")))
+            metres = _metres(end)
+            won = metres is not None and known.met(metres, bool(end.get("stopped")))
             judged[str(known)] = {"success": float(won), "spl": _spl(end, won)}
     return [{"rule": name, **values} for name, values in judged.items()]
 
@@ -183,16 +202,20 @@ def _metres(end: dict[str, Any]) -> Any:
 
 
 def _unknown(end: dict[str, Any], rule: Rule) -> str:
-    """What an episode does not tell that a rule asks for: an argument of ``finish``."""
-    if _metres(end) is None:
-        return "distance_to_goal"
-    return "stopped" if rule.stop and end.get("stopped") is None else ""
+    """What an episode does not tell and a rule needs to judge it: an argument of ``finish``. A
+    failure that was told without a distance is one by every rule, and so is one too far away,
+    with STOP or without."""
+    metres = _metres(end)
+    if metres is None:
+        return "" if end.get("metrics", {}).get("success", 1) <= 0 else "distance_to_goal"
+    return "stopped" if end.get("stopped") is None and rule.stop and rule.met(metres, True) else ""
 
 
-def unjudged(told: Told, rule: str) -> str:
-    """What a rule asks for and no episode tells; empty if it can judge some, or none ended."""
-    unknown = [_unknown(end, RULES[rule]) for end in told.ends.values()]
-    return min(unknown, default="", key=len)  # "" before "stopped" before the distance
+def unjudged(told: Told, rule: str) -> dict[str, int]:
+    """What a rule needs to judge episodes and they do not tell, and how many; empty if it can judge
+    all."""
+    found = Counter(_unknown(end, RULES[rule]) for end in told.ends.values())
+    return {what: count for what, count in found.most_common() if what}
 
 
 def _spl(end: dict[str, Any], won: bool) -> float:
@@ -215,9 +238,10 @@ def _tells_spl(end: dict[str, Any]) -> bool:
 def without_path(told: Told, rule: str | None) -> dict[str, int]:
     """By rule: how many successes tell neither SPL nor the start and path to compute it by."""
     found: Counter[str] = Counter()
+    rules = _rules(told, rule)
     for end in told.ends.values():
         if not _tells_spl(end) and (_start(end) is None or _length(end) is None):
-            judged = _by_rules(end, rule, _common(told))
+            judged = _by_rules(end, rule, rules)
             found.update(str(row["rule"]) for row in judged if row["success"])
     return dict(found)
 

@@ -104,10 +104,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     problems = _run_all(cfg, command, out, name, [clean])
     if problems:
         raise ValueError("\n".join(problems))
-    if lacking := verdict.lacks(clean):
-        raise ValueError(
-            f"{clean.name}: {lacking} It was measured before; out=... names another folder."
-        )
+    _check_rule([clean])
     strange = verdict.strange(clean)
     if strange:
         print(strange, flush=True)  # before hours of the others, and at the end
@@ -115,6 +112,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     if unheard:
         problems = [f"{', '.join(unheard)}: {NO_TOKENIZER}"]
         print(*problems, flush=True)  # before hours of the others
+    _check_rule(fitting)
     nothing = before and all(cell.is_done() for cell in fitting)
     if nothing:
         print(
@@ -132,6 +130,15 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     if problems:
         raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
     return out
+
+
+def _check_rule(made: Sequence[Cell]) -> None:
+    """Raise ValueError for a condition that was measured before and that ``rule=`` cannot judge."""
+    for cell in made:
+        if cell.is_done() and (lacking := verdict.lacks(cell)):
+            raise ValueError(
+                f"{cell.name}: {lacking} It was measured before; out=... names another folder."
+            )
 
 
 def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:

@@ -9,6 +9,7 @@ from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, unjudged, without_path
 from mitigate.bridge.subset import SETTLED
 from mitigate.core.names import counted
+from mitigate.evaluation.metrics import RULES
 
 if TYPE_CHECKING:
     from mitigate.bridge.cell import Cell
@@ -32,7 +33,8 @@ def outcome(cell: Cell, problem: str, alone: bool) -> str:
 def summary(cell: Cell) -> str:
     """How far it is: "41 episodes, success 58.5 (own: ...), 2 without a path ..."."""
     told, found = cell.told(), cell.rows()
-    first = found[0]["rule"] if found else ""
+    asks = "" if cell.rule is None else str(RULES[cell.rule])
+    first = asks or (found[0]["rule"] if found else "")
     own = [row["success"] for row in found if row["rule"] == first]
     said = [counted(len(told.ends), "episode") + asked(cell, told)]
     said += [f"success {100 * sum(own) / len(own):.1f} ({first})"] if own else []
@@ -64,15 +66,19 @@ def asked(cell: Cell, told: Told) -> str:
 
 
 def lacks(cell: Cell) -> str:
-    """What ``rule=`` asks for and no episode of a condition told; empty if nothing."""
-    unknown = "" if cell.rule is None else unjudged(cell.told(), cell.rule)
-    if not unknown:
+    """What ``rule=`` needs to judge episodes of a condition and they do not tell; empty if it can
+    judge all: of some alone, success would be another."""
+    told = cell.told()
+    missing = {} if cell.rule is None else unjudged(told, cell.rule)
+    if not missing:
         return ""
+    unknown, count = next(iter(missing.items()))
+    who = "no episode told"
+    if count < len(told.ends):
+        who = f"{count} of {counted(len(told.ends), 'episode')} did not tell"
     what = "whether the agent said STOP" if unknown == "stopped" else "how far the goal is"
     own = ", or leave rule= out to count the told success" if _tells_success(cell) else ""
-    return (
-        f"rule={cell.rule} needs to know {what}, which no episode told: finish({unknown}=...){own}."
-    )
+    return f"rule={cell.rule} needs to know {what}, which {who}: finish({unknown}=...){own}."
 
 
 def _tells_success(cell: Cell) -> bool:

@@ -1,10 +1,11 @@
 """Which end of an episode counts, what its words are meanwhile, and by which rule it is judged."""
 
+import json
 import sys
 
 import pytest
 
-from mitigate.bridge.results import OWN, near, read, rows, unjudged, without_path
+from mitigate.bridge.results import COMMON, OWN, near, read, rows, unjudged, without_path
 from mitigate.bridge.server import Listener
 from mitigate.corruptions import CLEAN
 from mitigate.evaluation.metrics import RULES
@@ -242,8 +243,51 @@ def test_a_rule_by_stop_judges_whom_it_is_told_of(tmp_path, said, wanted):
     found, told, printed = judged(tmp_path, finish, "objectnav")
     assert not printed and "stopped" not in told.ends["a"]["metrics"]
     assert found.get(str(RULES["objectnav"]), (None,))[0] == wanted
-    assert unjudged(told, "objectnav") == ("" if said else "stopped")
-    assert unjudged(told, "etpnav") == ""
+    assert unjudged(told, "objectnav") == ({} if said else {"stopped": 2})
+    assert unjudged(told, "etpnav") == {}
+
+
+@pytest.mark.parametrize("far", [", distance_to_goal=9.0", ""])
+def test_a_failure_is_one_by_every_rule_though_it_tells_no_stop(run, tmp_path, far):
+    file, out = tmp_path / "nav.py", tmp_path / "o"
+    won = "episode.finish(success=True, stopped=True, distance_to_goal=0.05, spl=0.9)"
+    lost = f"episode.finish(success=False{far})"
+    file.write_text(LOOP % f"{won} if name == 'a' or 'clean' in __import__('sys').argv else {lost}")
+    ran = run(out, "conditions=[spatter] rule=objectnav", f"{sys.executable} {file} {{condition}}")
+    assert f"success 50.0 ({RULES['objectnav']})" in ran.stdout, ran.stderr
+    made = [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
+    for rule in (RULES["objectnav"], COMMON["words"]):
+        found = [
+            r["success"] for r in made if (r["rule"], r["corruption"]) == (str(rule), "spatter")
+        ]
+        assert sorted(found) == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("first", ["rule=objectnav", ""])
+def test_a_rule_that_judges_some_episodes_of_a_condition_alone_is_refused(run, tmp_path, first):
+    file = tmp_path / "nav.py"
+    known = "stopped=True if name == 'a' or 'clean' in __import__('sys').argv else None"
+    file.write_text(LOOP % f"episode.finish(success=True, distance_to_goal=0.05, {known})")
+    for options in (first, "rule=objectnav"):  # not measured, and measured without the rule
+        options = f"conditions=[spatter] {options}"
+        ran = run(tmp_path / "o", options, f"{sys.executable} {file} {{condition}}")
+    assert "spatter-s0.6: rule=objectnav needs to know whether the agent said STOP" in ran.stderr
+    assert "1 of 2 episodes did not tell: finish(stopped=...)" in ran.stderr
+
+
+def test_the_common_rule_is_left_out_where_it_would_judge_some_episodes_alone(tmp_path):
+    known = "distance_to_goal=0.05 if name == 'a' else None"
+    found, _, _ = judged(tmp_path, f"episode.finish(success=True, {known})", None)
+    assert list(found) == [OWN]
+
+
+def test_failures_without_a_distance_are_of_the_common_rule_where_clean_tells_one(tmp_path):
+    _, clean, _ = judged(tmp_path / "c", "episode.finish(success=True, distance_to_goal=1)", None)
+    _, told, _ = judged(tmp_path / "t", "episode.finish(success=False)", None)
+    common = str(COMMON["words"])
+    assert common not in {row["rule"] for row in rows(told, CLEAN, LABEL, None)}
+    found = rows(told, CLEAN, LABEL, None, clean)
+    assert [row["success"] for row in found if row["rule"] == common] == [0.0, 0.0]
 
 
 def test_stop_is_yes_or_no(tmp_path):
