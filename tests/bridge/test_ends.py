@@ -207,6 +207,43 @@ def test_words_that_two_envs_share_are_corrupted_once_and_put_back_by_the_last(t
     assert second == same == still != own[1] == "Walk to the door 1."
 
 
+def test_words_that_the_program_changes_in_place_are_corrupted_once_and_put_back(tmp_path):
+    code = """
+env, other = over(episodes[0], episodes[1], episodes[0]), over(episodes[0])
+for number in range(3):
+    print(env.reset()["instruction"]["text"], end="|")
+    words = env.current_episode.instruction
+    words.instruction_text = words.instruction_text.lower()
+    if number == 2: print(other.reset()["instruction"]["text"], end="|")
+    walk(env, [1, 0])
+other.close()
+env.close()
+print(*(one.instruction.instruction_text for one in episodes[:2]), sep="|")
+"""
+    _, printed = told(tmp_path, code, condition("friendly", 1.0))
+    first, second, again, beside, *own = printed.strip().split("|")
+    assert own == ["Walk to the door 0.", "Walk to the door 1."]
+    assert first == again == beside != own[0] and second != own[1]
+
+
+@pytest.mark.parametrize("copied", ["copy.deepcopy(one)", "pickle.loads(pickle.dumps(one))"])
+def test_copies_of_words_that_are_on_are_corrupted_once_and_put_back(tmp_path, copied):
+    code = f"""
+import copy, pickle
+a, one = over(episodes[0]), episodes[0]
+print(a.reset()["instruction"]["text"], end="|")
+one = {copied}
+a.close()
+b = over(one)
+print(b.reset()["instruction"]["text"], end="|")
+b.close()
+print(one.instruction.instruction_text, vars(one.instruction))
+"""
+    _, printed = told(tmp_path, code, condition("friendly", 1.0))
+    first, same, own = printed.strip().split("|")
+    assert first == same and own.startswith("Walk to the door 0. {") and "_mitigate" not in own
+
+
 @pytest.mark.parametrize("how", ["later", ["over"]])
 def test_an_end_of_another_kind_is_refused(how):
     from mitigate.bridge.episodes import ended

@@ -579,7 +579,7 @@ def _task_reset(original, task, episode, *args, **kwargs):
     }
     answer = walk.begin(episode.scene_id, episode.episode_id, **said)
     if words is not None and answer.get("text") is not None:
-        _said[id(words)] = (words, answer["text"], text, tokens)
+        words._mitigate_own = (answer["text"], text, tokens)
         walk.words = words
         _say(words, answer["text"], answer["tokens"])
     observations = original(task, episode, *args, **kwargs)
@@ -588,16 +588,19 @@ def _task_reset(original, task, episode, *args, **kwargs):
     return observations
 
 
-_said = {}  # id of an episode's words: (they, the text that is heard, their own text and tokens)
-
-
 def _own(words):
     """Return text and tokens of an episode's words as the data set has them, though a walk may have
-    put others in their place: those are not corrupted again."""
+    put others in their place, and the program changed these: they are not corrupted again. Copies
+    and pickles of words that are on know their own, too, by the text that is heard."""
     text = getattr(words, "instruction_text", None)
-    _, heard, *own = _said.get(id(words), (None, None, None, None))
-    known = heard is not None and heard == text
+    heard, *own = getattr(words, "_mitigate_own", (None, None, None))
+    known = heard is not None and (heard == text or _is_on(words))
     return own if known else (text, getattr(words, "instruction_tokens", None))
+
+
+def _is_on(words):
+    """Whether a walk is in the episode with these words."""
+    return any(walk.words is words for _, walk in list(_walks.values()))
 
 
 def _say(words, text, tokens):
@@ -607,13 +610,13 @@ def _say(words, text, tokens):
 
 
 def _put_back(walk):
-    """Let the words of a walk's episode be as they were, unless another walk is in it."""
+    """Let the words of a walk's episode be as they were, whatever the program made of them, unless
+    another walk is in it."""
     words, walk.words = walk.words, None
-    if words is None or any(other.words is words for _, other in list(_walks.values())):
-        return
-    own = _own(words)
-    _said.pop(id(words), None)
-    _say(words, *own)
+    own = getattr(words, "_mitigate_own", None)
+    if own is not None and not _is_on(words):
+        del words._mitigate_own
+        _say(words, *own[1:])
 
 
 def _plain(tokens):
