@@ -143,8 +143,9 @@ class Cell:
                 f"Another run is at work in {self.folder}: wait for it, or name another folder "
                 "(out=...)."
             ) from error
+        kind = "finished" if (self.folder / DONE).is_file() else "unfinished"
         (self.folder / DONE).unlink(missing_ok=True)
-        put_aside(self.folder)
+        put_aside(self.folder, kind)
         chosen = self.chosen if self.clean is None else None
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
             chosen.forget()  # of a run that came to nothing

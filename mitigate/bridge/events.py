@@ -21,12 +21,12 @@ def note(folder: Path, **event: Any) -> None:
         file.write(line)
 
 
-def put_aside(folder: Path) -> None:
+def put_aside(folder: Path, kind: str) -> None:
     """Empty the folder of a condition but for its lock: what an earlier attempt left there, the
-    program's own results too, is put into ``<folder>.unfinished``."""
+    program's own results too, is put into ``<folder>.<kind>``, in place of what is there."""
     left = [path for path in folder.iterdir() if path.name != LOCK]
     if left:
-        aside = folder.with_name(f"{folder.name}.unfinished")
+        aside = folder.with_name(f"{folder.name}.{kind}")
         shutil.rmtree(aside, ignore_errors=True)
         aside.mkdir()
         for path in left:

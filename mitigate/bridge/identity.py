@@ -7,6 +7,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterator, Sequence
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -43,9 +44,19 @@ def watched(cfg: DictConfig) -> dict[str, str | None] | None:
     if not cfg.watch:
         return None
     return {
-        str(name): sha256(Path(name))[:12] if os.path.isfile(name) else os.environ.get(name)
+        str(name): _sha(str(name), os.stat(name)) if os.path.isfile(name) else os.environ.get(name)
         for name in cfg.watch
     }
+
+
+def _sha(path: str, now: os.stat_result) -> str:
+    """The hash of a file, read once while it stays as it is."""
+    return _read(path, now.st_size, now.st_mtime_ns)
+
+
+@cache
+def _read(path: str, size: int, changed: int) -> str:
+    return sha256(path)[:12]
 
 
 def met(corruption: Corruption) -> dict[str, Any]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+import os
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
@@ -45,6 +47,8 @@ def check_options(cfg: DictConfig, command: Sequence[str]) -> None:
     for option, text in (("split", cfg.split), ("name", cfg.name or name_of(command))):
         if wanted := allowed(option, text):  # before hours of what no row can say
             raise ValueError(f"{option}={short(text)} can stand in no row: {wanted}.")
+    for watched in cfg.watch or ():
+        _check_watched(str(watched))
     if not 1 <= cfg.patience <= 3600:
         raise ValueError(f"patience={cfg.patience:g} must be 1 to 3600 seconds.")
     if cfg.severity == 0 or cfg.severity_depth == 0:
@@ -59,6 +63,23 @@ def check_options(cfg: DictConfig, command: Sequence[str]) -> None:
         raise ValueError(f"episodes={cfg.episodes} is none: give 1 or more, or null for all.")
     if cfg.record is not None:
         make_folder(cfg.record)
+
+
+def _check_watched(name: str) -> None:
+    """Raise ValueError for what is neither a file nor a variable that is set, and for a folder:
+    nothing of it would be seen to change."""
+    if os.path.isdir(name):
+        raise ValueError(f"watch={name} is a folder: name the files in it that count.")
+    if os.path.isfile(name) or name in os.environ:
+        return
+    folder = Path(name).parent
+    there = [str(path) for path in folder.iterdir()] if folder.is_dir() else []
+    near = difflib.get_close_matches(name, [*os.environ, *there], n=3)
+    hint = f" Did you mean {' or '.join(near)}?" if near else ""
+    raise ValueError(
+        f"watch={name}: there is neither such a file nor a variable of the environment.{hint} One "
+        f"that is meant to be unset can be empty: {Path(name).name}= mitigate run ..."
+    )
 
 
 def name_of(command: Sequence[str]) -> str:

@@ -7,6 +7,7 @@ from functools import partial
 
 import pytest
 
+from mitigate.bridge import identity
 from mitigate.bridge.conditions import cells
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.identity import default_folder
@@ -50,6 +51,22 @@ def test_each_attempt_begins_in_an_empty_folder(run, skips, tmp_path):
     aside = out / "conditions/clean.unfinished"
     assert json.loads((aside / "results.json").read_text()) == ["a"]
     assert (aside / "events.jsonl").exists()
+
+
+def test_what_a_finished_attempt_left_stays_until_another_is_finished(run, skips, tmp_path):
+    out, recorded = tmp_path / "o", tmp_path / "recorded"
+    options, fails = f"conditions=[clean] record={recorded}", tmp_path / "fails"
+    guard = f"import os, sys\nif os.path.exists({str(fails)!r}): sys.exit(3)\n"
+    (tmp_path / "nav.py").write_text(guard + SKIPS)
+    assert not run(out, "conditions=[clean]", f"{skips} {{out}}/results.json").stderr
+    fails.write_text("")
+    for _ in range(2):
+        assert "status 3" in run(out, options, f"{skips} {{out}}/results.json").stderr
+    aside = out / "conditions/clean.finished"
+    assert (aside / "results.json").exists()
+    fails.unlink()
+    assert not run(out, options, f"{skips} {{out}}/results.json").stderr
+    assert (out / "conditions/clean/results.json").exists()
 
 
 def test_a_program_that_finds_its_own_results_is_told_what_to_do(run, skips, tmp_path):
@@ -130,6 +147,33 @@ def test_what_is_watched_makes_another_agent(tmp_path, monkeypatch):
     known.append(made(tmp_path, option))
     for part in (lambda one: one[0].label["agent"], lambda one: one[1].name):
         assert len({part(one) for one in [(plain, folder), *known]}) == 4
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (
+            "{}/polcy.yaml",
+            "neither such a file nor a variable of the environment. Did you mean {}/",
+        ),
+        ("WATCHED_CKTP", "Did you mean WATCHED_CKPT?"),
+        ("{}", "is a folder: name the files in it"),
+    ],
+)
+def test_what_is_watched_must_be_there(run, tmp_path, monkeypatch, name, words):
+    (tmp_path / "policy.yaml").write_text("good")
+    monkeypatch.setenv("WATCHED_CKPT", "good")
+    ran = run(tmp_path / "o", f"watch=[{name.format(tmp_path)}]")
+    assert words.format(tmp_path) in ran.stderr and not (tmp_path / "o").exists()
+
+
+def test_a_watched_file_is_read_once_for_all_conditions(tmp_path, monkeypatch):
+    file, read_files = tmp_path / "policy.yaml", []
+    file.write_text("good")
+    sha256 = identity.sha256
+    monkeypatch.setattr(identity, "sha256", lambda path: read_files.append(path) or sha256(path))
+    cells(load_config("run", ["suite=rgb", f"watch=[{file}]"]), ["nav"], tmp_path, "nav")
+    assert read_files == [str(file)]
 
 
 def test_names_of_episodes_come_in_pieces(tmp_path):
