@@ -613,9 +613,10 @@ def _put_back(walk):
     """Let the words of a walk's episode be as they were, whatever the program made of them, unless
     another walk is in it."""
     words, walk.words = walk.words, None
-    own = getattr(words, "_mitigate_own", None)
-    if own is not None and not _is_on(words):
-        del words._mitigate_own
+    if words is None or _is_on(words):
+        return
+    own = vars(words).pop("_mitigate_own", None)  # once: threads may leave one episode together
+    if own is not None:
         _say(words, *own[1:])
 
 
