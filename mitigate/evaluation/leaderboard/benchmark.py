@@ -135,14 +135,14 @@ def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]
 def _check_known(agent: Any, name: str, file: Path) -> None:
     """Raise ValueError if there are rows of that name, and nothing tells whether the agent has the
     weights that they were walked with."""
-    inside = held(agent)
-    known = hasattr(agent, "settings") or inside.networks or inside.arrays or not inside.unknown
-    if not known and file.exists() and any(row["name"] == name for row in read(file)):
+    if hasattr(agent, "settings") or not file.exists():
+        return
+    unknown = held(agent).unknown
+    if unknown and any(row["name"] == name for row in read(file)):
         raise ValueError(
             f"{file} holds rows of {name}, perhaps of other weights: a {type(agent).__name__} has "
-            "no settings(), no networks or arrays that can be seen, and its "
-            f"{inside.unknown[0]} cannot be looked into. Name another folder (out=...), or give it "
-            "settings() that say which weights it has."
+            f"no settings(), and its {unknown[0]} cannot be looked into, or not as a whole. Name "
+            "another folder (out=...), or give it settings() that say which weights it has."
         )
 
 

@@ -128,6 +128,15 @@ def test_rows_of_an_agent_that_nothing_tells_are_not_taken_up(walk):
         walk(Told(1), out="told")
 
 
+def test_a_network_or_array_beside_does_not_tell_what_is_hidden(walk):
+    for number, beside in enumerate((weight(1), np.zeros(3))):
+        first, other = Hidden(1), Hidden(2)
+        first.mean = other.mean = beside
+        walk(first, out=f"rows{number}")
+        with pytest.raises(ValueError, match="its session cannot be looked"):
+            walk(other, out=f"rows{number}")
+
+
 class Moody(nn.Module):
     """Its output is 0 in eval mode and 1 in train mode; it keeps statistics of what it saw."""
 
