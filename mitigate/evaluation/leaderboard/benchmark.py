@@ -80,7 +80,8 @@ def benchmark(
     check_texts(name=name, training_data=training_data, link=link)
     made = world or maker(cfg.env.world)
     first = _first_world(made, met)
-    split, chosen = _episodes(first, cfg, split, episodes, listed)
+    own = world is not None and _is_own(first, cfg)
+    split, chosen = _episodes(first, cfg, split, episodes, listed, own)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     _check_known(agent, name, file)
     _tell(agent, made, chosen, len(met), workers)
@@ -176,15 +177,20 @@ def _first_world(make_world: Any, met: Sequence[Corruption]) -> World:
 def _is_own(world: World, cfg: Any) -> bool:
     """Whether the world is none of the config's, whose lists of episodes mean nothing in it."""
     usual = located(cfg.env.world._target_)
-    return not (isinstance(usual, type) and isinstance(world, usual))
+    kind = usual if isinstance(usual, type) else type(maker(cfg.env.world)())  # a function makes it
+    return not isinstance(world, kind)
 
 
 def _episodes(
-    world: World, cfg: Any, split: str | None, count: int | None, listed: Sequence[Episode] | None
+    world: World,
+    cfg: Any,
+    split: str | None,
+    count: int | None,
+    listed: Sequence[Episode] | None,
+    own: bool,
 ) -> tuple[str, list[Episode]]:
     """Return the split and the episodes to walk; raise ValueError for none, and for a world of
-    another class than the config's without a list of its own."""
-    own = _is_own(world, cfg)
+    one's ``own``, of another class than the config's, without a list of its own."""
     split = split or (walked.name_of(world) if own else cfg.split)
     if listed is None and own:
         raise ValueError(

@@ -17,7 +17,7 @@ import mitigate
 from mitigate.evaluation import rows
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
-from mitigate.worlds.episodes import Episode, Goal, Instruction
+from mitigate.worlds.episodes import Episode, Goal, Instruction, write_episodes
 from mitigate.worlds.gym import GymWorld
 
 
@@ -177,3 +177,24 @@ def test_an_entry_added_has_the_sensors_of_its_own_world_or_none(walk, capsys):
     assert command.main([*add, "--overwrite", "env=corridor", "--config-dir", "mine"]) == 0
     assert load("entries/Holder.json").sensors == entry.sensors == ("rgb: 8 x 8 x 3 uint8",)
     assert command.main(["check", "entries"]) == 0
+
+
+def make_corridor() -> CorridorWorld:
+    return CorridorWorld()
+
+
+def test_a_configs_world_that_a_function_makes_has_the_configs_episodes(walk):
+    Path("mine/env").mkdir(parents=True)
+    write_episodes("val.json", EPISODES)
+    made = ENV.replace(".CorridorWorld", ".make_corridor").replace("nowhere.json", "val.json")
+    Path("mine/env/made.yaml").write_text(made)
+    options = ["--config-dir=mine", "env=made"]
+    for world in (None, CorridorWorld):
+        assert walk(Holder(weight(1)), world, listed=None, options=options, out=f"of{world}")
+    with pytest.raises(ValueError, match="none of Corridor: give its own"):
+        walk(
+            Holder(weight(1)),
+            lambda: GymWorld(Corridor(), success="won"),
+            listed=None,
+            options=options,
+        )
