@@ -26,7 +26,7 @@ from mitigate.core.options import check_dashes, config_folder, without_config_fo
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import rows, walked
+from mitigate.evaluation import making, rows, walked
 from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import episodes
@@ -68,9 +68,8 @@ def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
     in the folder ``out`` too. Those that it has count."""
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     with FolderLock(out):
-        make = maker(cfg.env.world)
-        world = make()
-        walked.keep(out, make, world, cfg.split, chosen, cfg.env.episodes[cfg.split])
+        world, made_by = making.first(maker(cfg.env.world))
+        walked.keep(out, world, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
         return _walked(world, cfg.split, chosen, out / rows.ROWS)
 
 

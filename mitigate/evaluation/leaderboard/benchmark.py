@@ -21,7 +21,7 @@ from mitigate.core.progress import duration
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
-from mitigate.evaluation import walked
+from mitigate.evaluation import making, walked
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_episodes
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
@@ -79,16 +79,15 @@ def benchmark(
     agent, name = _agent(agent, name, cfg, seed)
     check_texts(name=name, training_data=training_data, link=link)
     made = world or maker(cfg.env.world)
-    first = _first_world(made, met)
-    own = world is not None and _is_own(first, cfg)
-    split, chosen = _episodes(first, cfg, split, episodes, listed, own)
+    first, made_by = _first_world(made, met)
+    split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     _check_known(agent, name, file)
     _tell(agent, made, chosen, len(met), workers)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     with FolderLock(file.parent):
         _tell_reused(agent, file)
-        walked.keep(file.parent, made, first, split, chosen)
+        walked.keep(file.parent, first, made_by, split, chosen)
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
         rows,
@@ -162,16 +161,17 @@ def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
-def _first_world(make_world: Any, met: Sequence[Corruption]) -> World:
-    """Return a world; raise ValueError if it is not made anew, or shows too little."""
+def _first_world(make_world: Any, met: Sequence[Corruption]) -> tuple[World, dict[str, str]]:
+    """Return a world and what it was made by; raise ValueError if it is not made anew, or shows too
+    little."""
     if not callable(make_world):
         raise ValueError(
             f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
             "since each process has its own."
         )
-    world: World = make_world()
+    world, made_by = making.first(make_world)
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
-    return world
+    return world, made_by
 
 
 def _is_own(world: World, cfg: Any) -> bool:
@@ -187,10 +187,11 @@ def _episodes(
     split: str | None,
     count: int | None,
     listed: Sequence[Episode] | None,
-    own: bool,
+    given: bool,
 ) -> tuple[str, list[Episode]]:
-    """Return the split and the episodes to walk; raise ValueError for none, and for a world of
-    one's ``own``, of another class than the config's, without a list of its own."""
+    """Return the split and the episodes to walk; raise ValueError for none, and for a world that was
+    ``given``, of another class than the config's, without a list of its own."""
+    own = given and _is_own(world, cfg)
     split = split or (walked.name_of(world) if own else cfg.split)
     if listed is None and own:
         raise ValueError(
