@@ -189,8 +189,8 @@ def _episodes(
     listed: Sequence[Episode] | None,
     given: bool,
 ) -> tuple[str, list[Episode]]:
-    """Return the split and the episodes to walk; raise ValueError for none, and for a world that was
-    ``given``, of another class than the config's, without a list of its own."""
+    """Return the split and the episodes to walk; raise ValueError for none, and for a world that
+    was ``given``, of another class than the config's, without a list of its own."""
     own = given and _is_own(world, cfg)
     split = split or (walked.name_of(world) if own else cfg.split)
     if listed is None and own:
