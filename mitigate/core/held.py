@@ -26,7 +26,8 @@ from mitigate.core.observation import Observation
 DEPTH = 8  # how far below the agent is looked: agent.pol.nets["policy"] is 3 (ours)
 PARTS, LEAST = 1_000, 20  # of a list or mapping; those inside it share them (ours)
 MOST = 100_000  # things that are looked at in all (ours)
-_CONTAINERS = (list, tuple, deque, set, frozenset, dict, types.MappingProxyType, type({}.values()))
+_LISTS: tuple[Any, ...] = (list, tuple, deque, type({}.values()))
+_CONTAINERS = (*_LISTS, set, frozenset, dict, types.MappingProxyType)
 _GETTERS = (operator.itemgetter, operator.attrgetter, operator.methodcaller)
 _NO_WEIGHTS = (
     *(str, bytes, int, float, complex, type(None), type, Enum, PurePath, np.generic, np.dtype),
@@ -129,7 +130,7 @@ def _inside(value: Any, whole: bool) -> Iterable[tuple[str, Any]] | None:
         return [("of", dict(value))]
     if isinstance(value, (set, frozenset)):
         return ((f"{{{number}}}", part) for number, part in enumerate(value))
-    if isinstance(value, _CONTAINERS):
+    if isinstance(value, _LISTS):
         return _numbered(value)
     if isinstance(value, partial):
         return [("func", value.func), *_numbered((value.args, value.keywords))]

@@ -15,6 +15,7 @@ from omegaconf.errors import OmegaConfBaseException
 from mitigate.core import conf, seeding
 from mitigate.core.build import agent_option, located, maker
 from mitigate.core.held import held, in_eval_mode
+from mitigate.core.identity import identity
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.progress import duration
@@ -82,9 +83,9 @@ def benchmark(
     first, made_by = _first_world(made, met)
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    _check_known(agent, name, file)
+    known_as = _known_as(agent, name, file, first)
+    label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known_as": known_as}
     _tell(agent, made, chosen, len(met), workers)
-    label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     with FolderLock(file.parent):
         _tell_reused(agent, file)
         walked.keep(file.parent, first, made_by, split, chosen)
@@ -132,11 +133,12 @@ def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]
     return agent, name or type(agent).__name__
 
 
-def _check_known(agent: Any, name: str, file: Path) -> None:
-    """Raise ValueError if there are rows of that name, and nothing tells whether the agent has the
-    weights that they were walked with."""
+def _known_as(agent: Any, name: str, file: Path, world: World) -> str:
+    """Return the agent's hash, before a walk changes its arrays; raise ValueError if there are rows
+    of that name, and nothing tells whether it has the weights that they were walked with."""
+    known_as = identity(agent, world.sensors)
     if hasattr(agent, "settings") or not file.exists():
-        return
+        return known_as
     unknown = held(agent).unknown
     if unknown and any(row["name"] == name for row in read(file)):
         raise ValueError(
@@ -144,6 +146,7 @@ def _check_known(agent: Any, name: str, file: Path) -> None:
             f"no settings(), and its {unknown[0]} cannot be looked into, or not as a whole. Name "
             "another folder (out=...), or give it settings() that say which weights it has."
         )
+    return known_as
 
 
 def _tell_reused(agent: Any, file: Path) -> None:

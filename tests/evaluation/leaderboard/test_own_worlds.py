@@ -14,6 +14,7 @@ from gymnasium import spaces
 from torch import nn
 
 import mitigate
+from mitigate.core.identity import identity
 from mitigate.evaluation import rows
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
@@ -135,6 +136,22 @@ def test_a_network_or_array_beside_does_not_tell_what_is_hidden(walk):
         walk(first, out=f"rows{number}")
         with pytest.raises(ValueError, match="its session cannot be looked"):
             walk(other, out=f"rows{number}")
+
+
+class Counting(Hidden):
+    """Its array changes while it walks."""
+
+    def __init__(self) -> None:
+        self.total = np.zeros(3)
+
+    def act(self, observation) -> int:
+        self.total += 1
+        return 0
+
+
+def test_an_agent_is_what_it_was_before_it_walked(walk):
+    hashes = {one["agent"] for _ in range(2) for one in walk(Counting()).agents}
+    assert hashes == {identity(Counting(), CorridorWorld().sensors)}
 
 
 class Moody(nn.Module):
