@@ -76,7 +76,7 @@ def _function(make: FunctionType) -> Iterator[tuple[str, str]]:
     yield from _flat(f"{MADE}, default", defaults | (make.__kwdefaults__ or {}))
     with suppress(ValueError):  # what it uses is not there yet
         used = inspect.getclosurevars(make)
-        yield from _flat(f"{MADE}, value", {**used.globals, **used.nonlocals})
+        yield from _each(f"{MADE}, value", {**used.globals, **used.nonlocals})
 
 
 def _object(thing: Any) -> Iterator[tuple[str, str]]:
@@ -86,7 +86,12 @@ def _object(thing: Any) -> Iterator[tuple[str, str]]:
         return
     yield f"{MADE}, class", kind_of(thing)
     yield f"{MADE}, code", hash_of(source_of(type(thing)))
-    yield from _flat(f"{MADE}, attribute", getattr(thing, "__dict__", {}))
+    yield from _each(f"{MADE}, attribute", getattr(thing, "__dict__", {}))
+
+
+def _each(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Each as a whole: it may change as a whole."""
+    return ((f"{name}.{key}", _text(value)) for key, value in values.items())
 
 
 def _flat(name: str, value: Any, depth: int = 0) -> Iterator[tuple[str, str]]:

@@ -78,7 +78,7 @@ def _is_same(before: str | None, now: str | None) -> bool:
     if before == now or making.CHANGES in (before, now):
         return True
     with suppress(OSError, TypeError, ValueError):
-        return samefile(json.loads(before or ""), json.loads(now or ""))
+        return samefile(*(f"{Path(json.loads(text or ''))}" for text in (before, now)))
     return False
 
 

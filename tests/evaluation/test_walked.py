@@ -100,6 +100,7 @@ class Builder:
         (with_cells(9), with_cells(3), "value.cells was '9' and is '3'"),
         (partial(Maze, Path("a")), partial(Maze, Path("b")), """argument.0 was '"a"'"""),
         (partial(Maze, np.int64(9)), partial(Maze, np.int64(3)), "argument.0 was '9' and is '3'"),
+        (partial(Maze, 1), partial(Maze, 2), "argument.0 was '1' and is '2'"),  # no open files
         (partial(Maze, np.zeros(2)), partial(Maze, np.ones(2)), "argument.0 was '\"array float64"),
         (partial(Maze, Size(9)), partial(Maze, Size(3)), """Size", [9]]'"""),
         (partial(Maze, Kind.DARK), partial(Maze, Kind.LIT), "Kind.DARK"),
@@ -142,6 +143,7 @@ def test_what_a_function_uses_may_be_anything_and_may_change_as_it_is_called(tmp
 
     for _ in range(3):
         keep(tmp_path, make)
+        make()  # as a walk does
     keep(tmp_path / "other", lambda: [Maze(), numbers, circle, odd][0])
     assert (tmp_path / walked.NOTE).stat().st_size < 3000
 
