@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import logging
+import operator
 import random
+import sys
 import types
 from collections import deque
-from collections.abc import Iterator, Mapping, Set
-from contextlib import contextmanager
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from enum import Enum
 from functools import partial
+from itertools import chain, islice
 from pathlib import PurePath
 from typing import Any
 
@@ -20,13 +23,16 @@ from torch import nn
 
 from mitigate.core.observation import Observation
 
-DEPTH = 6  # how far below the agent is looked: agent.pol.nets["policy"] is 3 (ours)
-MOST = 10_000  # things that are looked at (ours)
+DEPTH = 8  # how far below the agent is looked: agent.pol.nets["policy"] is 3 (ours)
+PARTS, LEAST = 1_000, 20  # of a list or mapping; those inside it share them (ours)
+MOST = 100_000  # things that are looked at in all (ours)
+_LISTS: tuple[Any, ...] = (list, tuple, deque, type({}.values()))
+_CONTAINERS = (*_LISTS, set, frozenset, dict, types.MappingProxyType)
+_GETTERS = (operator.itemgetter, operator.attrgetter, operator.methodcaller)
 _NO_WEIGHTS = (
-    *(str, bytes, int, float, complex, type(None), type, Enum, PurePath, np.generic),
+    *(str, bytes, int, float, complex, type(None), type, Enum, PurePath, np.generic, np.dtype),
     *(torch.device, torch.dtype, torch.Size, torch.Generator, np.random.Generator, random.Random),
-    *(np.random.RandomState, logging.Logger, types.ModuleType, types.BuiltinFunctionType),
-    Observation,
+    *(np.random.RandomState, np.ufunc, logging.Logger, types.ModuleType, Observation),
 )
 _OWN_OF_TORCH = frozenset(vars(nn.Module()))  # hooks, parameters, and modules that it lists itself
 
@@ -34,8 +40,8 @@ _OWN_OF_TORCH = frozenset(vars(nn.Module()))  # hooks, parameters, and modules t
 @dataclass
 class Held:
     """networks and arrays (also tensors) by where they are, such as "pol.nets.policy", the agent
-    itself as "". unknown: places of what nobody could look into, such as a session of another
-    library, or that are too deep or too many."""
+    itself as ""; a number in braces is of a set, which has no order. unknown: places of what nobody
+    could look into, such as a session of another library, or that are too deep or too many."""
 
     networks: dict[str, nn.Module] = field(default_factory=dict)
     arrays: dict[str, Any] = field(default_factory=dict)
@@ -43,28 +49,34 @@ class Held:
 
 
 def held(agent: Any) -> Held:
-    """Return what is in ``agent``, in its attributes, and in the lists, mappings, objects and
-    functions that these hold; each thing once, where it is found first."""
+    """Return what is in ``agent``, in its attributes, and in the lists, dicts, objects and
+    functions that these hold; each thing once, where it is found first. Of a large list or dict its
+    first parts that may hold weights are looked into, and the list is unknown."""
     found = Held()
-    seen: set[int] = set()
-    waiting: deque[tuple[tuple[str, ...], Any]] = deque([((), agent)])
+    seen: dict[int, Any] = {}
+    waiting: deque[tuple[tuple[str, ...], Any, int]] = deque([((), agent, PARTS)])
     while waiting:
-        place, value = waiting.popleft()
-        if id(value) in seen or isinstance(value, _NO_WEIGHTS):
+        place, value, most = waiting.popleft()
+        if id(value) in seen:
             continue
-        seen.add(id(value))
+        seen[id(value)] = value
         name = ".".join(place)
         if isinstance(value, nn.Module):
             found.networks[name] = value
-            seen.update(map(id, value.modules() if value is agent else ()))
-        elif _is_array(value):
-            found.arrays[name] = value
+            seen.update((id(m), m) for m in (value.modules() if value is agent else ()))
+        elif (array := _array(value)) is not None:
+            found.arrays[name] = array
             continue
-        inside = _inside(value, whole=value is agent)
-        if inside is None or (inside and (len(place) >= DEPTH or len(seen) > MOST)):
+        inside, many = _inside(value, whole=value is agent), isinstance(value, _CONTAINERS)
+        able = (part for part in inside or () if not isinstance(part[1], _NO_WEIGHTS))
+        parts = [*islice(able, most + 1 if many else None)]
+        if inside is None or (parts and (len(place) >= DEPTH or len(seen) > MOST)):
             found.unknown.append(name)
             continue
-        waiting.extend(((*place, own), part) for own, part in inside)
+        if many and len(parts) > most:
+            found.unknown.append(name)
+        each = max(LEAST, most // max(1, len(parts))) if many else most
+        waiting.extend(((*place, own), part, each) for own, part in parts[: most if many else None])
     return found
 
 
@@ -75,54 +87,85 @@ def networks(agent: Any) -> list[nn.Module]:
 
 @contextmanager
 def in_eval_mode(agent: Any) -> Iterator[None]:
-    """Have every network of ``agent`` in eval mode; afterwards each module is as it was."""
-    modes = {module: module.training for net in networks(agent) for module in net.modules()}
-    for module in modes:
-        module.training = False
+    """Have every network of ``agent`` in eval mode, by its own ``eval()``, which may do more;
+    afterwards each module is as it was."""
+    tops = [net for net in networks(agent) if hasattr(net, "training")]  # frozen programs have none
+    modules = [module for net in tops for module in net.modules() if hasattr(module, "training")]
+    modes = {module: module.training for module in modules}
+    for net in tops:
+        net.eval()
     try:
         yield
     finally:
+        for net in tops:
+            net.train(modes[net])
         for module, training in modes.items():
             module.training = training
 
 
-def _is_array(value: Any) -> bool:
-    if isinstance(value, np.ndarray):
-        return value.dtype != object
-    return isinstance(value, torch.Tensor) or hasattr(value, "__array__")
+def _array(value: Any) -> Any:
+    """``value`` as an array whose bytes are its values, or None if it is none."""
+    if isinstance(value, torch.Tensor):
+        plain = value.layout == torch.strided and not (value.is_quantized or value.is_meta)
+        return value if plain else None
+    if not hasattr(type(value), "__array__"):
+        return None
+    with suppress(Exception):  # of another library, such as one on a GPU
+        array = np.asarray(value)
+        return None if array.dtype.hasobject else array
+    return None
 
 
-def _inside(value: Any, whole: bool) -> list[tuple[str, Any]] | None:
+def _inside(value: Any, whole: bool) -> Iterable[tuple[str, Any]] | None:
     """The parts of ``value`` by name; None if it has none that can be looked at. ``whole``: it is
     the agent, of which a network has attributes beside its modules; of others they do not count."""
     if isinstance(value, nn.Module):
         own = {k: v for k, v in vars(value).items() if k not in _OWN_OF_TORCH}
-        return [*own.items()] if whole else []
-    if isinstance(value, Mapping):
-        return [(str(key), part) for key, part in value.items()]
-    if isinstance(value, (list, tuple, deque, Set)):
-        return [(str(number), part) for number, part in enumerate(value)]
+        return own.items() if whole else []
+    if isinstance(value, torch.Tensor) or hasattr(type(value), "__array__"):
+        return None
+    if isinstance(value, dict):
+        return ((str(key), part) for key, part in dict.items(value))
+    if isinstance(value, types.MappingProxyType):
+        return [("of", dict(value))]
+    if isinstance(value, (set, frozenset)):
+        return ((f"{{{number}}}", part) for number, part in enumerate(value))
+    if isinstance(value, _LISTS):
+        return _numbered(value)
     if isinstance(value, partial):
         return [("func", value.func), *_numbered((value.args, value.keywords))]
-    if isinstance(value, types.MethodType):
-        return [("self", value.__self__)]
+    if isinstance(value, _GETTERS):
+        return _numbered(value.__reduce__())
+    if isinstance(value, (types.MethodType, types.BuiltinFunctionType)):
+        return [("self", value.__self__), ("func", getattr(value, "__func__", None))]
     if isinstance(value, types.FunctionType):
-        filled = [cell for cell in value.__closure__ or () if _is_filled(cell)]
-        return _numbered([cell.cell_contents for cell in filled])
-    slots = [name for kind in type(value).__mro__ for name in _slots(kind)]
-    if hasattr(value, "__dict__") or slots:
-        own = {name: getattr(value, name) for name in slots if hasattr(value, name)}
-        return [*(getattr(value, "__dict__", {}) | own).items()]
-    return None if type(value) is not object else []
+        filled = [cell.cell_contents for cell in value.__closure__ or () if _is_filled(cell)]
+        return _numbered([*filled, *(value.__defaults__ or ()), value.__kwdefaults__])
+    return _attributes(value)
 
 
-def _numbered(parts: Any) -> list[tuple[str, Any]]:
-    return [(str(number), part) for number, part in enumerate(parts)]
+def _attributes(value: Any) -> Iterable[tuple[str, Any]] | None:
+    """The attributes and slots of an object. One of Python's own classes in C holds no weights but
+    for an iterator and a handle of foreign memory; of other classes in C nobody knows."""
+    own = getattr(value, "__dict__", None)
+    kinds = [kind for kind in type(value).__mro__ if vars(kind).get("__slots__")]
+    slots = [one for kind in kinds for one in vars(kind).items()]
+    members = [(k, one) for k, one in slots if isinstance(one, types.MemberDescriptorType)]
+    if isinstance(own, dict) or members:
+        return chain((own or {}).items(), _filled(value, members))
+    package, name = str(type(value).__module__).partition(".")[0], type(value).__name__
+    foreign = package == "ctypes" or name == "PyCapsule" or isinstance(value, Iterator)
+    return [] if package in sys.stdlib_module_names and not foreign else None
 
 
-def _slots(kind: type) -> tuple[str, ...]:
-    own = vars(kind).get("__slots__", ())
-    return (own,) if isinstance(own, str) else tuple(own)
+def _numbered(parts: Iterable[Any]) -> Iterator[tuple[str, Any]]:
+    return ((str(number), part) for number, part in enumerate(parts))
+
+
+def _filled(value: Any, members: Iterable[tuple[str, Any]]) -> Iterator[tuple[str, Any]]:
+    for name, member in members:
+        with suppress(AttributeError):  # not set
+            yield name, member.__get__(value)
 
 
 def _is_filled(cell: types.CellType) -> bool:

@@ -9,7 +9,9 @@ from __future__ import annotations
 import hashlib
 import inspect
 import json
+import re
 import sysconfig
+from collections import defaultdict
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
@@ -19,6 +21,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from torch import nn
 
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.held import Held, held
@@ -26,6 +29,7 @@ from mitigate.core.observation import Sensor
 
 DIGITS = 12  # hex digits: 48 bits
 _BY_VERSION = ("mitigate", "torch")  # not by their code, wherever it is
+_OF_SET = re.compile(r"\{\d+\}")  # of which each process has another order
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
 
 
@@ -87,18 +91,20 @@ def _is_installed(file: PurePath) -> bool:
 def _weights(inside: Held) -> str | dict[str, str]:
     """The hash of the weights of the network that the agent is, or of each of those that it holds,
     else of its arrays; empty if there are none."""
-    found = {place: weights_sha(net) for place, net in inside.networks.items()}
-    if [*found] == [""]:
-        return found[""]
-    return found or {place: _sha(array) for place, array in inside.arrays.items()} or ""
+    if [*inside.networks] == [""]:
+        return weights_sha(inside.networks[""])
+    found: dict[str, list[str]] = defaultdict(list)
+    for place, thing in (inside.networks or inside.arrays).items():
+        sha = weights_sha(thing) if isinstance(thing, nn.Module) else _sha(thing)
+        found[_OF_SET.sub("{}", place)].append(sha)
+    return {place: " ".join(sorted(shas)) for place, shas in found.items()} or ""
 
 
-def _sha(array: Any) -> str:
+def _sha(array: torch.Tensor | np.ndarray) -> str:
     """The hash of an array's type, shape and bytes."""
     if isinstance(array, torch.Tensor):
         bytes_of = array.detach().cpu().contiguous().reshape(-1).view(torch.uint8).numpy().tobytes()
     else:
-        array = np.asarray(array)
         bytes_of = array.tobytes()
     kind = f"{array.dtype} {tuple(array.shape)}"
     return hashlib.sha256(kind.encode() + bytes_of).hexdigest()[:DIGITS]

@@ -22,11 +22,11 @@ from mitigate.core.build import maker
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
-from mitigate.core.options import check_dashes, config_folder
+from mitigate.core.options import check_dashes, config_folder, without_config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import rows, walked
+from mitigate.evaluation import making, rows, walked
 from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import episodes
@@ -68,9 +68,8 @@ def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
     in the folder ``out`` too. Those that it has count."""
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     with FolderLock(out):
-        make = maker(cfg.env.world)
-        world = make()
-        walked.keep(out, make, world, cfg.split, chosen, cfg.env.episodes[cfg.split])
+        world, made_by = making.first(maker(cfg.env.world))
+        walked.keep(out, world, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
         return _walked(world, cfg.split, chosen, out / rows.ROWS)
 
 
@@ -109,7 +108,7 @@ def main() -> int:
     given = sys.argv[1:]
     try:
         check_dashes(given)
-        _check(given)
+        _check(without_config_folder(given)[1])
         cfg = conf.composed("evaluate", given, config_folder(given))
         out = Path(cfg.out or OUT)
         found = run(cfg, out)

@@ -116,7 +116,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     met = conditions(names, cfg.severity, cfg.severity_depth)
     from mitigate.core import build
-    from mitigate.evaluation import walked
+    from mitigate.evaluation import making, walked
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.restoration.restorer import restorer_of
     from mitigate.safeguard import choices
@@ -125,13 +125,13 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     agent = load(cfg.agent, cfg.checkpoint, cfg.seed, overrides)
     check_walks(agent)
     world, name = build.maker(cfg.env.world), _column(cfg, overrides)
-    first = world()
+    first, made_by = making.first(world)
     restorer = restorer_of(cfg.restore, first.sensors)
     check_sensors(met, first.sensors, cfg.env.name)
     choices.check(cfg.safeguard)
     out = Path(cfg.out or default_folder(cfg, name))
     with FolderLock(out):
-        walked.keep(out, world, first, cfg.split, chosen, cfg.env.episodes[cfg.split])
+        walked.keep(out, first, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
@@ -223,7 +223,7 @@ def report_before_after(
     pictures in ``folder/pictures`` show episodes that the training won back.
     """
     from mitigate.core import build
-    from mitigate.evaluation import walked
+    from mitigate.evaluation import making, walked
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.evaluation.trajectories import write_pictures
 
@@ -233,8 +233,8 @@ def report_before_after(
     agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
     agents = {name: agent for name, agent in agents.items() if agent is not None}
     world, rows = build.maker(cfg.env.world), []
-    first = world()
-    walked.keep(folder, world, first, quick.split, chosen, cfg.env.episodes[quick.split])
+    first, made_by = making.first(world)
+    walked.keep(folder, first, made_by, quick.split, chosen, cfg.env.episodes[quick.split])
     for name, agent in agents.items():
         rows += evaluate(
             agent,

@@ -129,6 +129,7 @@ def evaluate(
     launcher: LauncherConfig = LOCAL,
     safeguard: Safeguard | None = None,
     restorer: Restorer | None = None,
+    known_as: str | None = None,
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
@@ -139,7 +140,7 @@ def evaluate(
     launcher, which says on which machines (``scale/launcher.py``). safeguard:
     repairs each instruction, once, before the agent hears it. restorer: goes over the frames before
     the agent reads them. A row's ``agent`` is the hash of the agent behind the world's sensors,
-    ``safeguard`` and ``restorer`` (``core/identity.py``).
+    ``safeguard`` and ``restorer`` (``core/identity.py``), or ``known_as``, taken before it walked.
     Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
     out = Path(out)
@@ -149,7 +150,7 @@ def evaluate(
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
     label = {
-        "agent": identity(agent, made.sensors, _fronts(safeguard, restorer)),
+        "agent": known_as or identity(agent, made.sensors, _fronts(safeguard, restorer)),
         "name": name,
         "split": split,
         "seed": seed,

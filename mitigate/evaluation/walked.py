@@ -6,47 +6,39 @@ is, and of its episode the id alone. So rows of another world would count as don
 
 from __future__ import annotations
 
-import hashlib
-import inspect
 import json
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from functools import partial
+from os.path import samefile
 from pathlib import Path
-from types import FunctionType
 from typing import Any
 
-from mitigate.core.build import Maker
 from mitigate.core.files import atomic_text
 from mitigate.core.identity import source_of
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
-from mitigate.evaluation import list_hash
+from mitigate.evaluation import list_hash, making
+from mitigate.evaluation.making import hash_of, kind_of
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 NOTE = "walked.json"
-CLASS, CODE, ENV, MADE = (
-    "its class",
-    "its code",
-    "its env",
-    "what makes it",
-)  # what differs, in words
+CLASS, CODE, ENV = "its class", "its code", "its env"  # what differs, in words
 MOST_LAYERS = 20  # of wrappers around an environment (ours)
 
 
 def keep(
     folder: Path,
-    make_world: Callable[[], World],
     world: World,
+    made_by: Mapping[str, str],
     split: str,
     episodes: Sequence[Episode],
     source: str | None = None,
 ) -> None:
-    """Keep in ``folder`` what ``world`` is, which ``make_world`` made, a sum of each episode of
-    ``split`` and one of ``source``, the file that they come from if they come from one; raise
-    ValueError, saying what differs, if one of them is another now.
+    """Keep in ``folder`` what ``world`` is and what it was ``made_by`` (``making.first``), a sum of
+    each episode of ``split`` and one of ``source``, the file that they come from if they come from
+    one; raise ValueError, saying what differs, if one of them is another now.
 
     Worlds of other sensors or of another rule stand beside one another: their rows say so. What a
     note of an older version does not say may be anything, as may all where there is no note.
@@ -55,11 +47,11 @@ def keep(
         list_hash.keep(folder, split, source)
     note = folder / NOTE
     known = read_json(note, "Delete its folder.") if note.is_file() else {}
-    told, sums = described(make_world, world), {e.episode_id: _sum(e) for e in episodes}
+    told, sums = {**_described(world), **made_by}, {e.episode_id: _sum(e) for e in episodes}
     own, kind = known.get(split, {}), _told_by_rows(world)
     worlds, sums_before = own.get("worlds", {}), own.get("sums", {})
     before = worlds.get(kind, told | _older(own))
-    different = [key for key in {**before, **told} if before.get(key) != told.get(key)]
+    different = [k for k in {**before, **told} if not _is_same(before.get(k), told.get(k))]
     other = [name for name, held in sums_before.items() if sums.get(name, held) != held]
     if different or other:
         what = f"episode {other[0]} of another list" if other else "another world"
@@ -73,13 +65,21 @@ def keep(
         json.dump(known, file)
 
 
-def described(make_world: Callable[[], World], world: World) -> dict[str, str]:
-    """Return what ``world`` is, as texts by name: its class, the environment inside it, the hash of
-    their code where that is of neither this project nor an installed package, and what it was made
-    by: the entries of a config, or a function's arguments and the values that it uses."""
+def _described(world: World) -> dict[str, str]:
+    """Return what ``world`` is, as texts by name: its class, the environment inside it, and the
+    hash of their code where that is of neither this project nor an installed package."""
     sources = [source for layer in _layers(world) for source in source_of(type(layer))]
-    told = {CLASS: _kind(world), ENV: _spec(world), CODE: _hash(sources) if sources else ""}
-    return {key: value for key, value in (*told.items(), *_made_by(make_world)) if value}
+    told = {CLASS: kind_of(world), ENV: _spec(world), CODE: hash_of(sources) if sources else ""}
+    return {key: value for key, value in told.items() if value}
+
+
+def _is_same(before: str | None, now: str | None) -> bool:
+    """Whether two texts say the same: also by two paths of one file."""
+    if before == now or making.CHANGES in (before, now):
+        return True
+    with suppress(OSError, TypeError, ValueError):
+        return samefile(*(f"{Path(json.loads(text or ''))}" for text in (before, now)))
+    return False
 
 
 def _layers(world: World) -> Iterator[Any]:
@@ -101,13 +101,9 @@ def name_of(world: World) -> str:
     return type(inner).__name__
 
 
-def _kind(thing: object) -> str:
-    return f"{type(thing).__module__}.{type(thing).__qualname__}"
-
-
 def _told_by_rows(world: World) -> str:
     """Return the hash of a world's rule and sensors."""
-    return _hash([world.rule, {name: asdict(one) for name, one in sorted(world.sensors.items())}])
+    return hash_of([world.rule, {name: asdict(one) for name, one in sorted(world.sensors.items())}])
 
 
 def _older(own: Mapping[str, Any]) -> dict[str, str]:
@@ -123,40 +119,6 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
     return f"{key} was {was} and is {is_}"
 
 
-def _made_by(make: Any) -> Iterator[tuple[str, str]]:
-    """What a world is made by, as (name, text) each."""
-    if isinstance(make, Maker):
-        yield from _flat("env.world", make.node)
-    elif isinstance(make, partial):
-        given = {str(number): value for number, value in enumerate(make.args)} | make.keywords
-        yield from _flat(f"{MADE}, argument", given)
-        yield from _made_by(make.func)
-    elif isinstance(make, FunctionType) and not make.__module__.startswith("mitigate."):
-        code = make.__code__  # not its source, which is that of all that its lines hold
-        yield from _flat(MADE, [code.co_names, [c for c in code.co_consts if c is not None]])
-        with suppress(ValueError):  # what it uses is not there yet
-            used = inspect.getclosurevars(make)
-            yield from _flat(f"{MADE}, value", {**used.globals, **used.nonlocals})
-
-
-def _flat(name: str, value: Any) -> Iterator[tuple[str, str]]:
-    """The entries of nested mappings, by their names joined by points, as JSON."""
-    if isinstance(value, Mapping) and value:
-        for key, part in value.items():
-            yield from _flat(f"{name}.{key}", part)
-    else:
-        yield name, json.dumps(value, sort_keys=True, default=_name)
-
-
-def _name(value: Any) -> str:
-    """What is no data, by its name or class alone: it may look otherwise in another process."""
-    return str(getattr(value, "__qualname__", type(value)))
-
-
-def _hash(value: Any) -> str:
-    return hashlib.sha256(json.dumps(value, default=float).encode()).hexdigest()[:12]
-
-
 def _sum(episode: Episode) -> str:
     """Return 12 hex digits of what an agent and a world are told of an episode; whatever else it
     carries may look otherwise in another process."""
@@ -167,7 +129,7 @@ def _sum(episode: Episode) -> str:
         "instruction": episode.instruction.text,
         "seed": str(episode.info.get("seed")),
     }
-    return _hash(held)
+    return hash_of(held)
 
 
 def _spec(world: World) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,17 @@ from typing import Any
 from mitigate.core import settings
 
 _PLAIN = (bool, int, float, str)  # of other attributes nobody knows what they were made of
+
+
+def check_fillable(agent: Any) -> None:
+    """Raise TypeError for a class in place of its object, and for what has no weights."""
+    if isinstance(agent, type):
+        raise TypeError(f"agent is the class {agent.__name__}: give an object of it, made by it.")
+    if not hasattr(agent, "eval"):
+        raise TypeError(
+            f"agent is a {type(agent).__name__}, which has no weights to fill: give a "
+            "torch.nn.Module of the class that was trained."
+        )
 
 
 def check_same(agent: Any, config: Path, again: str) -> None:
@@ -21,8 +33,9 @@ def check_same(agent: Any, config: Path, again: str) -> None:
     """
     held = _held(config, again)
     told = hasattr(agent, "settings")
-    own: dict[str, Any] = agent.settings() if told else _attributes(agent, held)
-    wrong = [name for name, value in own.items() if name in held and held[name] != value]
+    said = agent.settings if told else _attributes(agent, held)
+    own: dict[str, Any] = said() if callable(said) else dict(said)
+    wrong = [k for k, value in own.items() if k in held and _json(held[k]) != _json(value)]
     if not wrong:
         return
     text = (
@@ -47,6 +60,11 @@ def _held(config: Path, again: str) -> dict[str, Any]:
     if not isinstance(held, dict):
         raise ValueError(f"{config} has no settings of an agent. {again}")
     return held
+
+
+def _json(value: Any) -> Any:
+    """``value`` as it is once it was written: a tuple is a list."""
+    return json.loads(json.dumps(value, default=lambda one: getattr(one, "tolist", one.__str__)()))
 
 
 def _attributes(agent: Any, held: dict[str, Any]) -> dict[str, Any]:

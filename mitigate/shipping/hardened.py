@@ -55,14 +55,16 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
             be filled in place; if it has no ``settings()``, it is given the folder's. None: one of
             ours, built here.
     Raises FileNotFoundError or ValueError, naming the file, if the folder is not whole or not what
-    its card states, TypeError for a folder that is no path. Warns of attributes of ``agent`` that
-    are called as settings and differ from them.
+    its card states, TypeError for a folder that is no path or an agent without weights. Warns of
+    attributes of ``agent`` that are called as settings and differ from them.
     """
     if not isinstance(folder, (str, os.PathLike)):
         raise TypeError(
             f"folder must be the path of a hardened checkpoint, not {folder!r:.60}: name one, such "
             "as checkpoints/hardened/ts_distill."
         )
+    if agent is not None:
+        given.check_fillable(agent)
     folder = Path(folder)
     card = check(folder)
     with torch.random.fork_rng(devices=[]):  # the caller's random numbers stay as they are

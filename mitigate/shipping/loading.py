@@ -31,7 +31,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
             filled in place; None: one of ours, built here.
     Raises FileNotFoundError or ValueError, naming the file, for weights that are missing, damaged
     or do not say what agent they are of, and for an agent that is not ours and not given, or is
-    not the one given; TypeError for a folder that is no path.
+    not the one given; TypeError for a folder that is no path or an agent without weights.
     """
     if not isinstance(folder, (str, os.PathLike)):
         raise TypeError(
@@ -58,6 +58,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
 def _filled(agent: Any, place: Path, config: Path) -> Any:
     """``agent`` in eval mode with the weights of ``place``, whose settings, if it has any, must not
     be others."""
+    given.check_fillable(agent)
     said = config.is_file()
     if said:
         given.check_same(agent, config, _AGAIN)

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import datetime
+import operator
+import re
+import threading
+from collections.abc import Mapping
 from functools import partial
 from types import SimpleNamespace
 
@@ -28,6 +33,11 @@ PLACES = {
     "an object": lambda thing: SimpleNamespace(pol=SimpleNamespace(net=thing)),
     "a function": lambda thing: SimpleNamespace(decide=lambda x: thing(x)),
     "a partial": lambda thing: SimpleNamespace(decide=partial(max, thing)),
+    "a getter": lambda thing: SimpleNamespace(decide=operator.methodcaller("at", thing)),
+    "a default": lambda thing: SimpleNamespace(decide=lambda x, net=thing: net(x)),
+    "beside many": lambda thing: SimpleNamespace(
+        seen=[(n,) for n in range(20_000)], pol=[{"p": thing}]
+    ),
 }
 
 
@@ -74,3 +84,52 @@ def test_every_module_is_in_eval_mode_and_as_it_was_afterwards():
         assert not any(module.training for module in nested.modules())
         raise KeyError
     assert [module.training for module in nested.modules()] == [True, True, False]
+
+
+def test_of_what_is_large_the_rest_is_unknown_and_a_mapping_is_not_loaded():
+    class Lazy(Mapping):
+        def __getitem__(self, key):
+            raise AssertionError("loaded")
+
+        def __iter__(self):
+            return iter(range(3))
+
+        def __len__(self):
+            return 3
+
+    assert held(SimpleNamespace(seen=[(n,) for n in range(2000)])).unknown == ["seen"]
+    assert held(SimpleNamespace(words=[str(n) for n in range(2000)], data=Lazy())).unknown == []
+
+
+def test_things_of_pythons_own_library_hold_no_weights():
+    things = (re.compile("a"), range(3), threading.Lock(), datetime.datetime(2020, 1, 1))
+    assert held(SimpleNamespace(things=things, first=operator.itemgetter(0))).unknown == []
+
+
+class Anything:
+    def __getattr__(self, name):
+        return lambda *given: None
+
+
+def test_what_cannot_be_hashed_is_unknown():
+    sparse, mixed = torch.eye(2).to_sparse(), np.array([object()])
+    agent = SimpleNamespace(remote=Anything(), sparse=sparse, mixed=mixed)
+    assert held(agent).unknown == ["sparse", "mixed"] and identity(agent, {})
+    frozen = torch.jit.freeze(torch.jit.script(net().eval()))
+    with in_eval_mode(SimpleNamespace(net=frozen)):
+        assert identity(SimpleNamespace(net=frozen), {})
+
+
+class Merged(nn.Linear):
+    """Merged in eval mode alone, as LoRA is."""
+
+    def train(self, mode: bool = True):
+        self.merged = not mode
+        return super().train(mode)
+
+
+def test_a_network_does_what_it_does_when_its_mode_changes():
+    agent = SimpleNamespace(net=Merged(1, 1))
+    with in_eval_mode(agent):
+        assert agent.net.merged
+    assert not agent.net.merged and agent.net.training

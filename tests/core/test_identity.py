@@ -7,6 +7,7 @@ import importlib
 import linecache
 import sys
 from collections import OrderedDict
+from types import SimpleNamespace
 
 import torch
 from torch import nn
@@ -106,6 +107,24 @@ def test_the_code_of_installed_packages_does_not_count(tmp_path, monkeypatch):
     assert source_of(nn.Linear) == source_of(OrderedDict) == source_of(TopologicalAgent) == []
     assert source_of(Here)
     sys.modules.pop("installed_agent")
+
+
+def test_a_set_of_networks_has_no_order():
+    class Placed(nn.Linear):
+        def __init__(self, place: int) -> None:
+            super().__init__(1, 1)
+            self.place = place
+            nn.init.constant_(self.weight, place)
+            nn.init.zeros_(self.bias)
+
+        def __hash__(self):
+            return self.place % 7
+
+    def both(first: int, second: int) -> SimpleNamespace:
+        return SimpleNamespace(nets={Placed(first), Placed(second)})
+
+    assert [net.place for net in both(1, 8).nets] != [net.place for net in both(8, 1).nets]
+    assert identity(both(1, 8), {}) == identity(both(8, 1), {}) != identity(both(1, 15), {})
 
 
 class Here:

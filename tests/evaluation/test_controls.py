@@ -70,6 +70,18 @@ def test_a_wrong_option_is_named(monkeypatch, tmp_path, capsys, option, words):
     assert words in capsys.readouterr().err and not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("folder", [["--config-dir", "mine"], ["--config-dir=mine"]])
+def test_a_folder_of_configs_is_named_in_one_word_or_two(
+    monkeypatch, tmp_path, walked, capsys, folder
+):
+    monkeypatch.chdir(tmp_path)
+    usual = find("conf/env/apartments.yaml").read_text()
+    (tmp_path / "mine/env").mkdir(parents=True)
+    (tmp_path / "mine/env/own.yaml").write_text(usual)
+    assert called(monkeypatch, *folder, "env=own", "split=val_seen", "episodes=1", "out=rows") == 0
+    assert len(walked) == 2
+
+
 def test_rows_of_another_list_of_the_split_are_not_counted(monkeypatch, tmp_path, walked, capsys):
     for name, split in (("a", "val_seen"), ("b", "val_unseen")):
         source = conf.load_config("evaluate").env.episodes[split]

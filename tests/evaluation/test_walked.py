@@ -7,16 +7,19 @@ import json
 import linecache
 import re
 import sys
+from dataclasses import dataclass
+from enum import Enum
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from omegaconf import OmegaConf
 
 from mitigate.core.build import maker
 from mitigate.core.observation import Sensor
-from mitigate.evaluation import walked
+from mitigate.evaluation import making, walked
 from mitigate.worlds.episodes import Episode, Goal, Instruction
 
 EPISODES = [
@@ -37,7 +40,7 @@ class Other(Maze):
 
 
 def keep(folder: Path, make, source: str | None = None) -> None:
-    walked.keep(folder, make, make(), "val", EPISODES, source)
+    walked.keep(folder, *making.first(make), "val", EPISODES, source)
 
 
 def around(name: str | None = None, **kwargs) -> SimpleNamespace:
@@ -58,6 +61,35 @@ def with_cells(cells: int):
     return lambda: Maze(cells)
 
 
+def by_default(value: int, kind: str = ""):
+    def positional(cells=value):
+        return Maze(cells)
+
+    def keyword(*, cells=value):
+        return Maze(cells)
+
+    return keyword if kind else positional
+
+
+@dataclass
+class Size:
+    cells: int
+
+
+class Kind(Enum):
+    DARK, LIT = range(2)
+
+
+class Builder:
+    def __init__(self, cells: int) -> None:
+        self.cells = cells
+
+    def build(self) -> Maze:
+        return Maze(self.cells)
+
+    __call__ = build
+
+
 @pytest.mark.parametrize(
     ("first", "second", "told"),
     [
@@ -66,6 +98,17 @@ def with_cells(cells: int):
         (of_config(cells=9), of_config(cells=3), "env.world.cells was '9' and is '3'"),
         (of_config(), of_config(cells=3), "env.world.cells was not set and is '3'"),
         (with_cells(9), with_cells(3), "value.cells was '9' and is '3'"),
+        (partial(Maze, Path("a")), partial(Maze, Path("b")), """argument.0 was '"a"'"""),
+        (partial(Maze, np.int64(9)), partial(Maze, np.int64(3)), "argument.0 was '9' and is '3'"),
+        (partial(Maze, 1), partial(Maze, 2), "argument.0 was '1' and is '2'"),  # no open files
+        (partial(Maze, np.zeros(2)), partial(Maze, np.ones(2)), "argument.0 was '\"array float64"),
+        (partial(Maze, Size(9)), partial(Maze, Size(3)), """Size", [9]]'"""),
+        (partial(Maze, Kind.DARK), partial(Maze, Kind.LIT), "Kind.DARK"),
+        (partial(Maze, [0] * 99), partial(Maze, [0] * 98 + [1]), "argument.0 was '[0, 0"),
+        (by_default(9), by_default(3), "default.0 was '9' and is '3'"),
+        (by_default(9, "keyword"), by_default(3, "keyword"), "default.cells was '9' and is '3'"),
+        (Builder(9), Builder(3), "attribute.cells was '9' and is '3'"),
+        (Builder(9).build, Builder(3).build, "attribute.cells was '9' and is '3'"),
         (Maze, lambda: Maze(3), "what makes it was not set"),
         (lambda: Maze(9), lambda: Maze(3), """what makes it was '[["Maze"], [9]]'"""),
         (lambda: around(), lambda: around("Maze-v0"), "what makes it was"),
@@ -81,6 +124,38 @@ def test_rows_of_another_world_are_refused_and_it_is_said_what_differs(
     with pytest.raises(ValueError, match=re.escape(told)) as refused:
         keep(tmp_path, second)
     assert "rows of another world" in str(refused.value) and "out=" in str(refused.value)
+
+
+class Odd:
+    """Looking at it raises."""
+
+    def __getattr__(self, name):
+        raise RuntimeError(name)
+
+
+def test_what_a_function_uses_may_be_anything_and_may_change_as_it_is_called(tmp_path):
+    made, circle, numbers, odd = {}, {}, [*range(100_000)], Odd()
+    circle["itself"] = circle
+
+    def make() -> Maze:
+        made[len(made)] = (numbers, circle, {(0, 1): 2}, odd)
+        return Maze()
+
+    for _ in range(3):
+        keep(tmp_path, make)
+        make()  # as a walk does
+    keep(tmp_path / "other", lambda: [Maze(), numbers, circle, odd][0])
+    assert (tmp_path / walked.NOTE).stat().st_size < 3000
+
+
+def test_two_paths_of_one_file_are_one_world(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("scene.json", "other.json"):
+        Path(name).write_text("{}")
+    keep(tmp_path, of_config(cells="scene.json"))
+    keep(tmp_path, of_config(cells=str(tmp_path / "scene.json")))
+    with pytest.raises(ValueError, match=r"env\.world\.cells"):
+        keep(tmp_path, of_config(cells="other.json"))
 
 
 def test_worlds_of_other_sensors_or_another_rule_stand_side_by_side(tmp_path):

@@ -10,6 +10,8 @@ import yaml
 from mitigate.shipping.card import rows_agent
 from mitigate.shipping.export import _of_one_agent
 from mitigate.shipping.given import check_same, give_settings
+from mitigate.shipping.hardened import load_hardened
+from mitigate.shipping.loading import load
 from tests.evaluation.made_rows import row
 
 
@@ -50,6 +52,28 @@ def test_an_agent_with_other_settings_than_the_folders_is_refused(tmp_path):
     check_same(Mine(-1.0), config, "")
     with pytest.raises(ValueError, match=r"with gain=-1.0, but the one given has 5.0"):
         check_same(Mine(5.0), config, "")
+
+
+class Scaled:
+    settings = {"scales": (1, 2)}
+
+
+def test_settings_may_be_a_mapping_and_a_tuple_is_a_list(tmp_path):
+    config = tmp_path / "config.yaml"
+    config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Scaled", "scales": [1, 2]}}))
+    check_same(Scaled(), config, "")
+    config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Scaled", "scales": [1, 3]}}))
+    with pytest.raises(ValueError, match="with scales="):
+        check_same(Scaled(), config, "")
+
+
+@pytest.mark.parametrize("filled", [load, load_hardened])
+def test_what_cannot_be_filled_is_named(filled):
+    folder = "checkpoints/hardened/ts_distill" if filled is load_hardened else "checkpoints/base"
+    with pytest.raises(TypeError, match="the class Silent: give an object"):
+        filled(folder, agent=Silent)
+    with pytest.raises(TypeError, match="a object, which has no weights to fill"):
+        filled(folder, agent=object())
 
 
 class Silent:

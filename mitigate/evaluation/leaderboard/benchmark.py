@@ -15,13 +15,14 @@ from omegaconf.errors import OmegaConfBaseException
 from mitigate.core import conf, seeding
 from mitigate.core.build import agent_option, located, maker
 from mitigate.core.held import held, in_eval_mode
+from mitigate.core.identity import identity
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.progress import duration
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
-from mitigate.evaluation import walked
+from mitigate.evaluation import making, walked
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_episodes
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
@@ -79,15 +80,15 @@ def benchmark(
     agent, name = _agent(agent, name, cfg, seed)
     check_texts(name=name, training_data=training_data, link=link)
     made = world or maker(cfg.env.world)
-    first = _first_world(made, met)
-    split, chosen = _episodes(first, cfg, split, episodes, listed)
+    first, made_by = _first_world(made, met)
+    split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    _check_known(agent, name, file)
+    known_as = _known_as(agent, name, file, first)
+    label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known_as": known_as}
     _tell(agent, made, chosen, len(met), workers)
-    label: dict[str, Any] = {"name": name, "split": split, "seed": seed}
     with FolderLock(file.parent):
         _tell_reused(agent, file)
-        walked.keep(file.parent, made, first, split, chosen)
+        walked.keep(file.parent, first, made_by, split, chosen)
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
     return entry_of(
         rows,
@@ -132,18 +133,20 @@ def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]
     return agent, name or type(agent).__name__
 
 
-def _check_known(agent: Any, name: str, file: Path) -> None:
-    """Raise ValueError if there are rows of that name, and nothing tells whether the agent has the
-    weights that they were walked with."""
-    inside = held(agent)
-    known = hasattr(agent, "settings") or inside.networks or inside.arrays or not inside.unknown
-    if not known and file.exists() and any(row["name"] == name for row in read(file)):
+def _known_as(agent: Any, name: str, file: Path, world: World) -> str:
+    """Return the agent's hash, before a walk changes its arrays; raise ValueError if there are rows
+    of that name, and nothing tells whether it has the weights that they were walked with."""
+    known_as = identity(agent, world.sensors)
+    if hasattr(agent, "settings") or not file.exists():
+        return known_as
+    unknown = held(agent).unknown
+    if unknown and any(row["name"] == name for row in read(file)):
         raise ValueError(
             f"{file} holds rows of {name}, perhaps of other weights: a {type(agent).__name__} has "
-            "no settings(), no networks or arrays that can be seen, and its "
-            f"{inside.unknown[0]} cannot be looked into. Name another folder (out=...), or give it "
-            "settings() that say which weights it has."
+            f"no settings(), and its {unknown[0]} cannot be looked into, or not as a whole. Name "
+            "another folder (out=...), or give it settings() that say which weights it has."
         )
+    return known_as
 
 
 def _tell_reused(agent: Any, file: Path) -> None:
@@ -161,30 +164,37 @@ def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
-def _first_world(make_world: Any, met: Sequence[Corruption]) -> World:
-    """Return a world; raise ValueError if it is not made anew, or shows too little."""
+def _first_world(make_world: Any, met: Sequence[Corruption]) -> tuple[World, dict[str, str]]:
+    """Return a world and what it was made by; raise ValueError if it is not made anew, or shows too
+    little."""
     if not callable(make_world):
         raise ValueError(
             f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
             "since each process has its own."
         )
-    world: World = make_world()
+    world, made_by = making.first(make_world)
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
-    return world
+    return world, made_by
 
 
 def _is_own(world: World, cfg: Any) -> bool:
     """Whether the world is none of the config's, whose lists of episodes mean nothing in it."""
     usual = located(cfg.env.world._target_)
-    return not (isinstance(usual, type) and isinstance(world, usual))
+    kind = usual if isinstance(usual, type) else type(maker(cfg.env.world)())  # a function makes it
+    return not isinstance(world, kind)
 
 
 def _episodes(
-    world: World, cfg: Any, split: str | None, count: int | None, listed: Sequence[Episode] | None
+    world: World,
+    cfg: Any,
+    split: str | None,
+    count: int | None,
+    listed: Sequence[Episode] | None,
+    given: bool,
 ) -> tuple[str, list[Episode]]:
-    """Return the split and the episodes to walk; raise ValueError for none, and for a world of
-    another class than the config's without a list of its own."""
-    own = _is_own(world, cfg)
+    """Return the split and the episodes to walk; raise ValueError for none, and for a world that
+    was ``given``, of another class than the config's, without a list of its own."""
+    own = given and _is_own(world, cfg)
     split = split or (walked.name_of(world) if own else cfg.split)
     if listed is None and own:
         raise ValueError(

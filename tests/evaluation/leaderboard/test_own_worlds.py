@@ -14,10 +14,11 @@ from gymnasium import spaces
 from torch import nn
 
 import mitigate
+from mitigate.core.identity import identity
 from mitigate.evaluation import rows
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
-from mitigate.worlds.episodes import Episode, Goal, Instruction
+from mitigate.worlds.episodes import Episode, Goal, Instruction, write_episodes
 from mitigate.worlds.gym import GymWorld
 
 
@@ -128,6 +129,31 @@ def test_rows_of_an_agent_that_nothing_tells_are_not_taken_up(walk):
         walk(Told(1), out="told")
 
 
+def test_a_network_or_array_beside_does_not_tell_what_is_hidden(walk):
+    for number, beside in enumerate((weight(1), np.zeros(3))):
+        first, other = Hidden(1), Hidden(2)
+        first.mean = other.mean = beside
+        walk(first, out=f"rows{number}")
+        with pytest.raises(ValueError, match="its session cannot be looked"):
+            walk(other, out=f"rows{number}")
+
+
+class Counting(Hidden):
+    """Its array changes while it walks."""
+
+    def __init__(self) -> None:
+        self.total = np.zeros(3)
+
+    def act(self, observation) -> int:
+        self.total += 1
+        return 0
+
+
+def test_an_agent_is_what_it_was_before_it_walked(walk):
+    hashes = {one["agent"] for _ in range(2) for one in walk(Counting()).agents}
+    assert hashes == {identity(Counting(), CorridorWorld().sensors)}
+
+
 class Moody(nn.Module):
     """Its output is 0 in eval mode and 1 in train mode; it keeps statistics of what it saw."""
 
@@ -168,3 +194,24 @@ def test_an_entry_added_has_the_sensors_of_its_own_world_or_none(walk, capsys):
     assert command.main([*add, "--overwrite", "env=corridor", "--config-dir", "mine"]) == 0
     assert load("entries/Holder.json").sensors == entry.sensors == ("rgb: 8 x 8 x 3 uint8",)
     assert command.main(["check", "entries"]) == 0
+
+
+def make_corridor() -> CorridorWorld:
+    return CorridorWorld()
+
+
+def test_a_configs_world_that_a_function_makes_has_the_configs_episodes(walk):
+    Path("mine/env").mkdir(parents=True)
+    write_episodes("val.json", EPISODES)
+    made = ENV.replace(".CorridorWorld", ".make_corridor").replace("nowhere.json", "val.json")
+    Path("mine/env/made.yaml").write_text(made)
+    options = ["--config-dir=mine", "env=made"]
+    for world in (None, CorridorWorld):
+        assert walk(Holder(weight(1)), world, listed=None, options=options, out=f"of{world}")
+    with pytest.raises(ValueError, match="none of Corridor: give its own"):
+        walk(
+            Holder(weight(1)),
+            lambda: GymWorld(Corridor(), success="won"),
+            listed=None,
+            options=options,
+        )
