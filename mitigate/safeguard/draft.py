@@ -112,7 +112,7 @@ class Draft:
         """Apply the rules to one section of the text after the other, and to none behind READ."""
         self.unread = len(self.heard) > READ
         read = sections(self.heard[:READ], SECTION)
-        done = [rules.repair(part).text for part in read]
+        done = rules.repaired_sections(read)
         self.same = done == read
         said = "".join(
             old if old == new else f"{tidy(new)} " for old, new in zip(read, done, strict=True)

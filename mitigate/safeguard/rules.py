@@ -34,7 +34,7 @@ from mitigate.safeguard.foreign.judgement import (
     leads,
     wrapped,
 )
-from mitigate.safeguard.foreign.pieces import Piece, without
+from mitigate.safeguard.foreign.pieces import Piece, sentence_pieces, without
 from mitigate.safeguard.foreign.weights import STYLE
 from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.plain.manners import asks_for_way, unasked
@@ -152,6 +152,37 @@ def repair(
     left = without(quiet, out)
     framed = sum(style_marks(s) for s in removed if framing(s))
     return Repaired(left, removed, tuple(reasons), style_marks(left) + framed)
+
+
+def repaired_sections(parts: Sequence[str]) -> list[str]:
+    """Return consecutive sections of a text after the rules; one that tells nothing of the way is
+    read beside a sentence of another one that does, as it would be in the whole text."""
+    told = [_plainly_told(part) for part in parts]
+    beside = next(filter(None, told), "")
+    done = []
+    for place, (part, own) in enumerate(zip(parts, told, strict=True)):
+        if own or not beside:
+            done.append(repair(part).text)
+            continue
+        read = f"{beside} {part}" if place else f"{part.rstrip()} {beside}"
+        given = repair(read).text
+        if given == read:
+            done.append(part)
+        elif place and given.startswith(beside):
+            done.append(given.removeprefix(beside).lstrip())
+        elif not place and given.endswith(beside):
+            done.append(given.removesuffix(beside).rstrip())
+        else:
+            done.append(repair(part).text)
+    return done
+
+
+def _plainly_told(part: str) -> str:
+    """Return the first sentence of a section that surely leads one on a plain way, or ""."""
+    said = (piece.of(part) for piece in sentence_pieces(part) if not piece.block)
+    return next(
+        (s for s in said if leads(s) and gate.route_facts(s) and asked(s, False) < PLAIN), ""
+    )
 
 
 def _chosen(
