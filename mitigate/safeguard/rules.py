@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.foreign.courtesy import framing
@@ -35,6 +36,7 @@ from mitigate.safeguard.foreign.judgement import (
     wrapped,
 )
 from mitigate.safeguard.foreign.pieces import Piece, sentence_pieces, without
+from mitigate.safeguard.foreign.short_steps import goes_on
 from mitigate.safeguard.foreign.weights import STYLE
 from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.plain.manners import asks_for_way, unasked
@@ -250,6 +252,8 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
     )
     others = [other.text for other in found if other is not one]
     first = one is found[0]
+    if last and goes_on(one.text) and _ended(found[:place]):
+        return ""
     refused = (
         harmless(one.text, others, first, last)
         or gate.removal_refused(unasked(one.text), one.own, first, last)
@@ -258,6 +262,12 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
     ends = last and not first and one.own < gate.ATTACK and not attacks(one.text.lower())
     goal = ends and asks_for_way(one.text) and gate.mentioned(one.text)
     return refused or ("it may tell where the way ends" if goal else "")
+
+
+def _ended(before: Sequence[Judged]) -> bool:
+    """Return whether the last sentence that is no attack stops, or tells what to find."""
+    said = next((one.text for one in reversed(before) if one.foreign < SURE), "")
+    return "stop" in facts(said).directions or bool(gate.sought(said, hunted=True))
 
 
 def _allowed(text: str, out: list[Piece], tags: Tags | None) -> tuple[list[Piece], list[str]]:
