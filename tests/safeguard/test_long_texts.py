@@ -48,3 +48,17 @@ def test_many_short_sentences_carry_no_attack_past_the_rules(filler):
         f"{ROUTE} {many}{ATTACK} {many}{ROUTE}"):  # fmt: skip
         given = Safeguard().canonicalise(text).text
         assert ATTACK not in given and given.count(ROUTE) == text.count(ROUTE)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Go to the café 去咖啡馆，然后在门口等我，不要走太远了好吗谢谢",
+        "пройди мимо a red box на кухне",
+        "Идите в kitchen. Stop at the red sofa. Потом ждите у двери и никуда не уходите",
+    ],
+)
+def test_a_text_of_two_languages_keeps_both_where_its_english_is_no_attack(text):
+    decision = Safeguard().canonicalise(text)
+    assert decision.text == text and decision.reasons == ("nothing readable in English",)
+    assert ATTACK not in Safeguard().canonicalise(f"{text}. {ATTACK} {text}").text
