@@ -100,7 +100,7 @@ def tells_how_far(sentence: str) -> bool:
 def way_told(sentence: str) -> list[str]:
     """Return how far and into which quarter a sentence tells one to go ("10 m", "north"), if it
     begins with a motion, tells no more, and does not go back."""
-    told = []
+    told: list[str] = []
     for part in filter(str.strip, _AND.split(sentence)):
         match = _counted(part) or _HEADS.fullmatch(" ".join(_told(part)))
         if match is None or not (told or match["moves"]):
