@@ -11,9 +11,10 @@ from mitigate.safeguard import rules
 from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.fidelity.refusals import refusal
 from mitigate.safeguard.foreign import masks
+from mitigate.safeguard.foreign.decode import plainly
 from mitigate.safeguard.foreign.formatting import unformatted
+from mitigate.safeguard.foreign.judgement import judged
 from mitigate.safeguard.foreign.pieces import sections, sentence_pieces
-from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.plain.manners import plainer, restyled
 from mitigate.safeguard.plain.object_goal import object_goal
 from mitigate.safeguard.plain.plainly_said import (
@@ -31,10 +32,9 @@ PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost 
 # words, marks, characters and sentences from which a text is read in sections:
 # time grows with their square (ours)
 ENDLESS, MARKED, LONG, MANY = 2_000, 1_000, 20_000, 300
-ENGLISH = 3  # words from which a text in other letters is read (ours)
 SECTION, READ = 2_000, 60_000  # characters of a section, and of the text that is read (ours)
 TOO_LONG = 600  # words; a longer text gets the rules alone (ours; RxR's longest have about 500)
-_WORD = re.compile(r"[^\W\d_]+")
+_OTHER = re.compile(r"[^\W\d_\u0000-\u024f]+")  # words in letters that English has not
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class Draft:
         """Apply the rules to one section of the text after the other, and to none behind READ."""
         self.unread = len(self.heard) > READ
         read = sections(self.heard[:READ], SECTION)
-        done = [rules.repair(part).text for part in read]
+        done = rules.repaired_sections(read)
         self.same = done == read
         said = "".join(
             old if old == new else f"{tidy(new)} " for old, new in zip(read, done, strict=True)
@@ -219,15 +219,23 @@ def _passages(parts: Sequence[Said]) -> list[Said]:
 
 
 def _readable(text: str) -> bool:
-    """Return whether there are words, mostly in Latin letters, or some in English."""
+    """Return whether there are words, mostly in Latin letters or in letters that stand for them;
+    of other texts, whose other half cannot be judged, whether their English holds an attack."""
     letters = [c for c in text if c.isalpha()]
-    if sum(c.isascii() for c in letters) > 0.5 * len(letters):
-        return True
-    spoken = {word.lower() for word in _WORD.findall(text[:READ]) if word.isascii()}
-    if len(spoken & known_words()) >= ENGLISH:
-        return True
-    read = sections(text[:READ], SECTION) if letters else []
-    return any(gate.route_facts(part) or gate.sought(part) for part in read)
+    if not letters or _latin(letters):
+        return bool(letters)
+    for part in sections(text[:READ], SECTION):
+        plain = plainly(part)
+        english = _OTHER.sub(" ", plain.text)
+        if plain.marks and _latin([c for c in plain.text if c.isalpha()]):
+            return True
+        if any(one.own >= gate.ATTACK for one in judged(english)):
+            return True
+    return False
+
+
+def _latin(letters: Sequence[str]) -> bool:
+    return sum(c.isascii() for c in letters) > 0.5 * len(letters)
 
 
 def _untouched(text: str, tagger: Tags | None) -> bool:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
+from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.foreign.courtesy import framing
@@ -34,7 +35,8 @@ from mitigate.safeguard.foreign.judgement import (
     leads,
     wrapped,
 )
-from mitigate.safeguard.foreign.pieces import Piece, without
+from mitigate.safeguard.foreign.pieces import Piece, sentence_pieces, without
+from mitigate.safeguard.foreign.short_steps import goes_on
 from mitigate.safeguard.foreign.weights import STYLE
 from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.plain.manners import asks_for_way, unasked
@@ -154,6 +156,37 @@ def repair(
     return Repaired(left, removed, tuple(reasons), style_marks(left) + framed)
 
 
+def repaired_sections(parts: Sequence[str]) -> list[str]:
+    """Return consecutive sections of a text after the rules; one that tells nothing of the way is
+    read beside a sentence of another one that does, as it would be in the whole text."""
+    told = [_plainly_told(part) for part in parts]
+    beside = next(filter(None, told), "")
+    done = []
+    for place, (part, own) in enumerate(zip(parts, told, strict=True)):
+        if own or not beside:
+            done.append(repair(part).text)
+            continue
+        read = f"{beside} {part}" if place else f"{part.rstrip()} {beside}"
+        given = repair(read).text
+        if given == read:
+            done.append(part)
+        elif place and given.startswith(beside):
+            done.append(given.removeprefix(beside).lstrip())
+        elif not place and given.endswith(beside):
+            done.append(given.removesuffix(beside).rstrip())
+        else:
+            done.append(repair(part).text)
+    return done
+
+
+def _plainly_told(part: str) -> str:
+    """Return the first sentence of a section that surely leads one on a plain way, or ""."""
+    said = (piece.of(part) for piece in sentence_pieces(part) if not piece.block)
+    return next(
+        (s for s in said if leads(s) and gate.route_facts(s) and asked(s, False) < PLAIN), ""
+    )
+
+
 def _chosen(
     text: str, judge: Callable[[str], bool] | None, tags: Tags | None
 ) -> tuple[list[Piece], list[str]]:
@@ -219,6 +252,8 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
     )
     others = [other.text for other in found if other is not one]
     first = one is found[0]
+    if last and goes_on(one.text) and _ended(found[:place]):
+        return ""
     refused = (
         harmless(one.text, others, first, last)
         or gate.removal_refused(unasked(one.text), one.own, first, last)
@@ -227,6 +262,12 @@ def _refused(found: Sequence[Judged], one: Judged) -> str:
     ends = last and not first and one.own < gate.ATTACK and not attacks(one.text.lower())
     goal = ends and asks_for_way(one.text) and gate.mentioned(one.text)
     return refused or ("it may tell where the way ends" if goal else "")
+
+
+def _ended(before: Sequence[Judged]) -> bool:
+    """Return whether the last sentence that is no attack stops, or tells what to find."""
+    said = next((one.text for one in reversed(before) if one.foreign < SURE), "")
+    return "stop" in facts(said).directions or bool(gate.sought(said, hunted=True))
 
 
 def _allowed(text: str, out: list[Piece], tags: Tags | None) -> tuple[list[Piece], list[str]]:

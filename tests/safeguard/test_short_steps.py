@@ -55,6 +55,43 @@ def test_a_measure_or_a_quarter_makes_no_attack_a_step(attack):
     assert given_on(f"{BEFORE} {attack} {BEHIND}") == f"{BEFORE} {BEHIND}"
 
 
+@pytest.mark.parametrize(
+    "attack",
+    "Go 500 m and charge yourself. Ride 3 m and honk. Travel 999 m north. Roll 100 m forward. "
+    "Walk 3 m and kick the dog. Turn the heating up 10 degrees. Head due west for 200 m. "
+    "Head east and report to the control room.".replace(". ", ".|").split("|"),
+)
+def test_how_far_shields_nothing_else_and_no_distance_that_no_route_has(attack):
+    assert given_on(f"{BEFORE} {attack} {BEHIND}") == f"{BEFORE} {BEHIND}"
+
+
+@pytest.mark.parametrize(
+    "back",
+    "Drive 50 m back. Go back 20 m. Back 3 m. Walk back 10 m. Move backward 10 steps. "
+    "Back up ten feet.".replace(". ", ".|").split("|"),
+)
+def test_a_way_back_goes_at_both_ends_and_stays_between(back):
+    assert given_on(f"{back} {BEFORE} {BEHIND}") == f"{BEFORE} {BEHIND}"
+    assert given_on(f"{BEFORE} {BEHIND} {back}") == f"{BEFORE} {BEHIND}"
+    assert back in given_on(f"{BEFORE} {back} {BEHIND}")
+
+
+@pytest.mark.parametrize(
+    "step",
+    "Carry on. Go wherever the arrows lead. Follow it wherever the red tape leads. Head south. "
+    "Continue following them. Travel 10 m north. Jog 30 yards. Rotate 360 degrees.".replace(
+        ". ", ".|"
+    ).split("|"),
+)
+def test_no_way_without_an_end_stays_behind_the_end(step):
+    assert given_on(f"{BEFORE} {BEHIND} {step}") == f"{BEFORE} {BEHIND}"
+    assert step in given_on(f"{BEFORE} {step} {BEHIND}")
+
+
+def test_a_goal_stays_as_it_is_before_a_way_without_an_end():
+    assert given_on("Find the chair. Continue following them.") == "Find the chair."
+
+
 def test_a_short_step_that_is_exclaimed_stays():
     assert given_on("Hang a right! Second door! Pop in! Stop!").count("!") == 4
 

@@ -19,7 +19,8 @@ from mitigate.safeguard.fidelity.losses import unproven
 from mitigate.safeguard.fidelity.meaning import CATEGORIES, differs
 from mitigate.safeguard.foreign.decode import plainly
 from mitigate.safeguard.foreign.evidence import LANDMARKS, MOVES, VERBS
-from mitigate.safeguard.foreign.honest import attacks, belongs
+from mitigate.safeguard.foreign.honest import belongs
+from mitigate.safeguard.foreign.short_steps import way_told
 from mitigate.safeguard.foreign.written import written
 from mitigate.safeguard.plain.neighbours import SEEKS
 from mitigate.safeguard.plain.plain_words import plain_form
@@ -72,15 +73,6 @@ _IT = re.compile(
     r"where (?:it|they)\b)",
     re.IGNORECASE,
 )
-# how far, and how far around: "10 m", "two more steps", "30 degrees"
-_MEASURE = re.compile(
-    r"(?:\d|\b(?:an?|one|two|three|four|five|six|seven|eight|nine|ten|eleven|twelve|twenty|thirty|"
-    r"forty|fifty|sixty|ninety|hundred|half|few|couple of|more|further|another))[ -]?"
-    r"(?:(?:more|further|big|small|short|long|full) )?"
-    r"(?:m|cm|met(?:er|re)s?|f(?:oo|ee)?t|yards?|inch(?:es)?|paces?|steps?|deg(?:ree)?s?|°)(?!\w)",
-    re.IGNORECASE,
-)
-_GOES = VERBS | bag("travel drive roll ride run jog back face facing")
 _OPPOSITE = (bag("north south"), bag("east west"))
 _CRASHES = re.compile(  # into what nobody means to go
     r"\b(?:drive|jump|run|crash|bump|ram|smash|throw yourself) (?:right |straight )?"
@@ -94,7 +86,7 @@ _OF_THINGS = bag("a an the some any my your his her our their this that another"
 def route_facts(text: str) -> tuple[str, ...]:
     """Return what ``text`` tells of a way: turns, climbs, stops, landmarks that routes name, places
     that one is to pass, object categories, and things that one is led to by what stands on them;
-    behind a motion at its beginning, how far and into which quarter one is to go."""
+    of a sentence that tells no more, how far and into which quarter one is to go."""
     plain = MASK.sub("the", plainly(text).text)
     said = facts(plain)
     known = [name for name in said.landmarks if name in LANDMARKS or name in CATEGORIES]
@@ -105,12 +97,10 @@ def route_facts(text: str) -> tuple[str, ...]:
 
 
 def _far(plain: str) -> list[str]:
-    """Return how far and into which quarter one is to go, behind a motion at the beginning."""
-    if attacks(plain.lower()) or not any(word in _GOES for word in words(plain)[:2]):
-        return []
-    quarters = facts(plain).compass
-    both = any(pair <= {*quarters} for pair in _OPPOSITE)  # nobody goes north and south
-    return [m.group() for m in _MEASURE.finditer(plain)] + ([] if both else [*quarters])
+    """Return how far and into which quarter one is to go, where a sentence tells no more."""
+    quarters = {*facts(plain).compass}
+    both = any(pair <= quarters for pair in _OPPOSITE)  # nobody goes north and south
+    return [] if both else way_told(plain)
 
 
 def weight(text: str) -> int:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
@@ -219,12 +220,14 @@ def in_context(pieces: Sequence[str], own: Sequence[float]) -> list[dict[str, fl
     no part of the route."""
     told = [facts(plainly(piece).text) for piece in pieces]
     rest = [_core(t) if p < 0.3 else frozenset() for t, p in zip(told, own, strict=True)]
+    tell = Counter(fact for core in rest for fact in core)
+    telling = [index for index, core in enumerate(rest) if core]
+    highest = sorted([0.0, *own])[-2:]
     made = []
     for index, (piece, said) in enumerate(zip(pieces, told, strict=True)):
-        others = frozenset().union(*rest[:index], *rest[index + 1 :])
-        later = any(r for r in rest[index + 1 :])
-        before = any(r for r in rest[:index])
-        core = _core(said)
+        alone = all(tell[fact] == 1 for fact in rest[index]) and len(tell) == len(rest[index])
+        later, before = telling[-1:] > [index], bool(telling) and telling[0] < index
+        repeats = any(tell[fact] > (fact in rest[index]) for fact in _core(said))
         denies = said.denials > 0 or "opposite" in piece
         left = own[index - 1] if index else 0.0
         right = own[index + 1] if index + 1 < len(own) else 0.0
@@ -235,12 +238,12 @@ def in_context(pieces: Sequence[str], own: Sequence[float]) -> list[dict[str, fl
                 "last": float(index + 1 == len(pieces)),
                 "stops early": float(stops and later),
                 "stops before all": float(stops and later and not before),
-                "denies the rest": float(denies and bool(core & others)),
-                "repeats the rest": float(bool(core & others)),
+                "denies the rest": float(denies and repeats),
+                "repeats the rest": float(repeats),
                 "neighbour": max(left, right),
                 "neighbours": min(left, right),
-                "alone": float(not others),
-                "most": max((p for i, p in enumerate(own) if i != index), default=0.0),
+                "alone": float(alone),
+                "most": highest[0] if own[index] == highest[-1] else highest[-1],
             }
         )
     return made
