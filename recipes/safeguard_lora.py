@@ -14,7 +14,8 @@ from torch import Tensor
 from mitigate.core.files import sha256
 from mitigate.core.precision import to_device
 from mitigate.core.seeding import generator
-from mitigate.safeguard.language_models.model import LanguageModel, collate, encode_pair
+from mitigate.safeguard.language_models.model import LanguageModel
+from mitigate.safeguard.language_models.tokens import collate, encode_pair
 from mitigate.safeguard.learning.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.training.recipe import Recipe
 

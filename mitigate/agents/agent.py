@@ -76,8 +76,9 @@ def check_logits(logits: Tensor, agent: Any) -> Tensor:
     Raises ValueError, naming the kind of ``agent``, for NaN, for infinity, and where nothing may be
     chosen: the likeliest action would be the first, STOP.
     """
-    if not torch.isfinite(logits.amax(-1)).all():
-        shown = logits[~torch.isfinite(logits.amax(-1))][0] if logits.ndim > 1 else logits
+    chosen = torch.isfinite(logits.amax(-1))
+    if not chosen.all():
+        shown = logits[~chosen][0] if logits.ndim > 1 else logits
         numbers = ", ".join(f"{value:g}" for value in shown.flatten()[:8].tolist())
         raise ValueError(
             f"{type(agent).__name__} gave logits that choose no action ({numbers}): of what may be "

@@ -95,13 +95,13 @@ def _weights(inside: Held) -> str | dict[str, str]:
         return weights_sha(inside.networks[""])
     found: dict[str, list[str]] = defaultdict(list)
     for place, thing in (inside.networks or inside.arrays).items():
-        sha = weights_sha(thing) if isinstance(thing, nn.Module) else _sha(thing)
+        sha = weights_sha(thing) if isinstance(thing, nn.Module) else array_sha(thing)
         found[_OF_SET.sub("{}", place)].append(sha)
     return {place: " ".join(sorted(shas)) for place, shas in found.items()} or ""
 
 
-def _sha(array: torch.Tensor | np.ndarray) -> str:
-    """The hash of an array's type, shape and bytes."""
+def array_sha(array: torch.Tensor | np.ndarray) -> str:
+    """Return the hash of an array's type, shape and bytes."""
     if isinstance(array, torch.Tensor):
         bytes_of = array.detach().cpu().contiguous().reshape(-1).view(torch.uint8).numpy().tobytes()
     else:

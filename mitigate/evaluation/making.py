@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.build import Maker
-from mitigate.core.identity import source_of
+from mitigate.core.identity import array_sha, source_of
 from mitigate.worlds.world import World
 
 MADE = "what makes it"
@@ -123,8 +123,7 @@ def _data(value: Any, depth: int, told: Iterator[int]) -> Any:
     if isinstance(value, np.generic) and not value.dtype.hasobject:
         return value.item()
     if isinstance(value, np.ndarray) and not value.dtype.hasobject:
-        sha = hashlib.sha256(value.tobytes()).hexdigest()[:12]
-        return f"array {value.dtype} {value.shape} {sha}"
+        return f"array {value.dtype} {value.shape} {array_sha(value)}"
     if depth < DEEPEST and next(told) < MOST:
         inner = partial(_data, depth=depth + 1, told=told)
         if is_dataclass(value) and not isinstance(value, type):

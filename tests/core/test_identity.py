@@ -56,16 +56,22 @@ class Plain:
 
 def test_an_agent_without_settings_is_another_one_when_its_code_is(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
+    edited = PLAIN.replace("steps = 0", "steps = 1")
+    first, other, again = _hashes(tmp_path, "Plain", (PLAIN, edited, PLAIN))
+    assert first == again != other
+
+
+def _hashes(folder, agent, sources):
+    """The hash of the class ``agent`` in one module whose source is one after the other."""
     found = []
-    for number, source in enumerate((PLAIN, PLAIN.replace("steps = 0", "steps = 1"), PLAIN)):
-        (tmp_path / "plain_agent.py").write_text(source + "#" * number)  # of other lengths
-        sys.modules.pop("plain_agent", None)
+    for number, source in enumerate(sources):
+        (folder / "own_agent.py").write_text(source + "#" * number)  # of other lengths
+        sys.modules.pop("own_agent", None)
         importlib.invalidate_caches()
         linecache.clearcache()
-        found.append(identity(importlib.import_module("plain_agent").Plain(), {}))
-    sys.modules.pop("plain_agent")
-    first, edited, again = found
-    assert first == again != edited
+        found.append(identity(getattr(importlib.import_module("own_agent"), agent)(), {}))
+    sys.modules.pop("own_agent")
+    return found
 
 
 def test_an_agent_is_what_was_loaded_whatever_becomes_of_its_file(tmp_path, monkeypatch):
@@ -133,13 +139,6 @@ class Here:
 
 def test_the_code_of_an_agents_networks_counts_also_where_it_has_settings(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
-    found = []
-    for number, source in enumerate((NETWORK, NETWORK.replace("return ", "return -"), NETWORK)):
-        (tmp_path / "own_network.py").write_text(source + "#" * number)  # of other lengths
-        sys.modules.pop("own_network", None)
-        importlib.invalidate_caches()
-        linecache.clearcache()
-        found.append(identity(importlib.import_module("own_network").Agent(), {}))
-    sys.modules.pop("own_network")
-    first, edited, again = found
-    assert first == again != edited
+    edited = NETWORK.replace("return ", "return -")
+    first, other, again = _hashes(tmp_path, "Agent", (NETWORK, edited, NETWORK))
+    assert first == again != other

@@ -13,12 +13,8 @@ import torch
 
 from mitigate.core import checkpoint
 from mitigate.recipes.safeguard_lora import SafeguardLora
-from mitigate.safeguard.language_models.model import (
-    LanguageModel,
-    collate,
-    encode_pair,
-    open_adapter,
-)
+from mitigate.safeguard.language_models.model import LanguageModel, open_adapter
+from mitigate.safeguard.language_models.tokens import collate, encode_pair
 from mitigate.safeguard.learning.data import Pair
 from mitigate.training import states
 from mitigate.training.recipe import accumulate

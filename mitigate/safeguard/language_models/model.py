@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from itertools import takewhile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import torch
 from torch import Tensor, nn
@@ -24,10 +24,8 @@ from mitigate.safeguard.language_models.adapter_folder import (
     write_adapter,
 )
 from mitigate.safeguard.language_models.base import PRECISIONS, SMOLLM2, base_sha256, load_base
-from mitigate.safeguard.language_models.prompts import PROMPTS, prompt_messages
-
-if TYPE_CHECKING:
-    from mitigate.safeguard.learning.data import Pair
+from mitigate.safeguard.language_models.prompts import PROMPTS
+from mitigate.safeguard.language_models.tokens import collate, encode
 
 TURNS = ("<|im_start|>", "<|start_header_id|>")  # begin a turn: ChatML's (SmolLM2), Llama 3's
 LONGEST = 512  # prompt tokens; a longer text is not rewritten (ours)
@@ -236,39 +234,6 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     if precision == "fp32":
         model.network.merge_adapter()
     return model.eval()
-
-
-def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
-    """Token ids of the chat that asks for ``text`` to be rewritten, up to the answer."""
-    ids = tokenizer.apply_chat_template(
-        prompt_messages(text, prompt), add_generation_prompt=True, return_dict=False
-    )
-    return list(ids)
-
-
-def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], list[int]]:
-    """Token ids of the prompt, and of the completion with its end mark."""
-    answer = tokenizer(pair.target, add_special_tokens=False)["input_ids"]
-    return encode(tokenizer, prompt, pair.source), [*answer, tokenizer.eos_token_id]
-
-
-def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str, Tensor]:
-    """Pad on the left, so that completions end together.
-
-    Returns ``input_ids, attention_mask, position_ids`` int64 [B, T] and ``completion`` bool [B, C]:
-    which of the last C tokens are completion, by position (pad and end mark may be one token).
-    """
-    rows = [[*prompt, *answer] for prompt, answer in pairs]
-    width, longest = max(map(len, rows)), max(len(answer) for _, answer in pairs)
-    lengths = torch.tensor([len(row) for row in rows])
-    mask = (torch.arange(width) >= width - lengths[:, None]).long()
-    answers = torch.tensor([len(answer) for _, answer in pairs])
-    return {
-        "input_ids": torch.tensor([[pad] * (width - len(row)) + row for row in rows]),
-        "attention_mask": mask,
-        "position_ids": (mask.cumsum(-1) - 1).clamp(min=0),
-        "completion": torch.arange(longest) >= longest - answers[:, None],
-    }
 
 
 def _shared(prompts: Sequence[list[int]]) -> int:
