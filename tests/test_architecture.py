@@ -62,6 +62,18 @@ def test_a_package_imports_what_the_map_allows(package):
     assert files and not {path: names for path, names in found.items() if names}
 
 
+def test_packages_of_the_safeguard_know_those_before_them():
+    listed = re.search(r"^Inside `safeguard` .* before it: ([^;]*);", MAP, re.M)
+    layers = re.findall(r"\w+", listed[1]) if listed else []
+    for place, layer in enumerate(layers):
+        later = tuple(f"mitigate.safeguard.{name}." for name in layers[place + 1 :])
+        for path in (ROOT / "mitigate/safeguard" / layer).glob("*.py"):
+            found = [name for name in imported(path) if f"{name}.".startswith(later)]
+            assert not found, path
+    folders = {p.parent.name for p in (ROOT / "mitigate/safeguard").glob("*/__init__.py")}
+    assert folders - {*layers} == {"language_models"}
+
+
 def test_an_import_that_the_map_does_not_allow_is_found():
     assert strangers("core", {"mitigate.core.names", "mitigate.training.train"}) == {"training"}
     assert strangers("scale", {"mitigate.worlds"}) == {"worlds"}

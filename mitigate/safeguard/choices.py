@@ -10,7 +10,7 @@ from pathlib import Path
 from mitigate.core.files import find, sha256
 from mitigate.core.names import unknown
 from mitigate.safeguard.addresses import check_choice
-from mitigate.safeguard.foreign import weights
+from mitigate.safeguard.texts import weights
 
 CHOICES = ("none", "rules", "tagger", "reader", "prompted", "lora", "tagger+lora", "reader+lora",
     "http://host/v1@model")  # fmt: skip

@@ -9,12 +9,9 @@ from dataclasses import dataclass, replace
 
 from mitigate.safeguard import rules
 from mitigate.safeguard.fidelity import gate
-from mitigate.safeguard.fidelity.refusals import refusal
 from mitigate.safeguard.foreign import masks
-from mitigate.safeguard.foreign.decode import plainly
 from mitigate.safeguard.foreign.formatting import unformatted
 from mitigate.safeguard.foreign.judgement import judged
-from mitigate.safeguard.foreign.pieces import sections, sentence_pieces
 from mitigate.safeguard.plain.manners import plainer, restyled
 from mitigate.safeguard.plain.object_goal import object_goal
 from mitigate.safeguard.plain.plainly_said import (
@@ -25,7 +22,10 @@ from mitigate.safeguard.plain.plainly_said import (
     plainly_said,
     together,
 )
-from mitigate.safeguard.text import MASK, sentences, tidy, words
+from mitigate.safeguard.refusals import refusal
+from mitigate.safeguard.texts.decode import plainly
+from mitigate.safeguard.texts.pieces import sections, sentence_pieces
+from mitigate.safeguard.texts.text import MASK, sentences, tidy, words
 
 MARKS = 2  # style words from which a text counts as restyled; one occurs in plain text (ours)
 PASSAGE = 12  # words rewritten at once, about a sentence; of 30 the model lost clauses

@@ -28,13 +28,14 @@ from mitigate.core.files import atomic_text
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.safeguard.fidelity import gate
-from mitigate.safeguard.foreign import front, judgement, weights
-from mitigate.safeguard.foreign.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
-from mitigate.safeguard.foreign.pieces import parts, sentence_pieces
+from mitigate.safeguard.foreign import front, judgement
 from mitigate.safeguard.learning import routes, trials
 from mitigate.safeguard.learning.data import draw_pair, vary
-from mitigate.safeguard.lexicon import GROUPS
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts import weights
+from mitigate.safeguard.texts.evidence import HIDDEN, VERBS, composition, in_context, terms, worth
+from mitigate.safeguard.texts.lexicon import GROUPS
+from mitigate.safeguard.texts.pieces import parts, sentence_pieces
+from mitigate.safeguard.texts.text import words
 
 PAIRS, RIDGE, ITERATIONS, FOLDS = 6000, 2.0, 30, 8
 RARE, ODDS = 12, 30.0  # a style word occurs so often, and so many times as often as in plain text

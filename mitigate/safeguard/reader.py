@@ -23,7 +23,6 @@ from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard.choices import not_in
 from mitigate.safeguard.language_models import minilm
 from mitigate.safeguard.plain import edits
-from mitigate.safeguard.plain.plain_words import PHRASES
 from mitigate.safeguard.plain.plainly_said import Tagged
 from mitigate.safeguard.tagger import (
     FLAGS,
@@ -34,6 +33,7 @@ from mitigate.safeguard.tagger import (
     open_tagger,
     tagged,
 )
+from mitigate.safeguard.texts.plain_words import PHRASES
 
 LONGEST = 250  # words and marks that are read at once; a longer text in pieces (512 positions)
 # mean probability of dropping a word from which a text counts as speech, and how much more if each

@@ -29,7 +29,7 @@ from mitigate.safeguard.guard import Rewriter, Safeguard, open_safeguard
 from mitigate.safeguard.learning.data import read_texts
 from mitigate.safeguard.learning.spoken import SPLITS, VALIDATION, spoken
 from mitigate.safeguard.metrics import CLEAN, Repair, Scores, by_family, table
-from mitigate.safeguard.text import passages, sentences
+from mitigate.safeguard.texts.text import passages, sentences
 from mitigate.worlds.episodes import read_episodes
 
 FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")

@@ -17,7 +17,6 @@ from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.foreign.courtesy import framing
 from mitigate.safeguard.foreign.front import in_front
 from mitigate.safeguard.foreign.harmless import harmless
-from mitigate.safeguard.foreign.honest import attacks, belongs
 from mitigate.safeguard.foreign.inside import (
     announces,
     foreign_clauses,
@@ -35,13 +34,14 @@ from mitigate.safeguard.foreign.judgement import (
     leads,
     wrapped,
 )
-from mitigate.safeguard.foreign.pieces import Piece, sentence_pieces, without
-from mitigate.safeguard.foreign.short_steps import goes_on
-from mitigate.safeguard.foreign.weights import STYLE
-from mitigate.safeguard.lexicon import known_words
 from mitigate.safeguard.plain.manners import asks_for_way, unasked
 from mitigate.safeguard.plain.plainly_said import Tags, judging
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.honest import attacks, belongs
+from mitigate.safeguard.texts.lexicon import known_words
+from mitigate.safeguard.texts.pieces import Piece, sentence_pieces, without
+from mitigate.safeguard.texts.short_steps import goes_on
+from mitigate.safeguard.texts.text import words
+from mitigate.safeguard.texts.weights import STYLE
 
 # probabilities from which a piece goes: one that tells nothing, one that names things, one that
 # tells the way (chosen on the tuning parts of the banks)

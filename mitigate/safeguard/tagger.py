@@ -25,7 +25,6 @@ from mitigate.corruptions.language.fidelity import ATTRIBUTES, COLOURS
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard.fidelity.ways import RELATION
-from mitigate.safeguard.foreign.evidence import LANDMARKS, VERBS
 from mitigate.safeguard.language_models.word_vectors import (
     SCALE,
     SIZE,
@@ -34,11 +33,12 @@ from mitigate.safeguard.language_models.word_vectors import (
     word_key,
     word_vectors,
 )
-from mitigate.safeguard.lexicon import FUNCTION, GROUPS
 from mitigate.safeguard.plain import edits
 from mitigate.safeguard.plain.edits import DROP, KEEP, PLAIN, Edit
-from mitigate.safeguard.plain.plain_words import PHRASES, plain_form
 from mitigate.safeguard.plain.plainly_said import SPEECH, Tagged
+from mitigate.safeguard.texts.evidence import LANDMARKS, VERBS
+from mitigate.safeguard.texts.lexicon import FUNCTION, GROUPS
+from mitigate.safeguard.texts.plain_words import PHRASES, plain_form
 
 PIECES = 8192  # hashed pieces of words; 0 is none
 LONGEST_WORD = 14  # pieces of a word that are read

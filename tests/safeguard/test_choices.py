@@ -12,9 +12,9 @@ from mitigate.corruptions.instruction import Key, corrupt_instruction
 from mitigate.corruptions.suite import INSTRUCTION
 from mitigate.safeguard import choices
 from mitigate.safeguard.choices import VERSION, identity, label
-from mitigate.safeguard.foreign import weights
 from mitigate.safeguard.guard import open_safeguard
 from mitigate.safeguard.language_models import adapter_folder
+from mitigate.safeguard.texts import weights
 
 SAID = "42c1ff6b2ef1"  # hash of what the rules of VERSION make of the texts below
 TEXTS = (

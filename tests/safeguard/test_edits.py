@@ -14,7 +14,7 @@ from mitigate.corruptions.language.landmarks import normal
 from mitigate.safeguard.learning.routes import draw_route
 from mitigate.safeguard.learning.spoken import spoken
 from mitigate.safeguard.plain.edits import DROP, KEEP, PLAIN, Edit, edited, taught, tokens
-from mitigate.safeguard.plain.plain_words import PHRASES, plain_form
+from mitigate.safeguard.texts.plain_words import PHRASES, plain_form
 
 ROUTES = st.integers(0, 10_000).map(lambda n: draw_route(generator(n, "edits")))
 SAID = st.sampled_from([text.said for text in spoken("validation")])

@@ -3,7 +3,7 @@
 import json
 
 from mitigate.safeguard import fit
-from mitigate.safeguard.foreign import weights
+from mitigate.safeguard.texts import weights
 
 
 def test_only_write_replaces_the_weights(tmp_path, monkeypatch, capsys):

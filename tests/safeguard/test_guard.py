@@ -14,15 +14,15 @@ from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard import rules
-from mitigate.safeguard.fidelity.refusals import refusal
 from mitigate.safeguard.foreign import masks
 from mitigate.safeguard.foreign.courtesy import framing
 from mitigate.safeguard.guard import Safeguard, open_safeguard
 from mitigate.safeguard.learning.data import draw_pair
 from mitigate.safeguard.learning.routes import draw_route
 from mitigate.safeguard.plain.plainly_said import Said
+from mitigate.safeguard.refusals import refusal
 from mitigate.safeguard.rules import style_marks
-from mitigate.safeguard.text import MASK, sentences
+from mitigate.safeguard.texts.text import MASK, sentences
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
 STYLED = "Hey there! So, go ahead and stroll past the sofa. Then hang a left, okay?"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard.foreign import honest
-from mitigate.safeguard.foreign.pieces import sentence_pieces
 from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.texts import honest
+from mitigate.safeguard.texts.pieces import sentence_pieces
 
 ROUTE = "Walk past the piano and turn left at the lamp. Go through the glass door."
 

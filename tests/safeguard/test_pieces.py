@@ -7,10 +7,10 @@ import codecs
 
 import pytest
 
-from mitigate.safeguard.foreign.decode import plainly
-from mitigate.safeguard.foreign.pieces import parts, sections, sentence_pieces
 from mitigate.safeguard.guard import Safeguard
 from mitigate.safeguard.learning import trials
+from mitigate.safeguard.texts.decode import plainly
+from mitigate.safeguard.texts.pieces import parts, sections, sentence_pieces
 
 ROUTE = "Walk past the sofa and turn left. Go up the stairs. Stop by the lamp."
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.safeguard.foreign.short_steps import short_step
 from mitigate.safeguard.guard import Safeguard
+from mitigate.safeguard.texts.short_steps import short_step
 
 BEFORE = "Walk down the hall to the elevator."
 BEHIND = "Go past the piano and stop at the sofa."

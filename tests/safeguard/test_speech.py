@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from mitigate.safeguard.fidelity import gate
-from mitigate.safeguard.plain.speech import meant
+from mitigate.safeguard.texts.speech import meant
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,9 @@ import re
 
 import pytest
 
-from mitigate.safeguard.plain import speech_words
+from mitigate.safeguard.learning.speech_words import counted
 from mitigate.safeguard.plain.edits import DROP, KEEP, NUMBER, Edit, edited, tokens
+from mitigate.safeguard.plain.speech_words import speech_words
 from mitigate.safeguard.plain.taken_back import taken_back
 
 
@@ -183,7 +184,7 @@ def test_edits_that_harm_nothing_stay_as_they_are():
 
 
 def test_the_words_of_speech_are_those_of_the_train_voices():
-    assert speech_words.speech_words() == speech_words.counted()
+    assert speech_words() == counted()
 
 
 @pytest.mark.parametrize(

@@ -17,14 +17,14 @@ from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity.goal_words import told_of_goal
 from mitigate.safeguard.fidelity.losses import unproven
 from mitigate.safeguard.fidelity.meaning import CATEGORIES, differs
-from mitigate.safeguard.foreign.decode import plainly
-from mitigate.safeguard.foreign.evidence import LANDMARKS, MOVES, VERBS
-from mitigate.safeguard.foreign.honest import belongs
-from mitigate.safeguard.foreign.short_steps import way_told
-from mitigate.safeguard.foreign.written import written
-from mitigate.safeguard.plain.neighbours import SEEKS
-from mitigate.safeguard.plain.plain_words import plain_form
-from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.texts.decode import plainly
+from mitigate.safeguard.texts.evidence import LANDMARKS, MOVES, VERBS
+from mitigate.safeguard.texts.honest import belongs
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.short_steps import way_told
+from mitigate.safeguard.texts.steps import SEEKS
+from mitigate.safeguard.texts.text import MASK, words
+from mitigate.safeguard.texts.written import written
 
 ATTACK = 0.6  # from here on a sentence is an attack by what it says itself
 _HUNTS = re.compile(

@@ -6,10 +6,9 @@ import re
 
 from mitigate.corruptions.language.directions import TURN_VERBS
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.plain.neighbours import HALTS, SEEKS
-from mitigate.safeguard.plain.plain_words import plain_form
-from mitigate.safeguard.plain.steps import MOVES
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.steps import HALTS, MOVES, SEEKS
+from mitigate.safeguard.texts.text import words
 
 # denials and conditions that are none, and other things that are said and plain requests do not say
 SAYINGS = re.compile(

@@ -12,8 +12,8 @@ from mitigate.corruptions.language.landmarks import normal
 from mitigate.corruptions.language.tagger import tag
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity.meaning import Meaning, meaning, missing, moved
-from mitigate.safeguard.plain.plain_words import plain_form
-from mitigate.safeguard.plain.steps import steps
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.steps import steps
 
 # words by which one may mean to stop without saying so
 _ENDS = bag(

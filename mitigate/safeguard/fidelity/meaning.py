@@ -18,9 +18,9 @@ from mitigate.corruptions.language.tagger import tag
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity.ways import AGREE, OPPOSED, OPPOSITES, RELATION, SENSES
 from mitigate.safeguard.fidelity.wording import in_equal_words
-from mitigate.safeguard.foreign.evidence import VERBS
-from mitigate.safeguard.plain.plain_words import plain_form
-from mitigate.safeguard.plain.speech import meant
+from mitigate.safeguard.texts.evidence import VERBS
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.speech import meant
 
 _WEAK = bag(
     """

@@ -10,12 +10,12 @@ from __future__ import annotations
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.fidelity.goal_words import GREETINGS, POLITE, TALK
-from mitigate.safeguard.foreign.evidence import VERBS, tells_where
-from mitigate.safeguard.foreign.honest import shows_place
-from mitigate.safeguard.foreign.weights import STYLE
-from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.plain.manners import asks_for_step
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.evidence import VERBS, tells_where
+from mitigate.safeguard.texts.honest import shows_place
+from mitigate.safeguard.texts.lexicon import FUNCTION
+from mitigate.safeguard.texts.text import words
+from mitigate.safeguard.texts.weights import STYLE
 
 _SPEAKER = bag("i i'm i've i'd i'll we we're we've we'd we'll my")
 # what is said of a text that tells a route, and small words

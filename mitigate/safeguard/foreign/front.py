@@ -18,9 +18,10 @@ from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.foreign.evidence import tells_where
-from mitigate.safeguard.foreign.weights import FRONT
-from mitigate.safeguard.text import MASK, sentences, words
+from mitigate.safeguard.texts.evidence import tells_where
+from mitigate.safeguard.texts.route_words import route_words
+from mitigate.safeguard.texts.text import MASK, sentences, words
+from mitigate.safeguard.texts.weights import FRONT
 
 SURE, LIKELY = 0.4, 0.2
 # other words than weights.STYLE, which is fitted on other texts
@@ -139,9 +140,5 @@ def restyled(told: list[str]) -> bool:
 
 @lru_cache(maxsize=1)
 def _route_words() -> frozenset[str]:
-    from mitigate.safeguard.learning import routes
-
-    text = " ".join((routes.OPEN, routes.MIDDLE, routes.CLOSE, *routes.ASIDES, *routes.ROOMS,
-        *routes.THINGS, *routes.LOOKS, *routes.STAIRS, *routes.DOORS, *routes.PLACES))  # fmt: skip
-    plain = re.sub(r"\{\w+\}", " ", text)
+    plain = re.sub(r"\{\w+\}", " ", route_words())
     return frozenset(words(plain)) | VERBS | ATTRIBUTES | frozenset(CANONICAL)

@@ -12,8 +12,8 @@ from collections.abc import Sequence
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.lexicon import GROUPS
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.lexicon import GROUPS
+from mitigate.safeguard.texts.text import words
 
 _SAID = bag("move moving budge act until unless follow listen trust believe read look").union(
     *(GROUPS[name] for name in ("orders", "text", "annul", "invert", "case", "machine", "authority",

@@ -9,9 +9,6 @@ import re
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity import gate
-from mitigate.safeguard.foreign.decode import plainly
-from mitigate.safeguard.foreign.evidence import features, in_another_language
-from mitigate.safeguard.foreign.honest import belongs_inside
 from mitigate.safeguard.foreign.judgement import (
     SURE,
     Judged,
@@ -21,12 +18,15 @@ from mitigate.safeguard.foreign.judgement import (
     probability,
     strangeness,
 )
-from mitigate.safeguard.foreign.pieces import Piece, parts
-from mitigate.safeguard.foreign.weights import PART
-from mitigate.safeguard.foreign.written import TITLE, quoted, with_bearer, written
-from mitigate.safeguard.lexicon import GROUPS
 from mitigate.safeguard.plain.plainly_said import Tagged, Tags
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.decode import plainly
+from mitigate.safeguard.texts.evidence import features, in_another_language
+from mitigate.safeguard.texts.honest import belongs_inside
+from mitigate.safeguard.texts.lexicon import GROUPS
+from mitigate.safeguard.texts.pieces import Piece, parts
+from mitigate.safeguard.texts.text import words
+from mitigate.safeguard.texts.weights import PART
+from mitigate.safeguard.texts.written import TITLE, quoted, with_bearer, written
 
 PART_SURE = 0.85  # of a part of a sentence
 # a run of words inside a sentence that goes: probability, words, the same of the sentence's others

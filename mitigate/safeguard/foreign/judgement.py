@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from mitigate.safeguard.fidelity import gate
-from mitigate.safeguard.foreign.decode import plainly
-from mitigate.safeguard.foreign.evidence import VERBS, features, in_another_language, in_context
-from mitigate.safeguard.foreign.pieces import Piece, sentence_pieces
-from mitigate.safeguard.foreign.weights import CONTEXT, OWN
-from mitigate.safeguard.foreign.written import without_written
 from mitigate.safeguard.plain.manners import unasked
 from mitigate.safeguard.plain.plainly_said import Tagged, Tags
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.decode import plainly
+from mitigate.safeguard.texts.evidence import VERBS, features, in_another_language, in_context
+from mitigate.safeguard.texts.pieces import Piece, sentence_pieces
+from mitigate.safeguard.texts.text import words
+from mitigate.safeguard.texts.weights import CONTEXT, OWN
+from mitigate.safeguard.texts.written import without_written
 
 SURE = 0.5
 PLAIN = 0.06  # mean strangeness of sentences that are surely a plain route

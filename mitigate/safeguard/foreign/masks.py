@@ -9,10 +9,10 @@ from itertools import takewhile
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.foreign.evidence import LANDMARKS, VERBS
 from mitigate.safeguard.learning.routes import draw_route
-from mitigate.safeguard.lexicon import FUNCTION
-from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.texts.evidence import LANDMARKS, VERBS
+from mitigate.safeguard.texts.lexicon import FUNCTION
+from mitigate.safeguard.texts.text import MASK, words
 
 ROUTES = 4000  # counted, about one second once (ours)
 SMALL = bag(

@@ -19,7 +19,7 @@ from mitigate.safeguard.learning.lessons import Lesson, draw_lesson, edits_of
 from mitigate.safeguard.learning.spoken import spoken
 from mitigate.safeguard.learning.trials import Attack
 from mitigate.safeguard.plain.edits import DROP, KEEP, Edit, tokens
-from mitigate.safeguard.text import sentences
+from mitigate.safeguard.texts.text import sentences
 
 # shares (ours): routes as they are said, in plain words of the same people, sentences of routes
 # that look like attacks, the rest drawn; attacks that are varied, those put inside a sentence

@@ -19,7 +19,7 @@ import numpy as np
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.safeguard.learning import spoken
-from mitigate.safeguard.text import sentences
+from mitigate.safeguard.texts.text import sentences
 
 BANKS = Path(__file__).parent / "banks"
 SPLITS = ("tune", "test")

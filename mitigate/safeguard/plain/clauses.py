@@ -7,9 +7,9 @@ import re
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.plain.edits import CLAUSE_ENDS, DROP, KEEP, PLAIN, Edited
-from mitigate.safeguard.plain.plain_words import plain_form
-from mitigate.safeguard.plain.steps import MARKS, MOVES, PRONOUNS, STEP, TURNS, WAY
 from mitigate.safeguard.plain.wholes import span_of, spelled, wholes
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.steps import MARKS, MOVES, PRONOUNS, STEP, TURNS, WAY
 
 _SEEN = re.compile(
     r"(?<![^ ])(?:there's|there is|there are|you'll see|you will see|you see|you should see|"

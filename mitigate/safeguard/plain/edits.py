@@ -13,8 +13,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from mitigate.corruptions.language.tagger import Token, tag
-from mitigate.safeguard.lexicon import FUNCTION
-from mitigate.safeguard.plain.plain_words import PHRASES, plain_form
+from mitigate.safeguard.texts.lexicon import FUNCTION
+from mitigate.safeguard.texts.plain_words import PHRASES, plain_form
 
 KEEP, DROP, PLAIN = range(3)
 CLAUSE_ENDS = frozenset(".,;:!?()–—")

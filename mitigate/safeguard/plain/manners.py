@@ -12,13 +12,12 @@ import re
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity import gate
-from mitigate.safeguard.foreign.weights import STYLE
-from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.plain import chatty_words, formal_words
-from mitigate.safeguard.plain.neighbours import HALTS, SEEKS
 from mitigate.safeguard.plain.speech_words import speech_words
-from mitigate.safeguard.plain.steps import MOVES, STEP
-from mitigate.safeguard.text import MASK, sentences, words
+from mitigate.safeguard.texts.lexicon import FUNCTION
+from mitigate.safeguard.texts.steps import HALTS, MOVES, SEEKS, STEP
+from mitigate.safeguard.texts.text import MASK, sentences, words
+from mitigate.safeguard.texts.weights import STYLE
 
 _GREETS = (
     r"(?:(?:(?:dear|esteemed|honou?red|valued|respected) \w+(?: (?:or|and) \w+)?|hello|hi|hey|"

@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.plain.edits import DROP, KEEP, Edited
-from mitigate.safeguard.plain.neighbours import HALTS
-from mitigate.safeguard.plain.steps import MOVES, STEP
+from mitigate.safeguard.texts.steps import HALTS, MOVES, STEP
 
 _BRACKETS = frozenset("()[]")
 _QUOTES = frozenset("'\"“”‘’`")

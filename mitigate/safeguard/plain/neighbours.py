@@ -6,16 +6,21 @@ from collections.abc import Sequence
 
 from mitigate.corruptions.language.directions import TURN_VERBS
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.plain.edits import DROP, KEEP, NUMBER, Edited, Said
-from mitigate.safeguard.plain.plain_words import plain_form
-from mitigate.safeguard.plain.steps import DETERMINERS, MARKS, MOVES, STEP, TURNS, WAY, steps
-
-# more than directions.STOPS, which tell that a route stops
-HALTS = bag(
-    "stop stops stopping halt halts halting wait waits waiting pause pauses pausing rest remain "
-    "remaining stay stand hold await awaiting finish cease terminate park"
+from mitigate.safeguard.texts.lexicon import FUNCTION
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.steps import (
+    DETERMINERS,
+    HALTS,
+    MARKS,
+    MOVES,
+    SEEKS,
+    STEP,
+    TURNS,
+    WAY,
+    steps,
 )
+
 _STAYS = bag("wait stand stay remain halt pause")
 _SIDES = bag("left right around round back leftward rightward leftwards rightwards about")
 _BEFORE_SIDE = bag(
@@ -34,10 +39,6 @@ _NO_START = bag("of than which")
 _JOINS = bag("and or")  # joins nothing where a sentence begins
 _ONTO = bag("into from towards toward between beside near to past behind")  # what asks for a thing
 _THEN = bag("until till when once before after while and or then")
-SEEKS = bag(
-    "track tracking hunt hunting localize localise detect identify acquire discover seek spot look "
-    "looking search searching find finding fetch locate where's"
-)
 _GOALS = HALTS | bag("find locate look search seek spot fetch face")
 _VERBS = MOVES | TURNS | STEP.keys() | _GOALS | bag(
     "reach see keep ignore avoid use open start begin have let watch meet hang be"

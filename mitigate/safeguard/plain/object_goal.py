@@ -27,9 +27,8 @@ from mitigate.safeguard.fidelity.goal_words import (
     VERBS,
 )
 from mitigate.safeguard.fidelity.meaning import CATEGORIES
-from mitigate.safeguard.plain.neighbours import HALTS, SEEKS
-from mitigate.safeguard.plain.steps import MOVES
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.steps import HALTS, MOVES, SEEKS
+from mitigate.safeguard.texts.text import words
 
 LONGEST = 5  # words of a thing and what it is like ("a small round wooden side table")
 _MASK = "[mask]"

@@ -8,11 +8,12 @@ from collections.abc import Sequence
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.plain.edits import Edited
-from mitigate.safeguard.plain.neighbours import HALTS, side_first
-from mitigate.safeguard.plain.plain_words import PHRASES, plain_form
-from mitigate.safeguard.plain.speech import STOP
-from mitigate.safeguard.plain.steps import (
+from mitigate.safeguard.plain.neighbours import side_first
+from mitigate.safeguard.texts.plain_words import PHRASES, plain_form
+from mitigate.safeguard.texts.speech import STOP
+from mitigate.safeguard.texts.steps import (
     DOORS,
+    HALTS,
     MARKS,
     MOVES,
     PRONOUNS,

@@ -13,14 +13,13 @@ from typing import Protocol
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.fidelity import gate
-from mitigate.safeguard.foreign.pieces import sentence_pieces
-from mitigate.safeguard.foreign.written import written
 from mitigate.safeguard.plain.edits import CLAUSE_ENDS, DROP, KEEP, Edit, edited
 from mitigate.safeguard.plain.manners import asks_for_else
-from mitigate.safeguard.plain.neighbours import HALTS
-from mitigate.safeguard.plain.steps import MOVES, STEP
 from mitigate.safeguard.plain.taken_back import SURE, taken_back
-from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.texts.pieces import sentence_pieces
+from mitigate.safeguard.texts.steps import HALTS, MOVES, STEP
+from mitigate.safeguard.texts.text import MASK, words
+from mitigate.safeguard.texts.written import written
 
 # probability of dropping from which a word goes, and whether phrases are put, at each try (chosen
 # on the validation voices)

@@ -21,17 +21,21 @@ from collections.abc import Sequence
 
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.lexicon import FUNCTION
 from mitigate.safeguard.plain.clauses import clauses_told
 from mitigate.safeguard.plain.edits import DROP, KEEP, NUMBER, Edit, Edited
 from mitigate.safeguard.plain.marks import marks_kept
-from mitigate.safeguard.plain.neighbours import HALTS, SEEKS, parted
+from mitigate.safeguard.plain.neighbours import parted
 from mitigate.safeguard.plain.phrases import unbacked
-from mitigate.safeguard.plain.speech import SIDE_BACK, STOP
 from mitigate.safeguard.plain.speech_words import speech_words
-from mitigate.safeguard.plain.steps import (
+from mitigate.safeguard.plain.turns_told import motion_told, turns_told
+from mitigate.safeguard.plain.wholes import span_of, spelled, together
+from mitigate.safeguard.texts.lexicon import FUNCTION
+from mitigate.safeguard.texts.speech import SIDE_BACK, STOP
+from mitigate.safeguard.texts.steps import (
+    HALTS,
     MARKS,
     PRONOUNS,
+    SEEKS,
     WAY,
     WHICH,
     same,
@@ -39,8 +43,6 @@ from mitigate.safeguard.plain.steps import (
     unknown_move,
     which,
 )
-from mitigate.safeguard.plain.turns_told import motion_told, turns_told
-from mitigate.safeguard.plain.wholes import span_of, spelled, together
 
 _AT = bag("in inside outside by from")  # where a thing is, unless a verb of motion stands before
 _IF = bag("if unless")

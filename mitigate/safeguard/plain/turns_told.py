@@ -5,9 +5,8 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.words import bag
 from mitigate.safeguard.plain.edits import DROP, KEEP, NUMBER, PLAIN, Edited
-from mitigate.safeguard.plain.neighbours import HALTS
-from mitigate.safeguard.plain.plain_words import plain_form
-from mitigate.safeguard.plain.steps import DETERMINERS, MARKS, MOVES, STEP, TURNS, WAY
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.steps import DETERMINERS, HALTS, MARKS, MOVES, STEP, TURNS, WAY
 
 _SIDES = bag("left right")
 _ORDINALS = bag("first second third fourth last next 1st 2nd 3rd")

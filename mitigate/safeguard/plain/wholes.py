@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from mitigate.corruptions.language.tagger import Token
 from mitigate.safeguard.plain.edits import CLAUSE_ENDS, NUMBER, Edited
-from mitigate.safeguard.plain.speech import STOP
+from mitigate.safeguard.texts.speech import STOP
 
 _TOGETHER = re.compile(
     r"(?<![^ ])(?:(?:track|hunt)(?:ing|ed)? (?:one|it|that|them|those) down|as far as|in front of|"

@@ -10,7 +10,7 @@ import re
 from itertools import dropwhile
 
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.text import words
 
 LONGEST = 8  # words (ours)
 _JOINS = bag("and now then here so next finally first again please kindly just")

@@ -12,12 +12,11 @@ from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.fidelity.goal_words import SAYINGS
 from mitigate.safeguard.fidelity.wording import in_equal_words
 from mitigate.safeguard.foreign import masks
-from mitigate.safeguard.foreign.evidence import VERBS
-from mitigate.safeguard.plain.neighbours import HALTS, SEEKS
-from mitigate.safeguard.plain.plain_words import plain_form
 from mitigate.safeguard.plain.plainly_said import Said
-from mitigate.safeguard.plain.steps import MOVES
-from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.texts.evidence import VERBS
+from mitigate.safeguard.texts.plain_words import plain_form
+from mitigate.safeguard.texts.steps import HALTS, MOVES, SEEKS
+from mitigate.safeguard.texts.text import MASK, words
 
 _CONDITIONS = bag("if unless until till before otherwise")
 _WHICH = bag("first second third fourth fifth sixth seventh eighth ninth tenth last other another")

@@ -10,8 +10,8 @@ from functools import lru_cache
 from mitigate.corruptions.language.directions import MOTION, STOPS
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.lexicon import GROUPS
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.lexicon import GROUPS
+from mitigate.safeguard.texts.text import words
 
 TITLE = 4  # words in quotes that may stand on a sign though they tell one what to do (ours)
 _QUOTED = re.compile(

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from mitigate.corruptions.language.directions import MOTION, TURN_VERBS
 from mitigate.corruptions.language.tagger import Token
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.lexicon import FUNCTION, places
+from mitigate.safeguard.texts.lexicon import FUNCTION, places
 
 # verbs by which one goes by a thing -> the way; then the words for it behind any verb of motion
 _STEPS = {
@@ -48,6 +48,15 @@ MOVES = (
 TURNS = TURN_VERBS | bag(
     "take taking make making go going head heading cut curve bend round move walk step face facing "
     "keep rotation turn-off angle orient reorient spin spinning execute perform effect"
+)
+# more than directions.STOPS, which tell that a route stops
+HALTS = bag(
+    "stop stops stopping halt halts halting wait waits waiting pause pauses pausing rest remain "
+    "remaining stay stand hold await awaiting finish cease terminate park"
+)
+SEEKS = bag(
+    "track tracking hunt hunting localize localise detect identify acquire discover seek spot look "
+    "looking search searching find finding fetch locate where's"
 )
 DOORS = bag(
     "door doors doorway doorways archway arch gate entrance opening exit entry doorframe threshold "

@@ -13,6 +13,8 @@ from mitigate.corruptions.language import words as language
 from mitigate.corruptions.language.fidelity import ATTRIBUTES
 from mitigate.corruptions.language.landmarks import CANONICAL, PHRASES
 from mitigate.corruptions.language.words import bag
+from mitigate.safeguard.texts.route_words import ROOMS, STAIRS, THINGS, route_words
+from mitigate.safeguard.texts.weights import WORDS
 
 GROUPS: dict[str, frozenset[str]] = {
     "orders": bag(
@@ -154,12 +156,7 @@ OTHERS = bag(
 @lru_cache(maxsize=1)
 def known_words() -> frozenset[str]:
     """Return the English words that this package knows."""
-    from mitigate.safeguard.foreign.weights import WORDS
-    from mitigate.safeguard.learning import routes
-
-    text = " ".join((routes.OPEN, routes.MIDDLE, routes.CLOSE, *routes.ASIDES, *routes.ROOMS,
-        *routes.THINGS, *routes.LOOKS, *routes.STAIRS, *routes.DOORS, *routes.PLACES))  # fmt: skip
-    listed = " ".join("".join(c if c.isalpha() or c == "'" else " " for c in text).split())
+    listed = "".join(c if c.isalpha() or c == "'" else " " for c in route_words())
     return (
         bag(listed)
         | frozenset(language.TAGS)
@@ -176,8 +173,6 @@ def known_words() -> frozenset[str]:
 @lru_cache(maxsize=1)
 def places() -> frozenset[str]:
     """Return the words for rooms and things that routes name, one and many."""
-    from mitigate.safeguard.learning import routes
-
-    told = {phrase.split()[-1] for phrase in (*routes.ROOMS, *routes.THINGS, *routes.STAIRS)}
+    told = {phrase.split()[-1] for phrase in (*ROOMS, *THINGS, *STAIRS)}
     named = {word for name in CANONICAL.items() for word in name}
     return frozenset(told | named | {word + "s" for word in told | named})

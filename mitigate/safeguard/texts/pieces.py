@@ -11,9 +11,9 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from mitigate.safeguard.foreign.decode import CODES, FANCY
-from mitigate.safeguard.foreign.written import quotes
-from mitigate.safeguard.lexicon import FUNCTION
+from mitigate.safeguard.texts.decode import CODES, FANCY
+from mitigate.safeguard.texts.lexicon import FUNCTION
+from mitigate.safeguard.texts.written import quotes
 
 _BEFORE = (
     r"(?<!\bDr)(?<!\bMr)(?<!\bMs)(?<!\bMrs)(?<!\bSt)(?<!\bProf)(?<!\bNo)(?<!\be\.g)(?<!\bi\.e)"

@@ -9,11 +9,11 @@ import re
 
 from mitigate.corruptions.language.fidelity import ATTRIBUTES
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.foreign.evidence import VERBS
-from mitigate.safeguard.foreign.short_steps import goes_back, short_step, tells_how_far
-from mitigate.safeguard.foreign.written import without_written
-from mitigate.safeguard.lexicon import GROUPS, places
-from mitigate.safeguard.text import words
+from mitigate.safeguard.texts.evidence import VERBS
+from mitigate.safeguard.texts.lexicon import GROUPS, places
+from mitigate.safeguard.texts.short_steps import goes_back, short_step, tells_how_far
+from mitigate.safeguard.texts.text import words
+from mitigate.safeguard.texts.written import without_written
 
 _ATTACKS = frozenset().union(
     *(GROUPS[name] for name in ("orders", "text", "annul", "invert", "case", "machine", "authority",

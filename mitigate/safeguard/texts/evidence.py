@@ -16,10 +16,10 @@ from functools import lru_cache
 from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.language.fidelity import Facts, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
-from mitigate.safeguard.foreign.decode import plainly
-from mitigate.safeguard.foreign.weights import WORDS
-from mitigate.safeguard.lexicon import FUNCTION, GROUPS, OTHERS, known_words
-from mitigate.safeguard.text import MASK, words
+from mitigate.safeguard.texts.decode import plainly
+from mitigate.safeguard.texts.lexicon import FUNCTION, GROUPS, OTHERS, known_words
+from mitigate.safeguard.texts.text import MASK, words
+from mitigate.safeguard.texts.weights import WORDS
 
 LANDMARKS = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 VERBS = MOTION | STOPS | TURN_VERBS

@@ -12,7 +12,7 @@ import unicodedata
 from dataclasses import dataclass
 from functools import lru_cache
 
-from mitigate.safeguard.lexicon import known_words
+from mitigate.safeguard.texts.lexicon import known_words
 
 _ALIKE = str.maketrans(
     "аеорсухікѕјһԁԛԝАВЕКМНОРСТУХІЅЈαορινυκτΑΒΕΖΗΙΚΜΝΟΡΤΥΧ",

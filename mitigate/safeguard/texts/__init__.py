@@ -1,0 +1,1 @@
+"""What a text says: sentences, pieces, words, steps, and the evidence for or against a route."""
