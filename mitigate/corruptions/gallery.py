@@ -21,7 +21,7 @@ import numpy as np
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, Z_MAX
 from mitigate.core.observation import RGB as RGB_ENTRY
-from mitigate.corruptions import curves, page, registry, unseen_page
+from mitigate.corruptions import broad, curves, page, registry, unseen_page
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.record import TEST, VALIDATION
 from mitigate.corruptions.suite import NAMES, corrupt
@@ -29,6 +29,7 @@ from mitigate.corruptions.suite import NAMES, corrupt
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
 SUFFIXES = (".png", ".jpg", ".jpeg")  # of a sheet
 GUTTER, TITLE, LABEL = 4, 24, 150  # pixels: between cells, column titles, row labels
+LINE = 16  # pixels between lines of a label
 JPEG_QUALITY = 88
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
@@ -110,8 +111,10 @@ def contact_sheet(
         _write(sheet, f"s = {severity:g}", LABEL + column * wide, TITLE - 8)
     for row, name in enumerate(names):
         top, again = TITLE + row * high, names[:row].count(name)
-        _write(sheet, name, 6, top + high // 2)
         drawn = replace(key, episode=f"{key.episode} {again}") if again else key
+        lines = [name, *broad.primitives(name, drawn)] if name in registry.BROAD else [name]
+        for place, line in enumerate(lines):
+            _write(sheet, line, 6, top + high // 2 + LINE * place - LINE * (len(lines) - 1) // 2)
         for column, severity in enumerate(severities):
             cell = _cell(rgb, depth, name, severity, drawn, views)
             left = LABEL + column * wide

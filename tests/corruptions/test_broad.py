@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule, corrupt
+from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule, broad, corrupt
 from mitigate.corruptions.broad import depth, rgb
 from mitigate.corruptions.broad.composition import stream
 from mitigate.corruptions.registry import BROAD, broad_name, modality, names, unseen_names, version
@@ -64,6 +64,25 @@ def test_a_severer_composition_corrupts_more_on_average(name, panorama):
         return np.mean([np.abs(m - frame[valid].astype(np.float64)).mean() for m in made])
 
     assert change(0.2) < change(0.5) < change(1.0)
+
+
+def test_what_a_draw_is_told_to_do_is_what_it_does(name, panorama, monkeypatch):
+    called = []
+
+    def noted(primitive):
+        def change(*given):
+            called.append(primitive.__name__.replace("_", " "))
+            return primitive(*given)
+
+        change.__name__ = primitive.__name__
+        return change
+
+    module = {"broad_rgb": rgb, "broad_depth": depth}[name]
+    monkeypatch.setattr(module, "PRIMITIVES", tuple(map(noted, module.PRIMITIVES)))
+    for key in KEYS[:20]:
+        called.clear()
+        corrupt(frame_for(name, panorama), name, 0.8, key=key)
+        assert called == broad.primitives(name, key) and called
 
 
 @pytest.mark.parametrize("primitive", rgb.PRIMITIVES, ids=lambda p: p.__name__)

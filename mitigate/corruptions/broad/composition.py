@@ -28,13 +28,21 @@ def composed(
     primitives: Sequence[Primitive],
 ) -> np.ndarray:
     """``views`` through one to three of ``primitives``, drawn for the key's episode."""
-    rng = stream(digest(key, name))
-    chosen = rng.permutation(len(primitives))[: 1 + rng.choice(len(COUNTS), p=COUNTS)]
+    chosen, rng = drawn(key, name, primitives)
     now = stream(digest(key, name, frame=True))
-    for place in chosen:
+    for primitive in chosen:
         strength = severity * rng.uniform(LEAST_STRENGTH, 1.0)
-        views = primitives[place](views, strength, rng, now)
+        views = primitive(views, strength, rng, now)
     return views
+
+
+def drawn(
+    key: Key, name: str, primitives: Sequence[Primitive]
+) -> tuple[list[Primitive], np.random.Generator]:
+    """The primitives of the key's episode, in their order, and the stream of its other draws."""
+    rng = stream(digest(key, name))
+    places = rng.permutation(len(primitives))[: 1 + rng.choice(len(COUNTS), p=COUNTS)]
+    return [primitives[place] for place in places], rng
 
 
 def stream(value: int) -> np.random.Generator:
