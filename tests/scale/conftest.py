@@ -13,7 +13,8 @@ from mitigate.scale.launcher import RayConfig, SlurmConfig
 HEAD = {
     "num_cpus": 1,
     "include_dashboard": False,
-    "_system_config": {"worker_register_timeout_seconds": 15},
+    # and workers get their share of a busy machine (Ray's own niceness is 15)
+    "_system_config": {"worker_register_timeout_seconds": 15, "worker_niceness": 0},
 }
 
 
