@@ -16,7 +16,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.agents.adapters import adapted, backbone_sha, trainable_share
+from mitigate.agents.adapters import adapted, backbone_sha, scale_adapters, trainable_share
 from mitigate.agents.gate import FrameGate
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
@@ -84,7 +84,8 @@ class AdaptViews(DistilViews):
     """Args: as ``DistilViews``; its teacher is the agent itself without its adapters. w_gate: of
     the cross-entropy that teaches the encoders' gates, if they have any, which views are corrupted.
     ``finish`` sets their thresholds, so that they open for a share ``touched`` of the views of
-    ``held`` clean panoramas that no step draws.
+    ``held`` clean panoramas that no step draws, and has the adapters of ``modality`` make a share
+    ``strength`` of the correction that they have learned (``agents.adapters.scale_adapters``).
 
     Raises ValueError for an agent that has no adapters in the encoders of ``modality``.
     """
@@ -107,10 +108,12 @@ class AdaptViews(DistilViews):
         w_gate: float = 1.0,
         touched: float = 0.01,
         held: int = 120,
+        strength: float = 1.0,
     ) -> None:
-        if not 0 < touched < 1 or held < 1:
+        if not 0 < touched < 1 or not 0 < strength <= 1 or held < 1:
             raise ValueError(
-                f"touched={touched} is a share from 0 to 1, and held={held} at least 1."
+                f"touched={touched} and strength={strength} are shares, above 0 and up to 1 "
+                f"(touched: below), and held={held} is at least 1."
             )
         limits.check_weights(w_gate=w_gate)
         super().__init__(
@@ -130,7 +133,7 @@ class AdaptViews(DistilViews):
         )
         encoders = [agent.parts()[name] for name in agent.encoders[modality]]
         has_adapters(agent, *encoders)
-        self.w_gate, self.touched, self.held = w_gate, touched, held
+        self.w_gate, self.touched, self.held, self.strength = w_gate, touched, held, strength
         self.backbone = backbone_sha(agent)
         modules = (module for encoder in encoders for module in encoder.modules())
         self.gates = [module for module in modules if isinstance(module, FrameGate)]
@@ -151,8 +154,13 @@ class AdaptViews(DistilViews):
         return values
 
     def finish(self) -> None:
-        """Set the gates' thresholds. Raises ValueError if the backbone is another than it was."""
+        """Set the strength of the adapters and the gates' thresholds. Raises ValueError if the
+        backbone is another than it was."""
         check_backbone(self.agent, self.backbone)
+        for name in self.agent.encoders[self.modality]:
+            encoder = self.agent.parts()[name]
+            if adapted(encoder):
+                scale_adapters(encoder, self.strength)
         for gate in self.gates:
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
 

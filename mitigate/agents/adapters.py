@@ -129,6 +129,27 @@ def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
     return [p for adapter in adapters_of(model) for p in adapter.parameters()]
 
 
+def scale_adapters(model: nn.Module, strength: float) -> None:
+    """Have the adapters of ``model`` make a share ``strength`` of the correction that they make
+    now: 1 all of it; 0 none, so that the model computes what it did without them, bit for bit.
+    Their weights change, so whatever is saved afterwards holds it.
+
+    Between the two lie models that are nearer to the clean success of the backbone and keep less of
+    what the adapters win. Source: WiSE-FT (Wortsman et al., "Robust fine-tuning of zero-shot
+    models", CVPR 2022), which interpolates all weights between before and after a training; of
+    adapters the layers that start at zero are enough.
+    Raises ValueError for a strength beyond 0 to 1, and for a model without adapters.
+    """
+    if not 0 <= strength <= 1:
+        raise ValueError(f"strength={strength} is a share of the adapters' correction: 0 to 1.")
+    if not adapted(model):
+        raise ValueError("There are no adapters to scale: call insert_adapters(model, ...) first.")
+    layers = [getattr(a, name) for a in adapters_of(model) for name in getattr(a, "corrects", ())]
+    with torch.no_grad():
+        for parameter in (p for layer in layers for p in layer.parameters()):
+            parameter.mul_(strength)
+
+
 def trainable_share(model: nn.Module) -> float:
     """Adapter parameters as a share of the backbone's own, in [0, 1]."""
     own = sum(p.numel() for p in adapter_parameters(model))

@@ -21,6 +21,8 @@ class ConvAdapter(nn.Module):
     asks; reduction and kernel are ours, chosen for 1-4 % of the weights.
     """
 
+    corrects = ("up",)  # the layers that the correction is proportional to (``scale_adapters``)
+
     def __init__(
         self,
         channels: int,

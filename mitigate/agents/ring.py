@@ -37,6 +37,8 @@ class RingAdapter(nn.Module):
     Source: ours; the paper's adapters (its section on adapters) see one view at a time.
     """
 
+    corrects = ("share", "up")  # as in ``ConvAdapter``, but that a share goes through its tanh
+
     def __init__(
         self,
         channels: int,

@@ -41,6 +41,8 @@ class TokenAdapter(nn.Module):
     far larger than the rest. Source: as ``ConvAdapter``.
     """
 
+    corrects = ("up",)  # as in ``ConvAdapter``
+
     def __init__(
         self,
         channels: int,

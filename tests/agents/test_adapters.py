@@ -13,7 +13,13 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.agents import adapters
-from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
+from mitigate.agents.adapters import (
+    insert_adapters,
+    load_adapters,
+    remove_adapters,
+    save_adapters,
+    scale_adapters,
+)
 from mitigate.core import conf
 from mitigate.core.build import build_agent
 from mitigate.core.checkpoint import weights_sha
@@ -123,6 +129,51 @@ def test_removal_gives_the_model_back_and_a_folder_brings_them_in_again(encoder,
     assert torch.equal(model(x), clean) and weights_sha(model) == before
     assert len(load_adapters(model, tmp_path)) == count
     assert torch.equal(model(x), hurt) and not torch.equal(hurt, clean)
+
+
+def test_scaled_adapters_make_a_share_of_their_correction_and_none_at_zero(encoder, tmp_path):
+    model, targets, x, _ = encoder
+    clean = model(x)
+    insert_adapters(model, targets)
+    full, before = shaken(model)(x), weights_sha(model)
+    scale_adapters(model, 1.0)
+    assert weights_sha(model) == before
+    scale_adapters(model, 0.5)
+    half = (model(x) - clean).norm()
+    assert 0 < half < (full - clean).norm()
+    scaled = model(x)
+    save_adapters(model, tmp_path)
+    remove_adapters(model)
+    load_adapters(model, tmp_path)
+    assert torch.equal(model(x), scaled)
+    scale_adapters(model, 0.0)
+    assert torch.equal(model(x), clean)
+
+
+@pytest.mark.parametrize("kind", ["map", "tokens", "ring"])
+def test_an_adapter_of_each_kind_is_scaled(kind):
+    layer = nn.Linear(8, 8) if kind == "tokens" else nn.Conv2d(8, 8, 1)
+    model = nn.Sequential(layer)
+    x = torch.randn((3, 5, 8) if kind == "tokens" else (3, 8, 4, 4))
+    clean = model(x)
+    run = (lambda n: model(x[:n])) if kind == "tokens" else None
+    ring = ["0"] if kind == "ring" else []
+    insert_adapters(model, [] if ring else ["0"], ring=ring, views=3, run=run)
+    full = (shaken(model)(x) - clean).norm()
+    scale_adapters(model, 0.5)
+    assert 0.2 * full < (model(x) - clean).norm() < 0.8 * full
+    scale_adapters(model, 0.0)
+    assert torch.equal(model(x), clean)
+
+
+def test_what_cannot_be_scaled_is_refused():
+    model = nn.Sequential(nn.Conv2d(8, 8, 1))
+    with pytest.raises(ValueError, match="no adapters to scale"):
+        scale_adapters(model, 0.5)
+    insert_adapters(model, ["0"])
+    for strength in (-0.1, 1.5, float("nan")):
+        with pytest.raises(ValueError, match="share of the adapters' correction"):
+            scale_adapters(model, strength)
 
 
 def test_loaded_adapters_have_their_modules_type_and_do_not_come_in_twice(tmp_path):

@@ -156,6 +156,24 @@ def test_adapters_train_alone(tmp_path):
     assert made.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
 
 
+def test_at_the_end_the_adapters_of_its_sensor_make_the_share_that_is_asked_for(tmp_path):
+    agents = [small(adapters=ADAPTERS) for _ in range(2)]
+    for agent, strength in zip(agents, (1.0, 0.25), strict=True):
+        made = AdaptViews(agent, modality="rgb", **VIEWS, strength=strength)
+        Trainer(made, steps=2, folder=tmp_path / f"{strength}", seed=0, save_every=1).fit()
+    full, part = (dict(agent.named_parameters()) for agent in agents)
+    for name, weight in full.items():
+        times = 0.25 if name.startswith("rgb_encoder") and ".adapter.up." in name else 1.0
+        assert torch.equal(part[name], weight * times) or ".adapter.share." in name, name
+    resumed = small(adapters=ADAPTERS)
+    checkpoints(tmp_path / "0.25")[-1].unlink()  # back to step 1
+    made = AdaptViews(resumed, modality="rgb", **VIEWS, strength=0.25)
+    Trainer(made, steps=2, folder=tmp_path / "0.25", seed=0, save_every=1).fit()
+    assert weights_sha(resumed) == weights_sha(agents[1]) != weights_sha(agents[0])
+    with pytest.raises(ValueError, match="strength=0 are shares"):
+        AdaptViews(resumed, modality="rgb", **VIEWS, strength=0)
+
+
 def test_a_gate_learns_which_views_are_corrupted(tmp_path):
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
     made = AdaptViews(agent, modality="rgb", **VIEWS, own=True)
@@ -176,7 +194,7 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
         again = made.evaluate(0)
     assert agent.rgb_encoder.stem.adapter.threshold != 0 and values == again
     assert 0 <= values["clean_opened"] < 1 and 0 <= values["corrupted_opened"] <= 1
-    with pytest.raises(ValueError, match="touched=0 is a share"):
+    with pytest.raises(ValueError, match="touched=0 and strength=1.0 are shares"):
         AdaptViews(agent, modality="rgb", **VIEWS, touched=0)
 
 
