@@ -313,7 +313,7 @@ def test_an_attack_with_a_manner_of_its_own_does_not_hide_in_it():
 
 
 def test_a_manner_never_costs_the_first_steps():
-    told = [pair.source for i in range(3000) if (pair := draw_pair(9, i)).kind == "style"]
+    told = [pair.source for i in range(1500) if (pair := draw_pair(9, i)).kind == "style"]
     cut = [bool(check(d.original, d.text)) for d in Safeguard().canonicalise_all(told)]
     assert len(told) > 100 and sum(cut) <= 0.02 * len(told)
 

@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
 import zipfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -26,7 +29,7 @@ from mitigate.core.files import sha256
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
 from mitigate.evaluation import rows
 from mitigate.shipping import card as cards
-from mitigate.shipping import export, hardened, programs
+from mitigate.shipping import export, export_command, hardened, programs
 from mitigate.shipping.card import metrics
 
 # one worker of pytest exports, not each its own
@@ -536,23 +539,31 @@ def test_the_commit_is_that_of_this_checkout_or_not_stated(monkeypatch, tmp_path
     assert cards.commit() is None  # installed below a repository that is another's
 
 
-def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(place, tmp_path):
+@contextmanager
+def files_of_at_most(size: int) -> Iterator[None]:
+    """No file of this process may grow beyond ``size`` bytes."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+
+
+@pytest.mark.parametrize("full", ["weights", "programs"])
+def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(
+    place, tmp_path, monkeypatch, capfd, full
+):
     """As ``export`` says it when neither weights nor programs may grow beyond some size."""
     weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
-    for most in (weights // 2, weights + 1000):
-        code = (
-            "import resource, signal, sys; from mitigate.shipping.export_command import main; "
-            f"resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most})); main()"
-        )
-        done = subprocess.run(
-            [sys.executable, "-c", code, str(place / "runs/whole"), "mine", "--out", str(tmp_path)],
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-            capture_output=True,
-            text=True,
-        )
-        assert done.returncode == 1 and "File too large" in done.stderr, done.stderr
-        assert "Traceback" not in done.stderr and "frame #" not in done.stderr
-        assert not [*tmp_path.iterdir()]
+    most = weights // 2 if full == "weights" else weights + 1000
+    command = ["export", str(place / "runs/whole"), "mine", "--out", str(tmp_path)]
+    monkeypatch.setattr(programs, "TIMED", 2)
+    monkeypatch.setattr("sys.argv", command)
+    with files_of_at_most(most), pytest.raises(SystemExit, match="File too large"):
+        export_command.main()
+    assert "frame #" not in "".join(capfd.readouterr())
+    assert not [*tmp_path.iterdir()]
 
 
 def git(folder, *words):
