@@ -121,7 +121,7 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
     lines = [
         "## Training",
         "",
-        "Every stage of six recipes as `make train` runs it, with a worker process a core, on 2 "
+        "Every stage of the recipes as `make train` runs it, with a worker process a core, on 2 "
         f"threads; {LAYOUTS} apartments, so that making them, which a training pays once, does not "
         "count. **Waiting**: the share of a step in which the trainer waits for its batch; **no "
         f"network computes**: the same without the networks of rollouts (aim: at most {AIM:.0%}). "

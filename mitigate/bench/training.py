@@ -32,7 +32,15 @@ from mitigate.training.batches import Batches
 from mitigate.training.recipe import Recipe, accumulate
 from mitigate.training.workers import Workers
 
-RECIPES = ("da_per_episode", "ts_distill", "conv_adapter", "stacked", "base", "safeguard_lora")
+RECIPES = (
+    "da_per_episode",
+    "ts_distill",
+    "conv_adapter",
+    "harden",
+    "stacked",
+    "base",
+    "safeguard_lora",
+)
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
 LAYOUTS = 8  # apartments, so that their making, which a long training pays once, does not count
 NETWORK = "network"

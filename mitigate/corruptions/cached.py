@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
+from operator import itemgetter
 from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -40,12 +41,10 @@ def cached(make: Callable[P, T]) -> Callable[P, T]:
 
 def _make_room() -> None:
     """Drop what was longest unused, but never the newest."""
-    entries = list(_kept.items())
-    size, count = sum(each for _, (_, each) in entries), len(entries)
-    for key, (_, each) in entries[:-1]:
-        if size <= MOST and count <= MOST_KEPT:
-            break
-        _kept.pop(key, None)
+    sizes = [*map(itemgetter(1), _kept.values())]  # at every miss: no loop of Python's
+    size, count = sum(sizes), len(sizes)
+    while count > 1 and (size > MOST or count > MOST_KEPT):
+        _, each = _kept.pop(next(iter(_kept), ()), (None, 0))
         size, count = size - each, count - 1
 
 

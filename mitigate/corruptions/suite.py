@@ -143,8 +143,10 @@ def check_corruption(corruption: Corruption) -> Corruption:
 
 def check_heading(heading: float | None) -> float | None:
     """Return ``heading`` as a float or None, or raise ValueError for NaN, infinity and text."""
+    if heading is None or (type(heading) is float and math.isfinite(heading)):
+        return heading
     try:
-        told = np.asarray(0.0 if heading is None else heading)
+        told = np.asarray(heading)
         value = float(told) if told.ndim == 0 and told.dtype.kind in "iuf" else math.nan
     except (TypeError, ValueError):
         value = math.nan
@@ -154,7 +156,7 @@ def check_heading(heading: float | None) -> float | None:
             "observation without a pose, if it is not known: a flare then keeps its place in view "
             "0."
         )
-    return None if heading is None else value
+    return value
 
 
 def corrupt(
