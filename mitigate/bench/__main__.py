@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
+import sys
 from pathlib import Path
 
 for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "NO_ALBUMENTATIONS_UPDATE"):
@@ -53,6 +55,7 @@ def main(arguments: list[str] | None = None) -> None:
         options.seconds,
         evaluation.paces(options.episodes),
         evaluation.seconds_by_workers(options.episodes),
+        shlex.join(sys.argv[1:] if arguments is None else arguments),
     )
     print(text)
     if options.write:

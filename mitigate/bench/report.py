@@ -23,13 +23,15 @@ def page(
     seconds: float,
     paces: dict[str, Pace],
     by_workers: dict[int, float],
+    arguments: str = "",
 ) -> str:
-    """All parts as Markdown."""
+    """All parts as Markdown; ``arguments`` are those of the command."""
+    given = f' ARGS="{arguments}"' if arguments else ""
     head = [
         "# Benchmarks",
         "",
-        f"`make bench ARGS=--write` on {machine()}. One process and one thread "
-        f"but for training, seed {SEED}, about {seconds:g} s a clock.",
+        f"`make bench{given}` on {machine()}. One process and one "
+        f"thread but for training, seed {SEED}, about {seconds:g} s a clock.",
         "",
     ]
     parts = [

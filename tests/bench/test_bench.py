@@ -57,7 +57,8 @@ def test_the_page_lists_what_is_over_the_bar():
     stages = {False: [stage], True: []}
     costs = {"224x224": {"low_light": good, "quantization": missed}}
     paces = {"base": evaluation.Pace(26, 5.2, 2.6, True)}
-    text = report.page(costs, 3.9, stages, rates, 64, 0.2, paces, {1: 9.0, 2: 5.0})
+    text = report.page(costs, 3.9, stages, rates, 64, 0.2, paces, {1: 9.0, 2: 5.0}, "--steps 3")
+    assert '`make bench ARGS="--steps 3"` on' in text
     assert (
         "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
         in text
