@@ -182,6 +182,7 @@ RECORDS = (
         episode="-",
         frame="-",
         bars=(0.65, 0.09),
+        reason=("Four maxima a value along rows, four along columns, then a polynomial."),
     ),
     Record(
         name="quantization",
