@@ -5,8 +5,21 @@ from __future__ import annotations
 import os
 from multiprocessing import forkserver
 
+import pytest
+
 from mitigate.core.workers import context
 from mitigate.training.workers import PRELOAD
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests that share what a module made go to one worker: each would make it again."""
+    for item in items:
+        made = item._fixtureinfo.name2fixturedefs.values()
+        if any(found[-1].scope == "module" for found in made) and not item.get_closest_marker(
+            "xdist_group"
+        ):
+            item.add_marker(pytest.mark.xdist_group(item.module.__name__))
 
 
 def pytest_collection_finish() -> None:

@@ -40,6 +40,22 @@ def test_every_command_is_a_module_of_its_own_too(name):
     assert (ROOT / f"mitigate/commands/{name}.py").is_file()
 
 
+LIGHT = (  # answer --help and mistakes at once; to import torch takes seconds
+    "train evaluate table1 table2 sweep run replay table report leaderboard doctor corrupt".split()
+)
+
+
+def test_options_are_read_before_torch_is_imported():
+    modules = [cli.COMMANDS[name].module for name in LIGHT]
+    code = (
+        f"import sys, importlib; [importlib.import_module(name) for name in {modules}]\n"
+        "from mitigate.core import conf; conf.load_config('train', ['recipe=harden'])\n"
+        "assert 'torch' not in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.parametrize("command", [["-m", "mitigate"], ["-m", "mitigate.table"]])
 def test_both_ways_of_running_reach_the_program(command, tmp_path):
     options = ["table", "nowhere"] if command[-1] == "mitigate" else ["nowhere"]

@@ -10,17 +10,19 @@ from collections.abc import Iterable, Sequence
 from functools import partial
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hydra.errors import InstantiationException
 from hydra.utils import get_object, instantiate
 from omegaconf import DictConfig, OmegaConf
-from torch import nn
 
-from mitigate.core import checkpoint, seeding, settings
+from mitigate.core import seeding, settings
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 from mitigate.core.options import values
+
+if TYPE_CHECKING:  # slow to import: only what makes an agent does
+    from torch import nn
 
 # attribute of an agent's class: arguments that name code or files, which no config that came with
 # weights may set
@@ -185,6 +187,7 @@ def build_agent(
 ) -> nn.Module:
     """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file;
     ``parts``: of its ``parts()``, those that are read; None: all."""
+    from mitigate.core import checkpoint
     from mitigate.shipping import hardened
 
     weights = None if weights is None else str(find(weights))

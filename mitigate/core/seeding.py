@@ -9,9 +9,12 @@ from __future__ import annotations
 
 import hashlib
 import random
+from typing import TYPE_CHECKING
 
 import numpy as np
-import torch
+
+if TYPE_CHECKING:  # torch is slow to import, and most callers need numpy's generators alone
+    import torch
 
 Key = int | str
 
@@ -29,6 +32,8 @@ def generator(*key: Key) -> np.random.Generator:
 
 def torch_generator(*key: Key) -> torch.Generator:
     """Return a fresh CPU torch generator for ``key``."""
+    import torch
+
     made = torch.Generator()
     made.manual_seed(digest(*key) & (2**63 - 1))
     return made
@@ -42,6 +47,8 @@ def check(seed: int) -> None:
 
 def seed_everything(*key: Key) -> None:
     """Set the global generators of Python, numpy and torch (all devices) from ``key``."""
+    import torch
+
     number = digest(*key)
     random.seed(number)
     np.random.seed(number & (2**32 - 1))
@@ -50,6 +57,8 @@ def seed_everything(*key: Key) -> None:
 
 def global_state() -> dict:
     """Return the state of the three global generators as tensors, tuples and numbers."""
+    import torch
+
     name, words, position, has_gauss, gauss = np.random.get_state(legacy=True)
     return {
         "python": random.getstate(),
@@ -60,6 +69,8 @@ def global_state() -> dict:
 
 def set_global_state(state: dict) -> None:
     """Put back what :func:`global_state` returned."""
+    import torch
+
     name, words, position, has_gauss, gauss = state["numpy"]
     random.setstate(state["python"])
     np.random.set_state((name, words.numpy().astype(np.uint32), position, has_gauss, gauss))

@@ -30,6 +30,7 @@ from mitigate.scale import launcher  # registers the kinds of conf/launcher
 if TYPE_CHECKING:  # nothing slow is imported before run() has checked the options
     from torch import nn
 
+REPORT = "mitigate.evaluation.evaluate.report_before_after"  # what a training of an agent ends with
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 OF_TRAININGS = ("finetune.", "cost.")  # options that a kind of agent has for its trainings
 MOST_WORKERS = 100_000  # on all machines of a launcher (ours)

@@ -16,21 +16,12 @@ from mitigate.core import precision
 from mitigate.core.names import counted
 from mitigate.core.progress import duration
 from mitigate.core.workers import cores
+from mitigate.evaluation.evaluate import REPORT
 from mitigate.training import states
 from mitigate.training.stages import trainer_settings
 
-REPORT = "mitigate.evaluation.evaluate.report_before_after"  # whose time is known
 EPISODE_COST = 0.12  # seconds of one core for an evaluated episode
 EPISODES = 300  # of a list, which need not be opened
-
-
-def times(cost: float, kind: float | None) -> float | None:
-    """What ``${times:2.7,${cost.episodes}}`` is in a config: a step's cost with the chosen kind of
-    agent, None where that is not known."""
-    return None if kind is None else cost * kind
-
-
-OmegaConf.register_new_resolver("times", times, replace=True)
 
 
 def plan(cfg: DictConfig, folder: Path) -> str:
@@ -53,8 +44,8 @@ def estimate(cfg: DictConfig, folder: Path) -> float:
         done = states.checkpoints(folder / name)
         left = count - (states.steps_done(done[-1]) if done else 0)
         costs.append((max(0, left), cfg.stages[name].cost))
-    walk = times(EPISODE_COST / (cfg.evaluation.workers or cores()), cfg.cost.evaluation)
-    costs.append((_walked(cfg), walk))
+    kind, workers = cfg.cost.evaluation, cfg.evaluation.workers or cores()
+    costs.append((_walked(cfg), None if kind is None else EPISODE_COST / workers * kind))
     seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
     return seconds * precision.probe().fp32 / precision.REFERENCE
 

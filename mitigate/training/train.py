@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from contextlib import nullcontext
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
@@ -21,9 +21,8 @@ from hydra.core.hydra_config import HydraConfig
 from hydra.types import RunMode
 from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
-from torch import nn
 
-from mitigate.core import checkpoint, conf, precision, seeding
+from mitigate.core import conf, seeding
 from mitigate.core.build import OWN_CONFIG_ONLY, begun_from, build_agent, maker
 from mitigate.core.files import atomic_text
 from mitigate.core.locks import FolderLock
@@ -33,17 +32,18 @@ from mitigate.core.workers import cores
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import (
+    REPORT,
     CostConfig,
     EvaluationConfig,
     FinetuneConfig,
     WeightsConfig,
     load,
 )
-from mitigate.training import fitting, limits, optimization
-from mitigate.training.estimate import REPORT, has_base, plan
-from mitigate.training.ranks import Ranks
-from mitigate.training.stages import plain, train_stage, trainer_settings
-from mitigate.training.workers import MOST, Workers
+
+if TYPE_CHECKING:  # nothing slow is imported before the options are composed
+    from torch import nn
+
+    from mitigate.training.ranks import Ranks
 
 LONGEST = 100  # characters of a run folder's options; what is longer ends in a digest (ours)
 
@@ -110,6 +110,15 @@ class TrainConfig:
 ConfigStore.instance().store(name="train_schema", node=TrainConfig)
 
 
+def times(cost: float, kind: float | None) -> float | None:
+    """What ``${times:2.7,${cost.episodes}}`` is in a config: a step's cost with the chosen kind of
+    agent, None where that is not known."""
+    return None if kind is None else cost * kind
+
+
+OmegaConf.register_new_resolver("times", times, replace=True)
+
+
 def run(cfg: DictConfig) -> Path:
     """Train as ``cfg`` says, evaluate, and return the run's folder.
 
@@ -117,6 +126,8 @@ def run(cfg: DictConfig) -> Path:
     what the evaluation writes. Raises ValueError or FileNotFoundError for a user's mistake.
     """
     check(cfg)
+    from mitigate.training.ranks import Ranks
+
     with Ranks.of_environment() as ranks:
         cfg.folder = cfg.folder or default_folder(cfg)  # what refers to it finds it
         within = ("agent", "walks", *cfg.stages)
@@ -125,6 +136,12 @@ def run(cfg: DictConfig) -> Path:
 
 
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
+    from mitigate.core import checkpoint
+    from mitigate.training import fitting
+    from mitigate.training.estimate import has_base, plan
+    from mitigate.training.stages import train_stage
+    from mitigate.training.workers import MOST, Workers
+
     begun = begun_from(cfg.agent, cfg.init)  # refuses the weights of another kind of agent
     node = cfg.agent if cfg.init_parts else begun
     agent = build_agent(node, weights=cfg.init, seed=cfg.seed, parts=cfg.init_parts)
@@ -159,6 +176,9 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
 
 def check(cfg: DictConfig) -> None:
     """Raise ValueError for settings that are well typed but make no sense."""
+    from mitigate.training import limits
+    from mitigate.training.stages import trainer_settings
+
     limits.check_options(cfg)
     seeding.check(cfg.seed)
     for stage in cfg.stages.values():
@@ -189,6 +209,9 @@ def check(cfg: DictConfig) -> None:
 
 def check_trainer(settings: Mapping[str, Any]) -> None:
     """Raise ValueError for settings of a trainer that are unknown, or that it would not take."""
+    from mitigate.core import precision
+    from mitigate.training import limits, optimization
+
     known = [entry.name for entry in fields(TrainerConfig)]
     for name in settings:
         if name not in known:
@@ -222,6 +245,8 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
         if isinstance(value, dict):
             return {k: data(v) for k, v in value.items() if not str(k).startswith("_")}
         return value
+
+    from mitigate.training.stages import plain
 
     own: dict[str, Any] = getattr(agent, "settings", dict)()
     barred = getattr(agent, OWN_CONFIG_ONLY, ())
