@@ -23,15 +23,6 @@ IDENTITY = "identity.json"  # in a stage's folder: what it started from, its set
 NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
 
 
-def either(first: Any, second: Any) -> Any:
-    """What ``${either:${trainer.steps},${stages.policy.trainer.steps}}`` is in a config: the first
-    value, or the second where that is null."""
-    return second if first is None else first
-
-
-OmegaConf.register_new_resolver("either", either, replace=True)
-
-
 def train_stage(
     cfg: DictConfig,
     name: str,

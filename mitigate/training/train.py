@@ -116,7 +116,14 @@ def times(cost: float, kind: float | None) -> float | None:
     return None if kind is None else cost * kind
 
 
+def either(first: Any, second: Any) -> Any:
+    """What ``${either:${trainer.steps},${stages.policy.trainer.steps}}`` is in a config: the first
+    value, or the second where that is null."""
+    return second if first is None else first
+
+
 OmegaConf.register_new_resolver("times", times, replace=True)
+OmegaConf.register_new_resolver("either", either, replace=True)
 
 
 def run(cfg: DictConfig) -> Path:

@@ -139,6 +139,12 @@ def place(tmp_path_factory) -> Path:
     return place
 
 
+@pytest.fixture(scope="module")
+def exported(place) -> dict:
+    """The programs of `whole`, which take seconds to make."""
+    return load_pt2(str(place / "hardened/whole/program.pt2")).exported_programs
+
+
 @pytest.fixture
 def copied(place, tmp_path) -> Path:
     """A copy of the folder `whole`, to spoil."""
@@ -470,9 +476,8 @@ def test_a_name_is_one_folder(place, tmp_path, name):
         export.export(place / "runs/whole", name, out=tmp_path)
 
 
-def test_what_does_not_reload_to_the_same_is_not_written(place, tmp_path, monkeypatch):
-    made = load_pt2(str(place / "hardened/whole/program.pt2")).exported_programs
-    monkeypatch.setattr(programs, "export_programs", lambda *_: made)  # which takes seconds
+def test_what_does_not_reload_to_the_same_is_not_written(place, exported, tmp_path, monkeypatch):
+    monkeypatch.setattr(programs, "export_programs", lambda *_: exported)
     monkeypatch.setattr(programs, "TIMED", 1)
     monkeypatch.setattr(export, "_CHECK", "raise ValueError('differs')")
     with pytest.raises(ValueError, match="differs"):
@@ -552,13 +557,14 @@ def files_of_at_most(size: int) -> Iterator[None]:
 
 @pytest.mark.parametrize("full", ["weights", "programs"])
 def test_a_disk_that_is_full_is_told_in_a_paragraph_and_leaves_nothing(
-    place, tmp_path, monkeypatch, capfd, full
+    place, exported, tmp_path, monkeypatch, capfd, full
 ):
     """As ``export`` says it when neither weights nor programs may grow beyond some size."""
     weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
     most = weights // 2 if full == "weights" else weights + 1000
     command = ["export", str(place / "runs/whole"), "mine", "--out", str(tmp_path)]
     monkeypatch.setattr(programs, "TIMED", 2)
+    monkeypatch.setattr(programs, "export_programs", lambda *_: exported)
     monkeypatch.setattr("sys.argv", command)
     with files_of_at_most(most), pytest.raises(SystemExit, match="File too large"):
         export_command.main()

@@ -17,6 +17,7 @@ from mitigate.core.seeding import generator, seed_everything
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import evaluate
+from mitigate.worlds.apartments import simulator
 from mitigate.worlds.apartments.tasks import DrawnEpisodes, load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from mitigate.worlds.world import Corrupted
@@ -117,7 +118,8 @@ def test_steps_at_which_the_expert_turns_count_more():
     assert piece["weight"][0] == pytest.approx(learning.INFLECTION)
 
 
-def test_with_rgb_alone_depth_does_not_matter():
+def test_with_rgb_alone_depth_does_not_matter(monkeypatch):
+    monkeypatch.setattr(simulator, "MAX_STEPS", 60)  # untrained, it does not stop before
     made, episode = agent(RGB), load_episodes("val_seen")[1]
     clean = run_episode(made, World(), episode, Corruption("clean", 0.0), 0)
     gone = run_episode(made, World(), episode, Corruption("missing_data", 1.0), 0)
