@@ -1,4 +1,4 @@
-"""Texts of any length take seconds; what is not read is told, and padding hides nothing."""
+"""Time grows as the length of a text; what is not read is told, and padding hides nothing."""
 
 from __future__ import annotations
 
@@ -14,15 +14,17 @@ ROUTE = "Walk down the hall and turn left at the couch. Go past the table and st
 
 
 @pytest.mark.parametrize(
-    "text",
-    ["go\n" * 1990, "<b> " * 15_000, "a\n" * 30_000, "a! " * 20_000, "&nbsp;" * 10_000],
-    ids=lambda text: repr(text[:6]),
+    ("part", "count"),
+    [("go\n", 1000), ("<b> ", 7500), ("a\n", 7500), ("a! ", 5000), ("&nbsp;", 5000)],
 )
-def test_many_sentences_and_many_spaces_take_seconds(text):
-    Safeguard().canonicalise("Turn left.")  # reads what is read once
-    began = time.process_time()
-    Safeguard().canonicalise(f"{text}Go past the sofa.")
-    assert time.process_time() - began < 6
+def test_four_times_as_many_sentences_or_spaces_take_about_four_times_as_long(part, count):
+    def seconds(count: int) -> float:
+        began = time.process_time()
+        Safeguard().canonicalise(f"{part * count}Go past the sofa.")
+        return time.process_time() - began
+
+    seconds(1)  # reads what is read once
+    assert seconds(count) < 8 * seconds(count // 4) + 0.5  # 16 times if time grew with its square
 
 
 def test_what_is_not_read_is_not_called_clean():

@@ -22,7 +22,7 @@ from mitigate.recipes.imitate import Imitate
 from mitigate.recipes.imitate_stored import ImitateStored
 from mitigate.recipes.pretrain import Pretrain
 from mitigate.recipes.restore import Restore
-from mitigate.training import fitting, train
+from mitigate.training import fitting, stages, train
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe
 from tests.tiny import TinyAgent, TinyRecipe
@@ -241,7 +241,7 @@ def test_a_later_stage_with_other_settings_is_refused_before_the_first_trains(tm
 def test_a_mistake_in_the_last_stage_shows_before_the_first_trains(
     tmp_path, options, words, monkeypatch
 ):
-    monkeypatch.setattr(train, "train_stage", lambda *_: pytest.fail("a stage was trained"))
+    monkeypatch.setattr(stages, "train_stage", lambda *_: pytest.fail("a stage was trained"))
     options = ["debug=smoke", "workers=0", f"folder={tmp_path}", OFF, *options]
     with pytest.raises((ValueError, FileNotFoundError), match=words):
         train.run(conf.load_config("train", options))
@@ -398,7 +398,7 @@ def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
         met[name] = list(stage.recipe.schedule.names)
         return "fp32"
 
-    monkeypatch.setattr(train, "train_stage", trained)
+    monkeypatch.setattr(stages, "train_stage", trained)
     train.run(conf.load_config("train", ["agent=recurrent_rgb", OFF, f"folder={tmp_path}"]))
     assert met == {"perception_rgb": list(RGB), "imitation": list(RGB)}
     written = OmegaConf.load(tmp_path / "config.yaml")
