@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import hydra
 from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
-from omegaconf import MISSING, DictConfig
+from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import conf, seeding
 from mitigate.core.locks import FolderLock
@@ -71,6 +71,15 @@ class CostConfig:
     views: float | None = None
     episodes: float | None = None
     evaluation: float | None = None
+
+
+def times(cost: float, kind: float | None) -> float | None:
+    """What ``${times:2.7,${cost.episodes}}`` is in a config: a step's cost with the chosen kind of
+    agent, None where that is not known."""
+    return None if kind is None else cost * kind
+
+
+OmegaConf.register_new_resolver("times", times, replace=True)
 
 
 @dataclass

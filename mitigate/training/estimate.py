@@ -16,7 +16,7 @@ from mitigate.core import precision
 from mitigate.core.names import counted
 from mitigate.core.progress import duration
 from mitigate.core.workers import cores
-from mitigate.evaluation.evaluate import REPORT
+from mitigate.evaluation.evaluate import REPORT, times
 from mitigate.training import states
 from mitigate.training.stages import trainer_settings
 
@@ -44,8 +44,8 @@ def estimate(cfg: DictConfig, folder: Path) -> float:
         done = states.checkpoints(folder / name)
         left = count - (states.steps_done(done[-1]) if done else 0)
         costs.append((max(0, left), cfg.stages[name].cost))
-    kind, workers = cfg.cost.evaluation, cfg.evaluation.workers or cores()
-    costs.append((_walked(cfg), None if kind is None else EPISODE_COST / workers * kind))
+    walk = times(EPISODE_COST / (cfg.evaluation.workers or cores()), cfg.cost.evaluation)
+    costs.append((_walked(cfg), walk))
     seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
     return seconds * precision.probe().fp32 / precision.REFERENCE
 

@@ -110,19 +110,12 @@ class TrainConfig:
 ConfigStore.instance().store(name="train_schema", node=TrainConfig)
 
 
-def times(cost: float, kind: float | None) -> float | None:
-    """What ``${times:2.7,${cost.episodes}}`` is in a config: a step's cost with the chosen kind of
-    agent, None where that is not known."""
-    return None if kind is None else cost * kind
-
-
 def either(first: Any, second: Any) -> Any:
     """What ``${either:${trainer.steps},${stages.policy.trainer.steps}}`` is in a config: the first
     value, or the second where that is null."""
     return second if first is None else first
 
 
-OmegaConf.register_new_resolver("times", times, replace=True)
 OmegaConf.register_new_resolver("either", either, replace=True)
 
 
