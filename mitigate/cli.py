@@ -135,6 +135,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if not told:
             raise
         sys.exit(told)
+    except KeyboardInterrupt:  # commands that can go on catch it themselves, and say how
+        print(f"\nmitigate {name}: stopped.", file=sys.stderr)
+        status = 128 + signal.SIGINT
     except BrokenPipeError:  # whoever read what is printed, as head does, has read enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 128 + signal.SIGPIPE

@@ -64,6 +64,16 @@ def test_both_ways_of_running_reach_the_program(command, tmp_path):
     assert done.returncode == 2 and "nowhere" in done.stderr and "Traceback" not in done.stderr
 
 
+def test_a_command_that_is_stopped_says_so_in_one_line(monkeypatch, capsys):
+    def stopped(rows, *_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("mitigate.evaluation.table.run", stopped)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["table", "docs/results"])
+    assert ended.value.code == 130 and capsys.readouterr().err == "\nmitigate table: stopped.\n"
+
+
 def test_a_missing_package_says_what_to_install(monkeypatch):
     monkeypatch.setitem(sys.modules, "tqdm", None)
     for module in list(sys.modules):

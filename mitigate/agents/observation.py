@@ -13,13 +13,30 @@ from typing import Any
 import numpy as np
 
 from mitigate.agents.text import UNKNOWN, Vocabulary
-from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
 FARTHEST = 50.0  # metres (ours): indoors some pixel of twelve views is nearer, if only the floor
 NEAREST = 1.0  # metres (ours): a room of which nothing lies farther away is rare
 
 
 CHANNELS = {RGB: 3, DEPTH: 1}
+
+
+def check_views(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
+    """Raise ValueError if ``agent`` says how many views it takes (``views``), and the world with
+    these sensors, called ``world``, shows another number."""
+    wanted = getattr(agent, "views", None)
+    if wanted not in (1, VIEWS):
+        return
+    for name, sensor in sensors.items():
+        views = sensor.shape[0] if len(sensor.shape) == 4 else 1
+        if name in (RGB, DEPTH) and views != wanted:
+            raise ValueError(
+                f"The world {world} shows {views} of {VIEWS} views in {name}, but "
+                f"{type(agent).__name__} takes {wanted}. Set env.views={wanted}, as conf/agent "
+                'does for this kind of agent (mitigate.benchmark: options=["env.views='
+                f'{wanted}"]), or choose another agent.'
+            )
 
 
 def frames(observation: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:

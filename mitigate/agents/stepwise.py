@@ -19,7 +19,15 @@ from mitigate.core.observation import RGB, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
 
-Frames = dict[str, Tensor]
+
+class Frames(dict[str, Tensor]):
+    """What ``forward`` reads, by name."""
+
+    def __missing__(self, name: str) -> Tensor:
+        raise ValueError(
+            f"The agent reads {name!r}, which its needs = {tuple(self)} do not name: add it to "
+            "them (docs/bring-your-own.md)."
+        )
 
 
 @dataclass
@@ -36,7 +44,9 @@ class StepDecisions:
 
     def to(self, device: Any) -> StepDecisions:
         """Return the steps on ``device``."""
-        frames, clean = ({n: t.to(device) for n, t in f.items()} for f in (self.frames, self.clean))
+        frames, clean = (
+            Frames({n: t.to(device) for n, t in f.items()}) for f in (self.frames, self.clean)
+        )
         target, weight = self.target.to(device), self.weight.to(device)
         return replace(self, frames=frames, clean=clean, target=target, weight=weight)
 
@@ -155,8 +165,8 @@ class StepwiseAgent(nn.Module):
         return int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
 
     def _tensors(self, frames: Mapping[str, np.ndarray]) -> Frames:
-        return {n: torch.from_numpy(np.array(f)).to(self.device) for n, f in frames.items()}
+        return Frames({n: torch.from_numpy(np.array(f)).to(self.device) for n, f in frames.items()})
 
 
 def _stacked(frames: Sequence[Mapping[str, np.ndarray]]) -> Frames:
-    return {name: torch.from_numpy(np.stack([f[name] for f in frames])) for name in frames[0]}
+    return Frames({n: torch.from_numpy(np.stack([f[n] for f in frames])) for n in frames[0]})

@@ -165,7 +165,8 @@ def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
 
 def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     """Return the tensors of a safetensors file; ValueError if it is damaged, by its sidecar (if it
-    has one) or by itself."""
+    has one) or by itself, PermissionError if it may not be read."""
+    file.open("rb").close()
     problem = checksums.problem(file)
     if not problem:
         try:

@@ -58,12 +58,15 @@ def settle(path: Path, digest: str) -> None:
 
 def problem(path: Path) -> str:
     """Return what is wrong with ``path`` by its sidecar (a predicate, such as "does not have the
-    sha256 ..."), empty if nothing is or if it has none."""
+    sha256 ..."), empty if nothing is or if it has none. Raises PermissionError if it may not be
+    read, which is no damage."""
     note = sidecar(path)
     if not note.is_file():
         return ""
     try:
         return "" if sha256(path) in _sums(path) else f"does not have the sha256 in {note.name}"
+    except PermissionError:
+        raise
     except (ValueError, OSError) as error:
         return f"cannot be compared with {note.name} ({error})"
 

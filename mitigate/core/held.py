@@ -1,4 +1,4 @@
-"""What an agent that may be any object holds: networks and arrays, wherever they are in it."""
+"""What an agent that may be any object holds: networks, arrays and functions, wherever they are."""
 
 from __future__ import annotations
 
@@ -6,13 +6,14 @@ import logging
 import operator
 import random
 import sys
+import sysconfig
 import types
 from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from enum import Enum
-from functools import partial
+from functools import cache, partial
 from itertools import chain, islice
 from pathlib import PurePath
 from typing import Any
@@ -34,33 +35,42 @@ _NO_WEIGHTS = (
     *(torch.device, torch.dtype, torch.Size, torch.Generator, np.random.Generator, random.Random),
     *(np.random.RandomState, np.ufunc, logging.Logger, types.ModuleType, Observation),
 )
+_PLAIN = (str, bytes, int, float, complex, type(None), Enum)
+_BY_VERSION = ("mitigate", "torch")  # packages that are known by their version, wherever they are
+_INSTALLED = frozenset(("site-packages", "dist-packages"))
 _OWN_OF_TORCH = frozenset(vars(nn.Module()))  # hooks, parameters, and modules that it lists itself
 
 
 @dataclass
 class Held:
     """networks and arrays (also tensors) by where they are, such as "pol.nets.policy", the agent
-    itself as ""; a number in braces is of a set, which has no order. unknown: places of what nobody
-    could look into, such as a session of another library, or that are too deep or too many."""
+    itself as ""; a number in braces is of a set, which has no order. functions: of the user's own
+    code. constants: plain values that functions and partial calls hold, which an attribute, that
+    may change from step to step, is not. unknown: places of what nobody could look into, such as a
+    session of another library, or that are too deep or too many."""
 
     networks: dict[str, nn.Module] = field(default_factory=dict)
     arrays: dict[str, Any] = field(default_factory=dict)
+    functions: dict[str, types.FunctionType] = field(default_factory=dict)
+    constants: dict[str, Any] = field(default_factory=dict)
     unknown: list[str] = field(default_factory=list)
 
 
 def held(agent: Any) -> Held:
-    """Return what is in ``agent``, in its attributes, and in the lists, dicts, objects and
-    functions that these hold; each thing once, where it is found first. Of a large list or dict its
-    first parts that may hold weights are looked into, and the list is unknown."""
+    """Return what is in ``agent``, in its attributes, its methods, and in the lists, dicts, objects
+    and functions that these hold or name; each thing once, where it is found first. Of a large list
+    or dict its first parts that may hold weights are looked into, and the list is unknown."""
     found = Held()
     seen: dict[int, Any] = {}
-    waiting: deque[tuple[tuple[str, ...], Any, int]] = deque([((), agent, PARTS)])
+    waiting: deque[tuple[tuple[str, ...], Any, int, bool]] = deque([((), agent, PARTS, False)])
     while waiting:
-        place, value, most = waiting.popleft()
+        place, value, most, fixed = waiting.popleft()
         if id(value) in seen:
             continue
         seen[id(value)] = value
         name = ".".join(place)
+        if isinstance(value, types.FunctionType) and _is_users(value):
+            found.functions[name] = value
         if isinstance(value, nn.Module):
             found.networks[name] = value
             seen.update((id(m), m) for m in (value.modules() if value is agent else ()))
@@ -68,6 +78,11 @@ def held(agent: Any) -> Held:
             found.arrays[name] = array
             continue
         inside, many = _inside(value, whole=value is agent), isinstance(value, _CONTAINERS)
+        fixed = isinstance(value, (types.FunctionType, partial)) or (fixed and many)
+        if fixed:
+            inside = None if inside is None else [*inside]
+            plain = [part for part in inside or () if isinstance(part[1], _PLAIN)]
+            found.constants |= {".".join((*place, own)): part for own, part in plain}
         able = (part for part in inside or () if not isinstance(part[1], _NO_WEIGHTS))
         parts = [*islice(able, most + 1 if many else None)]
         if inside is None or (parts and (len(place) >= DEPTH or len(seen) > MOST)):
@@ -76,7 +91,8 @@ def held(agent: Any) -> Held:
         if many and len(parts) > most:
             found.unknown.append(name)
         each = max(LEAST, most // max(1, len(parts))) if many else most
-        waiting.extend(((*place, own), part, each) for own, part in parts[: most if many else None])
+        for own, part in parts[: most if many else None]:  # numbered ones are no globals
+            waiting.append(((*place, own), part, each, fixed and own.isdigit()))
     return found
 
 
@@ -118,10 +134,12 @@ def _array(value: Any) -> Any:
 
 def _inside(value: Any, whole: bool) -> Iterable[tuple[str, Any]] | None:
     """The parts of ``value`` by name; None if it has none that can be looked at. ``whole``: it is
-    the agent, of which a network has attributes beside its modules; of others they do not count."""
+    the agent, of which a network has attributes beside its modules; of others they do not count,
+    but the methods of all do."""
     if isinstance(value, nn.Module):
         own = {k: v for k, v in vars(value).items() if k not in _OWN_OF_TORCH}
-        return own.items() if whole else []
+        kinds = dict.fromkeys(map(type, value.modules()))
+        return chain(own.items() if whole else (), *map(_methods, kinds))
     if isinstance(value, torch.Tensor) or hasattr(type(value), "__array__"):
         return None
     if isinstance(value, dict):
@@ -140,7 +158,8 @@ def _inside(value: Any, whole: bool) -> Iterable[tuple[str, Any]] | None:
         return [("self", value.__self__), ("func", getattr(value, "__func__", None))]
     if isinstance(value, types.FunctionType):
         filled = [cell.cell_contents for cell in value.__closure__ or () if _is_filled(cell)]
-        return _numbered([*filled, *(value.__defaults__ or ()), value.__kwdefaults__])
+        usual = _numbered([*filled, *(value.__defaults__ or ()), value.__kwdefaults__])
+        return chain(usual, _globals(value) if _is_users(value) else ())
     return _attributes(value)
 
 
@@ -152,10 +171,47 @@ def _attributes(value: Any) -> Iterable[tuple[str, Any]] | None:
     slots = [one for kind in kinds for one in vars(kind).items()]
     members = [(k, one) for k, one in slots if isinstance(one, types.MemberDescriptorType)]
     if isinstance(own, dict) or members:
-        return chain((own or {}).items(), _filled(value, members))
+        return chain((own or {}).items(), _filled(value, members), _methods(type(value)))
     package, name = str(type(value).__module__).partition(".")[0], type(value).__name__
     foreign = package == "ctypes" or name == "PyCapsule" or isinstance(value, Iterator)
     return [] if package in sys.stdlib_module_names and not foreign else None
+
+
+def _methods(kind: type) -> Iterator[tuple[str, Any]]:
+    """The functions of ``kind`` and of the classes that it builds on, of those that are the
+    user's."""
+    for each in kind.__mro__:
+        file = getattr(sys.modules.get(each.__module__), "__file__", None)
+        if each is object or not is_users(each.__module__, file or ""):
+            continue
+        for name, one in vars(each).items():
+            function = getattr(
+                one, "__func__", getattr(one, "fget", one)
+            )  # static, class, property
+            if isinstance(function, types.FunctionType):
+                yield name, function
+
+
+def _globals(function: types.FunctionType) -> Iterator[tuple[str, Any]]:
+    """What ``function``, and those that are written in it, may name of its module."""
+    codes, names = [function.__code__], dict[str, None]()
+    for code in codes:
+        names |= dict.fromkeys(code.co_names)
+        codes += [part for part in code.co_consts if isinstance(part, types.CodeType)]
+    return ((name, function.__globals__[name]) for name in names if name in function.__globals__)
+
+
+def _is_users(function: types.FunctionType) -> bool:
+    return is_users(function.__module__ or "", function.__code__.co_filename)
+
+
+@cache
+def is_users(module: str, file: str) -> bool:
+    """Whether code is of neither this project, torch, Python itself nor an installed package, which
+    nobody edits."""
+    path = PurePath(file)
+    installed = _INSTALLED & {*path.parts} or path.is_relative_to(sysconfig.get_path("stdlib"))
+    return module.partition(".")[0] not in _BY_VERSION and not installed
 
 
 def _numbered(parts: Iterable[Any]) -> Iterator[tuple[str, Any]]:

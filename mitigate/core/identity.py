@@ -10,7 +10,7 @@ import hashlib
 import inspect
 import json
 import re
-import sysconfig
+import types
 from collections import defaultdict
 from collections.abc import Mapping
 from contextlib import suppress
@@ -24,13 +24,11 @@ import torch
 from torch import nn
 
 from mitigate.core.checkpoint import weights_sha
-from mitigate.core.held import Held, held
+from mitigate.core.held import Held, held, is_users
 from mitigate.core.observation import Sensor
 
 DIGITS = 12  # hex digits: 48 bits
-_BY_VERSION = ("mitigate", "torch")  # not by their code, wherever it is
 _OF_SET = re.compile(r"\{\d+\}")  # of which each process has another order
-_INSTALLED = frozenset(("site-packages", "dist-packages"))
 
 
 def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> str:
@@ -39,12 +37,14 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
     It covers the weights (names, types, shapes, values) of the network that it is and of those that
     it holds, wherever they are in it (``core/held.py``), or of its arrays if it has no networks;
     the agent's class and ``settings`` (a mapping, or a method that returns one: vocabulary and all
-    else that is no weight); the code of its classes and of its networks' (:func:`source_of`); what
-    each sensor gives, and what stands in front of the agent (``front``: the safeguard that repairs
-    its instructions).
+    else that is no weight); the code of its classes and of its networks' (:func:`source_of`), and
+    of the functions that it holds or that its code names, with their constants; what each sensor
+    gives, and what stands in front of the agent (``front``: the safeguard that repairs its
+    instructions).
     """
     settings, inside = getattr(agent, "settings", dict), held(agent)
-    code = _codes(agent, inside)
+    constants = [f"{place} = {value!r}" for place, value in sorted(inside.constants.items())]
+    code = [*_codes(agent, inside), *constants]
     made = {
         "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
         "weights": _weights(inside),
@@ -64,28 +64,49 @@ def source_of(kind: type) -> list[str]:
     return list(_source_of(kind))
 
 
+def code_sha(recipe: nn.Module) -> str:
+    """The hash of the code by which a recipe, its agent in it, trains, of what is the user's own;
+    empty if nothing is."""
+    code = "\n".join(_codes(recipe, held(recipe)))
+    return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]
+
+
 def _codes(agent: Any, inside: Held) -> list[str]:
     """What :func:`source_of` has of the agent's class and of those of its networks' modules, each
-    class once."""
+    class once, and functions that are in none of these."""
     modules = [module for net in inside.networks.values() for module in net.modules()]
     kinds = dict.fromkeys(map(type, (agent, *modules)))
-    return [*dict.fromkeys(source for kind in kinds for source in source_of(kind))]
+    classes = [*dict.fromkeys(source for kind in kinds for source in source_of(kind))]
+    codes = [function.__code__ for function in inside.functions.values()]
+    functions = dict.fromkeys(_written(code, code.co_filename) for code in codes)
+    apart = [text for text in functions if not any(text in source for source in classes)]
+    return [*classes, *apart]
+
+
+@cache
+def _written(code: types.CodeType, file: str) -> str:
+    """The source of a function's ``code`` in ``file``, as it was when it was first asked for; of
+    one that is in no file, its instructions."""
+    try:
+        return inspect.getsource(code)
+    except (OSError, TypeError):
+        return f"{code.co_name} {code.co_code.hex()} {code.co_names} {_constants(code)}"
+
+
+def _constants(code: types.CodeType) -> list[str]:
+    inner = [part for part in code.co_consts if isinstance(part, types.CodeType)]
+    plain = [repr(part) for part in code.co_consts if not isinstance(part, types.CodeType)]
+    return plain + [text for part in inner for text in (part.co_code.hex(), *_constants(part))]
 
 
 @cache
 def _source_of(kind: type) -> tuple[str, ...]:
     found = []
     for each in kind.__mro__:
-        if each.__module__.partition(".")[0] in _BY_VERSION:
-            continue
         with suppress(OSError, TypeError):  # typed in, or made while it ran
-            if not _is_installed(PurePath(inspect.getsourcefile(each) or "")):
+            if is_users(each.__module__, inspect.getsourcefile(each) or ""):
                 found.append(inspect.getsource(each))
     return tuple(found)
-
-
-def _is_installed(file: PurePath) -> bool:
-    return bool(_INSTALLED & {*file.parts}) or file.is_relative_to(sysconfig.get_path("stdlib"))
 
 
 def _weights(inside: Held) -> str | dict[str, str]:

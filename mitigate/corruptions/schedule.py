@@ -83,6 +83,12 @@ class Schedule:
         for name in ("clean_share", "broad_share"):
             if not 0.0 <= getattr(self, name) <= 1.0:
                 raise ValueError(f"{name} must be in [0, 1], but it is {getattr(self, name)!r}.")
+        if self.mode == "clean" and self.broad_share > 0.0:
+            raise ValueError(
+                "The mode clean corrupts nothing, so there is nothing that broad_share = "
+                f"{self.broad_share!r} could be of: choose another mode (in a config: "
+                "schedule=per_episode), or leave it out."
+            )
         if not (0.0 <= self.alpha < math.inf and 0.0 <= self.floor < math.inf):
             raise ValueError(
                 f"alpha and floor must be finite and >= 0, but alpha = {self.alpha!r} and floor = "

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from omegaconf import OmegaConf
 
 from mitigate.core.names import unknown
+from mitigate.core.observation import DEPTH, RGB
 
 if TYPE_CHECKING:
     from mitigate.corruptions import Corruption
@@ -70,7 +71,14 @@ def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str)
     shown = [*sensors]
     lost = [c.name for c in met if not {*c.modalities} <= {*shown, "instruction"}]
     if lost:
+        able = [name for name in (RGB, DEPTH) if name in shown]
+        other = (
+            f"Choose another, such as suite={able[0]}."
+            if able
+            else f"Frames that are to be corrupted are called {RGB} and {DEPTH}: name them so in "
+            "the world's sensors (of GymWorld: entries=)."
+        )
         raise ValueError(
             f"The suite has {', '.join(lost)}, but the world {world} shows only "
-            f"{', '.join(shown)}. Choose another, such as suite=rgb or suite=depth."
+            f"{', '.join(shown)}. {other}"
         )

@@ -30,6 +30,8 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
     """
     from mitigate.worlds.episodes import read_episodes
 
+    if count is not None and (isinstance(count, bool) or not isinstance(count, int)):
+        raise ValueError(f"episodes={count!r} is no whole number: give 1 or more, or None for all.")
     if count is not None and count < 1:
         raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
     if not env.episodes:

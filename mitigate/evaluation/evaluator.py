@@ -22,6 +22,7 @@ from typing import Any, ClassVar
 import torch
 
 from mitigate.agents.agent import Agent, SideBySide
+from mitigate.agents.observation import check_views
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.held import in_eval_mode, networks
@@ -149,6 +150,7 @@ def evaluate(
         check_finite(agent, f"The weights of {name}")
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
+    check_views(agent, made.sensors, type(made).__name__)
     label = {
         "agent": known_as or identity(agent, made.sensors, _fronts(safeguard, restorer)),
         "name": name,

@@ -18,6 +18,8 @@ from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
 
+FEW = 10  # episodes below which no difference is called sure (ours)
+
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
     """Return the tables as Markdown; ``pictures[i]`` are file names to show under section i."""
@@ -103,7 +105,7 @@ def _table(section: Section) -> str:
         lines.append([f"Clean {metric}", *cells])
     lines += _by_seed(section, "clean", "Clean SR", lambda value: f"{100 * value:.1f}")
     if len(section.columns) > 1:
-        cells = [_moved(section.moved.get(c)) for c in section.columns]
+        cells = [_moved(section, section.moved.get(c)) for c in section.columns]
         lines.append([f"Clean SR against {markdown_of(section.reference)}", *cells])
     if section.corrupted:
         lines += _mean_sr(section)
@@ -142,9 +144,8 @@ def _mean_sr(section: Section) -> list[list[str]]:
     title = f"Mean SR of {count} corruptions"
     lines = [[title, *cells(section.corrupted, lambda estimate: _interval(estimate, "SR"))]]
     if len(section.columns) > 1:
-        lines.append(
-            [f"Mean SR against {markdown_of(section.reference)}", *cells(section.raised, _moved)]
-        )
+        moved = cells(section.raised, lambda change: _moved(section, change))
+        lines.append([f"Mean SR against {markdown_of(section.reference)}", *moved])
     return lines
 
 
@@ -177,8 +178,12 @@ def _notes(section: Section) -> str:
             f"n/a: {label(PROMPT_ONLY)} changes an agent's system prompt; no agent here has one, "
             "so it is not applicable and no part of the PRS."
         )
-    if section.gained:
-        notes.append("Differences in bold have intervals that exclude zero.")
+    if section.gained or section.moved:
+        notes.append(
+            f"Under {FEW} episodes an interval says little: no difference is in bold."
+            if _is_few(section)
+            else "Differences in bold have intervals that exclude zero."
+        )
     others = [c for c in section.columns if c != section.reference]
     apart = [c for c in others if not section.grid.common((c, section.reference), section.severity)]
     if apart:
@@ -237,12 +242,20 @@ def _prs(section: Section, place: tuple[str, str, str]) -> str:
     return f"**{prs.value:.2f}** {prs.interval('.2f')}{marks}"
 
 
-def _moved(change: Estimate | None) -> str:
+def _moved(section: Section, change: Estimate | None) -> str:
     if change is None:
         return "–"
-    text = f"{100 * change.value:+.1f}"
-    text = f"**{text}**" if change.excludes_zero else text
+    text = _bold_if_sure(section, f"{100 * change.value:+.1f}", change)
     return f"{text} {change.interval('+.1f', 100)}"
+
+
+def _bold_if_sure(section: Section, text: str, change: Estimate) -> str:
+    return f"**{text}**" if change.excludes_zero and not _is_few(section) else text
+
+
+def _is_few(section: Section) -> bool:
+    """Whether so few episodes have too few resamples for an interval to cover what it says."""
+    return len(section.grid.episodes) < FEW
 
 
 def _change(section: Section, place: tuple[str, str, str]) -> str:
@@ -250,7 +263,7 @@ def _change(section: Section, place: tuple[str, str, str]) -> str:
     if found is None or math.isnan(found.estimate.value):
         return "–"
     change, marks = found.estimate, _escaped(section.marks(found, place[1]))
-    text = f"**{change.value:+.2f}**" if change.excludes_zero else f"{change.value:+.2f}"
+    text = _bold_if_sure(section, f"{change.value:+.2f}", change)
     return f"{text} {change.interval('+.2f')}{marks}"
 
 

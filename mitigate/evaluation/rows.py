@@ -76,9 +76,10 @@ def read(path: Path | str) -> list[Row]:
                     break
                 problem = _problem(row) if text else "is not UTF-8"
                 if problem:
+                    cure = "Delete the line and evaluate again." if rows else "Is it such a file?"
                     raise ValueError(
                         f"{path}, line {number} {problem}. A result row is one JSON object a line "
-                        f"with {', '.join(REQUIRED)}. Delete the line and evaluate again."
+                        f"with {', '.join(REQUIRED)}. {cure}"
                     )
                 rows.append(row)
     except OSError as error:
@@ -200,7 +201,10 @@ def _problem(row: Any) -> str:
         return f"lacks {', '.join(lacking)}"
     for key, kind in REQUIRED.items():
         if not isinstance(row[key], kind):
-            return f"has a wrong {key}: {short(row[key])}"
+            kinds = kind if isinstance(kind, tuple) else (kind,)
+            wanted = " or ".join(one.__name__ for one in kinds)
+            found = type(row[key]).__name__
+            return f"has a wrong {key}: {short(row[key])} ({wanted}, not {found})"
     for key, value in row.items():
         wanted = allowed(key, value)
         if wanted:

@@ -17,6 +17,7 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf, open_dict
 from torch import nn
 
+from mitigate.agents.observation import check_views
 from mitigate.core.build import build, located, maker
 from mitigate.core.conf import CONF
 from mitigate.core.observation import DEPTH, RGB
@@ -104,7 +105,7 @@ def tell_of_schedule(cfg: DictConfig) -> None:
     """Say so if there is a ``schedule`` of corruptions, and no stage draws any of it, or if a
     severity that was asked for does not reach it."""
     mode = OmegaConf.select(cfg, "schedule.mode")
-    if mode in (None, "clean"):
+    if mode is None or (mode == "clean" and not cfg.schedule.get("broad_share")):
         return
     if _holds(plain(cfg.stages), cfg.schedule._target_):
         usual = OmegaConf.load(CONF / "train.yaml")
@@ -199,7 +200,8 @@ def check(cfg: DictConfig, agent: nn.Module, folder: Path, ranks: Ranks | None =
                 f"{type(agent).__name__} cannot be trained by the stage {name} of recipe="
                 f"{cfg.name}: {misfit}"
             )
-    _check_views(cfg, agent)
+    if hasattr(agent, "views"):
+        check_views(agent, maker(cfg.env.world)().sensors, cfg.env.name)
     _check_folder(cfg, folder)
     _check_stages(cfg, agent, ranks or Ranks())
 
@@ -251,20 +253,6 @@ def _check_settings(node: DictConfig, agent: nn.Module) -> None:
             f"settings() of {type(agent).__name__} names {', '.join(wrong)}, which its constructor "
             "does not take: return its arguments, so that the agent can be built again."
         )
-
-
-def _check_views(cfg: DictConfig, agent: nn.Module) -> None:
-    wanted = getattr(agent, "views", None)
-    if wanted is None:
-        return
-    for name, sensor in maker(cfg.env.world)().sensors.items():
-        views = sensor.shape[0] if len(sensor.shape) == 4 else 1
-        if name in (RGB, DEPTH) and views != wanted:
-            raise ValueError(
-                f"The world {cfg.env.name} shows {views} of 12 views in {name}, but "
-                f"{type(agent).__name__} takes {wanted}. Set env.views={wanted}, as conf/agent "
-                "does for this kind of agent, or choose another agent."
-            )
 
 
 def _check_folder(cfg: DictConfig, folder: Path) -> None:

@@ -13,13 +13,14 @@ from torch import nn
 from mitigate.core import checkpoint, seeding
 from mitigate.core.build import build
 from mitigate.core.files import atomic_text
+from mitigate.core.identity import code_sha
 from mitigate.training import states
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe
 from mitigate.training.trainer import Trainer
 from mitigate.training.workers import Workers
 
-IDENTITY = "identity.json"  # in a stage's folder: what it started from, its settings, its teacher
+IDENTITY = "identity.json"  # in a stage's folder: its start, settings, code, teacher
 NOT_IDENTITY = ("workers", "folder")  # settings of a recipe that do not change what it trains
 
 
@@ -38,7 +39,9 @@ def train_stage(
     start = checkpoint.weights_sha(agent)
     recipe = recipe_of(stage, agent)
     recipe.workers = cfg.workers
-    identity = {"start": start, **named(cfg, stage), **recipe.identity()}
+    code = code_sha(recipe)
+    known_by = {"code_sha256": code} if code else {}
+    identity = {"start": start, **named(cfg, stage), **known_by, **recipe.identity()}
     ranks = ranks or Ranks()
     if ranks.first and not states.checkpoints(folder):  # else the trainer compares first
         with atomic_text(folder / IDENTITY) as file:

@@ -162,6 +162,13 @@ class Corrupted(WorldWrapper):
         return super().reset(episode)
 
     def _seen(self, clean: Observation) -> Observation:
+        if not isinstance(clean, Observation):
+            raise TypeError(
+                f"{type(self.world).__name__} showed a {type(clean).__name__}: its reset() and "
+                "step() return an Observation, such as Observation({'pose': pose}, "
+                "lambda: {'rgb': rgb}, ('rgb',)) (docs/bring-your-own.md)."
+            )
+
         def corrupted() -> dict[str, np.ndarray]:
             corruption, key = self._draw()
             self.looks += 1

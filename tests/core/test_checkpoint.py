@@ -148,6 +148,17 @@ def test_truncated_weights_are_refused(tmp_path):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
 
 
+def test_weights_that_may_not_be_read_are_not_called_damaged(tmp_path, monkeypatch):
+    checkpoint.save_weights(nn.Linear(3, 2), tmp_path)
+
+    def refused(path):
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr("mitigate.core.checksums.sha256", refused)
+    with pytest.raises(PermissionError, match=r"denied.*model\.safetensors"):
+        checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+
+
 def test_missing_weights_say_what_to_train(tmp_path):
     with pytest.raises(FileNotFoundError, match="make train RECIPE=base"):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)

@@ -146,6 +146,14 @@ def test_the_experiment_harsh_is_the_papers_stronger_setting():
     assert (cfg.schedule.severity, cfg.schedule.severity_depth) == (0.9, 0.8)
 
 
+@pytest.mark.parametrize("recipe", ["da_per_frame", "ts_distill", "conv_adapter"])
+def test_the_experiment_broad_draws_what_harden_draws(recipe):
+    broad = conf.load_config("train", [f"recipe={recipe}", "experiment=broad"]).schedule
+    harden = conf.load_config("train", ["recipe=harden"]).schedule
+    assert broad.broad_share == harden.broad_share > 0
+    assert broad.severity == harden.severity and broad.severity_depth is None
+
+
 def test_smoke_shortens_every_stage():
     cfg = conf.load_config("train", ["recipe=base", "debug=smoke"])
     assert cfg.trainer.steps == 2 and cfg.evaluation.episodes == 2

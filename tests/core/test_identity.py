@@ -9,12 +9,14 @@ import sys
 from collections import OrderedDict
 from types import SimpleNamespace
 
+import pytest
 import torch
 from torch import nn
 
 from mitigate.agents.text import WORDS
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import seeding
+from mitigate.core.held import in_eval_mode
 from mitigate.core.identity import identity, source_of
 from mitigate.core.observation import cameras
 
@@ -142,3 +144,96 @@ def test_the_code_of_an_agents_networks_counts_also_where_it_has_settings(tmp_pa
     edited = NETWORK.replace("return ", "return -")
     first, other, again = _hashes(tmp_path, "Agent", (NETWORK, edited, NETWORK))
     assert first == again != other
+
+
+NOTEBOOK = """
+from functools import partial
+from torch import nn
+
+net = nn.Sequential(nn.Dropout(0.5), nn.Linear(1, 1, bias=False))
+nn.init.constant_(net[1].weight, {weight})
+LIMIT = {limit}
+
+def choose(frame):
+    return {answer}
+
+def later(frame, steps):
+    return steps
+
+class Named:
+    def reset(self, instruction):
+        self.steps = 0
+
+    @property
+    def near(self):
+        return LIMIT
+
+    def act(self, observation):
+        return [self.head(frame) for frame in observation] and choose(observation)
+
+    def head(self, frame):
+        return net(frame)
+
+class Given:
+    def __init__(self, decide):
+        self.decide = decide
+
+    def reset(self, instruction):
+        pass
+
+made = {{
+    "named": Named(),
+    "a partial call": Given(partial(later, steps={limit})),
+    "a closure": (lambda steps: Given(lambda frame: steps))({limit}),
+    "a bound method": Given(Named().act),
+    "a function": Given(choose),
+}}
+"""
+USUAL = {"weight": 1.0, "limit": 3, "answer": 0}
+
+
+def _notebook(tmp_path, name, **changes):
+    (tmp_path / f"{name}.py").write_text(NOTEBOOK.format(**{**USUAL, **changes}))
+    module = importlib.import_module(name)
+    for kind in (module.Named, module.Given):  # its own name is the file's: make them alike
+        kind.__module__ = "notebook"
+    return module
+
+
+@pytest.mark.parametrize(
+    ("place", "change"),
+    [
+        ("named", {"weight": 2.0}),
+        ("named", {"limit": 4}),
+        ("named", {"answer": 1}),
+        ("a partial call", {"limit": 4}),
+        ("a closure", {"limit": 4}),
+        ("a bound method", {"weight": 2.0}),
+        ("a bound method", {"answer": 1}),
+        ("a function", {"answer": 1}),
+    ],
+)
+def test_what_the_code_of_an_agent_names_is_part_of_it(tmp_path, monkeypatch, place, change):
+    monkeypatch.syspath_prepend(tmp_path)
+    number = len([*sys.modules])
+    first, again, other = (
+        identity(_notebook(tmp_path, f"notebook_{number}_{i}", **options).made[place], {})
+        for i, options in enumerate(({}, {}, change))
+    )
+    assert first == again != other
+
+
+def test_what_it_does_in_an_episode_makes_no_other_agent(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    agent = _notebook(tmp_path, "notebook_walked").made["named"]
+    before = identity(agent, {})
+    agent.reset("go")
+    assert identity(agent, {}) == before
+
+
+def test_a_network_that_its_code_names_is_in_eval_mode(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    module = _notebook(tmp_path, "notebook_modes")
+    with in_eval_mode(module.made["named"]):
+        assert not module.net[0].training
+    assert module.net[0].training

@@ -71,7 +71,7 @@ def test_no_weights_no_agent_and_a_sensor_that_is_not_shown(evaluation, monkeypa
     restorer = ("agent=restorer", "checkpoint=checkpoints/restorer")
     assert "A Restorer walks no episodes" in evaluation(*restorer)
     monkeypatch.setattr(world, "cameras", lambda size, views: {"rgb": None})
-    assert "shows only rgb. Choose another, such as suite=rgb" in evaluation("suite=quick")
+    assert "shows only rgb. Choose another, such as suite=rgb." in evaluation("suite=quick")
 
 
 def test_an_encoder_that_an_extra_brings(monkeypatch):

@@ -151,6 +151,7 @@ def test_state_survives_json_and_gives_the_same_draws():
         ({"severity": [0.3]}, "low, high"),
         ({"severity": "worst"}, "from 0 .clean. to 1"),
         ({"clean_share": 1.5}, "clean_share must be in"),
+        ({"mode": "clean", "broad_share": 0.5}, "corrupts nothing.*schedule=per_episode"),
         ({"clean_share": float("nan")}, "clean_share must be in"),
         ({"names": ("spater",)}, "mean spatter"),
         ({"names": ()}, "at least one corruption"),

@@ -92,6 +92,33 @@ def test_what_is_no_whole_number_is_refused_with_the_agent_the_episode_and_the_s
         list(run_side_by_side(Answers(1, answer), [Cell()], [(EPISODE, CLEAN, 0)]))
 
 
+def test_measures_may_be_numbers_of_numpy_or_torch(tmp_path):
+    cell = Cell()
+    cell.measures = lambda: {"success": np.bool_(True), "spl": np.float32(0.5), "m": torch.ones(())}
+    measured = run_episode(Answers(0), cell, EPISODE, CLEAN, 0)
+    assert {n: measured[n] for n in ("success", "spl", "m")} == {"success": 1, "spl": 0.5, "m": 1.0}
+    assert [type(measured[n]) for n in ("success", "spl", "m")] == [int, float, float]
+
+
+@pytest.mark.parametrize("shown", [{"rgb": np.zeros((4, 4, 3), np.uint8)}, (0, 1.0, False, {})])
+def test_what_is_no_observation_is_refused_with_the_world(shown):
+    cell = Cell()
+    cell.look = lambda: shown
+    with pytest.raises(TypeError, match=f"Cell showed a {type(shown).__name__}: .*Observation"):
+        run_episode(Answers(0), cell, EPISODE, CLEAN, 0)
+
+
+def test_a_frame_that_an_agent_reads_and_does_not_need_is_named():
+    class Curious(Logits):
+        def forward(self, frames, texts):
+            return self.logits + frames["depth"].mean(), {}
+
+    with pytest.raises(
+        ValueError, match=r"reads 'depth', which its needs = \('rgb',\) do not name"
+    ):
+        run_episode(Curious(0.0, 1.0, 2.0, 3.0), Cell(), EPISODE, CLEAN, 0)
+
+
 NAN, INF = float("nan"), float("inf")
 
 

@@ -81,6 +81,16 @@ def test_one_episode_gives_no_interval_and_nothing_in_bold():
     assert "[–]" not in markdown(sections(column(8, ALL)))
 
 
+def test_few_episodes_make_no_difference_sure():
+    def made(count):
+        better = [row(e, 1, **HARD) for e in range(count)]
+        return [row(e, 0 if e else 1) for e in range(count)] + better
+
+    few, enough = (markdown(sections(made(count))) for count in (9, 10))
+    assert "Under 10 episodes an interval says little" in few and "| **+" not in few
+    assert "Differences in bold" in enough and "| **+90.0**" in enough
+
+
 def test_clean_differences_are_paired_and_against_base():
     found = lines(column(8, ALL) + column(5, ALL, **HARD))
     first, second = found["Clean SR against base"]

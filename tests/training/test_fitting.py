@@ -81,6 +81,8 @@ def test_a_schedule_that_no_stage_draws_from_is_told(recipe, capsys):
     cfg = conf.load_config("train", [f"recipe={recipe}", "schedule=per_episode"])
     fitting.tell_of_schedule(cfg)
     assert f"has no effect: recipe={recipe} draws no corruptions" in capsys.readouterr().out
+    fitting.tell_of_schedule(conf.load_config("train", [f"recipe={recipe}", "experiment=broad"]))
+    assert "(mode clean) has no effect" in capsys.readouterr().out
 
 
 def test_a_recipe_of_ones_own_may_hold_the_schedule_where_it_likes(capsys):

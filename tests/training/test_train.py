@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import linecache
 import os
 import sys
 from pathlib import Path
@@ -76,6 +78,37 @@ def test_a_stage_made_with_other_settings_is_not_resumed(tmp_path):
     train.run(config(tmp_path))
     with pytest.raises(ValueError, match=r"trainer\.lr"):
         train.run(config(tmp_path, "trainer.lr=0.5"))
+
+
+OWN_AGENT = """
+from tests.tiny import TinyAgent
+
+def scaled(values):
+    return values * {scale}
+
+class OwnAgent(TinyAgent):
+    def forward(self, values):
+        return scaled(self.body(values))
+"""
+
+
+def test_a_stage_trained_by_other_code_of_ones_own_is_not_resumed(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    folder, cfg = tmp_path / "run", config(tmp_path / "run")
+    cfg.agent = {"_target_": "own_scaled_agent.OwnAgent"}
+    for number, scale in enumerate((1, 1, 2)):
+        (tmp_path / "own_scaled_agent.py").write_text(
+            OWN_AGENT.format(scale=scale) + "#" * number  # of another length: Python reads it again
+        )
+        sys.modules.pop("own_scaled_agent", None)
+        importlib.invalidate_caches()
+        linecache.clearcache()
+        if scale == 1:
+            train.run(cfg.copy())
+    with pytest.raises(ValueError, match="other settings .code_sha256"):
+        train.run(cfg.copy())
+    sys.modules.pop("own_scaled_agent")
+    assert (folder / "agent").is_dir()
 
 
 def test_a_refused_resume_leaves_the_folder_as_it_is(tmp_path):

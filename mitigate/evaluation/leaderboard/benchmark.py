@@ -12,6 +12,7 @@ from typing import Any
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.agents.observation import check_views
 from mitigate.core import conf, seeding
 from mitigate.core.build import agent_option, located, maker
 from mitigate.core.held import held, in_eval_mode
@@ -31,7 +32,7 @@ from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.evaluation.rows import ROWS, read
 from mitigate.scale.launcher import count
-from mitigate.worlds.episodes import Episode
+from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.world import World
 
 EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
@@ -51,7 +52,7 @@ def benchmark(
     workers: int | None = 1,
     options: Sequence[str] = (),
     world: Callable[[], World] | None = None,
-    listed: Sequence[Episode] | None = None,
+    listed: Sequence[Episode] | Path | str | None = None,
     training_data: str = "",
     link: str = "",
     out: Path | str | None = None,
@@ -69,8 +70,8 @@ def benchmark(
             the corruptions. workers: processes; None: one a core if there is work. More than one
             read the script again, which keeps its call under ``if __name__ == "__main__":``.
         options: of ``mitigate evaluate``, such as "agent=recurrent" or "--config-dir=mine".
-        world, listed: makes a world of your own, and its episodes, in place of those of
-            ``options``; a world of another class than theirs needs both.
+        world, listed: makes a world of your own, and its episodes (or their file), in place of
+            those of ``options``; a world of another class than theirs needs both.
         training_data, link: for the entry. out: folder of the rows; None: one in
             ``runs/benchmark``.
     Raises ValueError for no agent, unknown names, numbers out of range, texts that an entry cannot
@@ -81,6 +82,7 @@ def benchmark(
     check_texts(name=name, training_data=training_data, link=link)
     made = world or maker(cfg.env.world)
     first, made_by = _first_world(made, met)
+    check_views(agent, first.sensors, type(first).__name__)
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     known_as = _known_as(agent, name, file, first)
@@ -107,6 +109,8 @@ def _conditions(
     """Return the config of an evaluation, for the kind of agent that a path of weights is of, and
     the conditions of the suite, clean first."""
     seeding.check(seed)
+    if isinstance(options, str):
+        raise ValueError(f"options is a list of options, such as [{options!r}].")
     if isinstance(agent, (str, Path)):
         options = [*options, *agent_option(options, str(agent))]
     named = [f"suite={suite}"] if isinstance(suite, str) else []
@@ -153,9 +157,10 @@ def _tell_reused(agent: Any, file: Path) -> None:
     """Print that rows of before count, where they may be of an agent that was changed since."""
     if file.exists() and not hasattr(agent, "settings"):
         print(
-            f"benchmark: rows in {file} count, unless they are of another class, of other code in "
-            f"it, or of other weights: a {type(agent).__name__} has no settings() that says more. "
-            "If anything else was changed, give it some, or name another folder (out=...).",
+            f"benchmark: rows in {file} count, unless they are of another class, of other code or "
+            f"of other weights: a {type(agent).__name__} has no settings() that says more. If a "
+            "plain attribute was changed (a threshold, a file's name), give it some, or name "
+            "another folder (out=...).",
             flush=True,
         )
 
@@ -189,7 +194,7 @@ def _episodes(
     cfg: Any,
     split: str | None,
     count: int | None,
-    listed: Sequence[Episode] | None,
+    listed: Sequence[Episode] | Path | str | None,
     given: bool,
 ) -> tuple[str, list[Episode]]:
     """Return the split and the episodes to walk; raise ValueError for none, and for a world that
@@ -199,11 +204,17 @@ def _episodes(
     if listed is None and own:
         raise ValueError(
             f"The episodes of {cfg.env.name} are none of {walked.name_of(world)}: give its own, "
-            'listed=[*read_episodes("mine.json")] (mitigate.worlds.episodes, '
+            'listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
             "docs/bring-your-own.md). A gymnasium or torchrl environment reads of each its seed "
             "alone, info={'seed': 7}."
         )
-    chosen = evaluation.episodes(cfg.env, split, count) if listed is None else list(listed)
+    if listed is None:
+        chosen = evaluation.episodes(cfg.env, split, count)
+    else:
+        chosen = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
+        for entry in chosen:
+            if not isinstance(entry, Episode):
+                raise ValueError(f"listed has a {type(entry).__name__} in it, which is no Episode.")
     check_episodes("listed" if listed is not None else split, chosen)
     return split, chosen
 

@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from mitigate.core.progress import Progress
+
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
 MOST_WALKS = 200  # of a page (ours): each has two pictures, about 40 KB
@@ -47,9 +49,17 @@ def run(
             f"There is no file {options[0]}, and an option says only where agents walk: check the "
             "path, or name the agents with --walk NAME=WEIGHTS."
         )
-    held = rows.gather(paths)
+    files = [file for path in paths for file in rows.files(path)]
+    with Progress("rows", len(files), unit="file") as progress:
+        held = rows.gather(_each(files, progress))
     drawn = list(_walks(held, walk, walks, seed, options)) if walk else []
     return document.write(report(held, title=title, walks=drawn), out)
+
+
+def _each(files: Sequence[Path], progress: Progress) -> Iterator[Path]:
+    for file in files:
+        yield file
+        progress.advance()
 
 
 def _walks(
@@ -62,7 +72,6 @@ def _walks(
     from mitigate.core import conf
     from mitigate.core.build import maker
     from mitigate.core.names import unknown
-    from mitigate.core.progress import Progress
     from mitigate.evaluation import evaluate
     from mitigate.evaluation.page.walks import walk_again
 

@@ -414,6 +414,10 @@ def test_benchmark_runs_in_a_script_as_the_page_has_it(tmp_path):
         shutil.rmtree(tmp_path / "runs")
 
 
+class OneCamera(Straight):
+    views = 1
+
+
 @pytest.mark.parametrize(
     ("agent", "options", "words"),
     [
@@ -426,6 +430,11 @@ def test_benchmark_runs_in_a_script_as_the_page_has_it(tmp_path):
         (Straight(), {"name": "x" * 201}, "name must be a line of at most 200"),
         (Straight(), {"training_data": "x" * 2001}, "training_data must be"),
         (Straight(), {"listed": []}, "listed lists no episode"),
+        (Straight(), {"listed": ["e1"]}, "listed has a str in it, which is no Episode"),
+        (Straight(), {"episodes": "2"}, "episodes='2' is no whole number"),
+        (Straight(), {"episodes": 2.0}, "episodes=2.0 is no whole number"),
+        (Straight(), {"options": "env.views=1"}, "options is a list of options"),
+        (OneCamera(), {}, "OneCamera takes 1. Set env.views=1"),
         (Straight(), {"world": ApartmentsWorld(16)}, "world is a ApartmentsWorld: give what makes"),
         (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark shows only"),
         (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "give workers=1"),

@@ -106,6 +106,11 @@ def test_an_own_world_needs_its_episodes_and_names_the_split(walk):
     assert walk(Holder(weight(1)), split="mine", out="third").split == "mine"
 
 
+def test_the_episodes_may_be_a_file(walk):
+    write_episodes("mine.json", EPISODES)
+    assert walk(Holder(weight(1)), listed="mine.json").rows == walk(Holder(weight(1))).rows
+
+
 def test_a_world_of_other_arguments_is_refused(walk):
     assert walk(Holder(weight(1)), partial(CorridorWorld, 2)).SR["clean"][0] == 1
     with pytest.raises(ValueError, match=r"another world: .*argument\.0 was '2' and is '3'"):
