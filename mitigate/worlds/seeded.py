@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
-from mitigate.worlds.episodes import Episode
+from mitigate.worlds.episodes import Episode, Instruction
 from mitigate.worlds.metres import check_metres
+
+
+def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") -> list[Episode]:
+    """An episode for each seed, all with the same instruction, of a world that reads nothing else
+    of an episode; a list for ``mitigate.benchmark(listed=...)``."""
+    nowhere, ahead, told = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), Instruction(instruction)
+    return [
+        Episode(str(seed), str(seed), "", nowhere, ahead, (), told, (), info={"seed": int(seed)})
+        for seed in seeds
+    ]
 
 
 class SeededWorld:

@@ -81,8 +81,7 @@ def benchmark(
     agent, name = _agent(agent, name, cfg, seed)
     check_texts(name=name, training_data=training_data, link=link)
     made = world or maker(cfg.env.world)
-    first, made_by = _first_world(made, met)
-    check_views(agent, first.sensors, type(first).__name__)
+    first, made_by = _first_world(made, met, agent)
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     known_as = _known_as(agent, name, file, first)
@@ -169,9 +168,11 @@ def _plain(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
-def _first_world(make_world: Any, met: Sequence[Corruption]) -> tuple[World, dict[str, str]]:
-    """Return a world and what it was made by; raise ValueError if it is not made anew, or shows too
-    little."""
+def _first_world(
+    make_world: Any, met: Sequence[Corruption], agent: Any
+) -> tuple[World, dict[str, str]]:
+    """Return a world and what it was made by; raise ValueError if it is not made anew, shows too
+    little, or shows another number of views than the agent says."""
     if not callable(make_world):
         raise ValueError(
             f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
@@ -179,6 +180,7 @@ def _first_world(make_world: Any, met: Sequence[Corruption]) -> tuple[World, dic
         )
     world, made_by = making.first(make_world)
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
+    check_views(agent, world.sensors, type(world).__name__)
     return world, made_by
 
 

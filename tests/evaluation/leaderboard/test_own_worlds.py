@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import re
+import subprocess
+import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -20,6 +24,7 @@ from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
 from mitigate.worlds.episodes import Episode, Goal, Instruction, write_episodes
 from mitigate.worlds.gym import GymWorld
+from mitigate.worlds.seeded import seeded_episodes
 
 
 class Corridor(gymnasium.Env):
@@ -109,6 +114,27 @@ def test_an_own_world_needs_its_episodes_and_names_the_split(walk):
 def test_the_episodes_may_be_a_file(walk):
     write_episodes("mine.json", EPISODES)
     assert walk(Holder(weight(1)), listed="mine.json").rows == walk(Holder(weight(1))).rows
+
+
+def test_the_page_about_a_policy_and_an_environment_holds(tmp_path):
+    page = (Path(__file__).parents[3] / "docs/leaderboard.md").read_text(encoding="utf-8")
+    code = re.search(r"on one screen\n.*?```python\n(.*?)```", page, re.DOTALL)[1]
+    (tmp_path / "hall.py").write_text(code)
+    done = subprocess.run(
+        [sys.executable, "hall.py"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(Path(mitigate.__file__).parents[1])},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    depth = re.search(r"PRS-SR \(Depth\): ([\d.]+)", done.stdout)
+    assert "Clean SR: 100.0" in done.stdout and float(depth[1]) < 0.9
+
+
+def test_episodes_of_seeds_are_as_many_and_each_its_own(walk):
+    entry = walk(Holder(weight(1)), listed=seeded_episodes(range(3)), suite=["spatter"])
+    assert entry.episodes == 3 and entry.rows["count"] == 6
 
 
 def test_a_world_of_other_arguments_is_refused(walk):
