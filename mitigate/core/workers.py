@@ -17,6 +17,7 @@ import traceback
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any, ClassVar, Protocol
@@ -105,7 +106,7 @@ class _Worker:
     def __init__(self, context: Any, task: bytes) -> None:
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, task), daemon=True)
-        self.process.start()
+        start(self.process)
         theirs.close()  # so that its death closes the pipe
         self.left: deque[tuple[int, Any]] = deque()
         self.heard = self.told = time.monotonic()
@@ -249,11 +250,26 @@ def context(preload: str) -> Any:
     return context
 
 
+def start(process: Any) -> None:
+    """Start a worker's ``process``, in which the signals that end a command wait until it calls
+    :func:`leave_to_parent`: what it imports before knows nothing of them."""
+    if not hasattr(signal, "pthread_sigmask"):
+        return process.start()
+    resource_tracker.ensure_running()  # which lets signals through when it starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        process.start()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def leave_to_parent() -> None:
     """Ignore, in a worker, the signals that end a command: they reach its whole process group, and
     the parent finishes what is at hand and ends the workers."""
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
 
 
 def _serve(pipe: Connection, copy: bytes) -> None:

@@ -21,7 +21,14 @@ import torch
 from mitigate.core import precision
 from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
-from mitigate.core.workers import WorkersDied, context, leave_to_parent, packed, portable
+from mitigate.core.workers import (
+    WorkersDied,
+    context,
+    leave_to_parent,
+    packed,
+    portable,
+    start,
+)
 from mitigate.training.recipe import Recipe, do
 
 MOST = 8  # workers worth starting: the recipes make 2 to 4 pieces of a step, some steps ahead
@@ -151,7 +158,7 @@ class _Worker:
         made = context(PRELOAD)
         self.connection, other = made.Pipe()
         self.process = made.Process(target=_serve, args=(other,), daemon=True)
-        self.process.start()
+        start(self.process)
         other.close()  # so that the worker's death ends the connection
 
     def _replace(self) -> None:

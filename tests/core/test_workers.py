@@ -259,3 +259,51 @@ def test_jobs_and_results_that_cannot_be_sent_are_told_as_that(tmp_path, action,
     with pytest.raises(kind, match=words) as raised:
         run(Squares(tmp_path), groups(action, ""))
     assert not isinstance(raised.value, WorkersDied)
+
+
+SLOW = """
+import time
+from pathlib import Path
+from tests.core.test_workers import Squares
+
+Path("importing").touch()
+time.sleep(1)
+
+class Slow(Squares):
+    preload = "slow_task"
+"""
+STOPPED = """
+from pathlib import Path
+from slow_task import Slow
+from tests.core.test_workers import Lines, groups, results
+Path("importing").unlink()
+try:
+    [*results(Slow(Path()), groups("wait", "wait"), 2, Lines())]
+except KeyboardInterrupt:
+    print("stopped")
+"""
+
+
+def test_ctrl_c_while_workers_import_says_nothing_but_what_the_command_says(tmp_path):
+    (tmp_path / "slow_task.py").write_text(SLOW)
+    paths = os.pathsep.join([str(tmp_path), str(Path(__file__).parents[2])])
+    process = subprocess.Popen(
+        [sys.executable, "-c", STOPPED],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": paths},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    seen = 0
+    while seen < 2:  # by the command itself, and by the process that workers are forked from
+        assert process.poll() is None
+        time.sleep(0.02)
+        if (tmp_path / "importing").exists():
+            seen += 1
+            while seen == 1 and (tmp_path / "importing").exists():
+                time.sleep(0.02)
+    os.killpg(process.pid, signal.SIGINT)
+    assert process.communicate(timeout=60) == ("stopped\n", "")
