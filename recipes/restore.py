@@ -1,7 +1,7 @@
 """Train a restorer from pairs of corrupted and clean frames; no agent, label or action is needed.
 
     L = mean over scales of |out - clean| + w_grad |their image gradients|
-        + w_right mean of e / (e + RIGHT), e = |out - clean| of a pixel
+        + w_right mean of e / (e + TOLERANCE), e = |out - clean| of a pixel
 
 The last counts how many pixels are wrong rather than by how much: what is seen rightly beside
 drops, stripes or noise is to stay as it was. In the first term depth that is too far counts
@@ -24,7 +24,7 @@ from torch import Tensor
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.restoration.frames import RIGHT, SensorRestorer
+from mitigate.restoration.frames import TOLERANCE, SensorRestorer
 from mitigate.restoration.pairs import pairs_of
 from mitigate.restoration.restorer import Restorer
 from mitigate.training import limits, success
@@ -129,7 +129,7 @@ class Restore(Recipe):
             )
             total = total + self.w_grad * (difference.diff(dim=axis) * near).abs().mean()
         wrong = difference.abs().mean(1)
-        return total + self.w_right * (wrong / (wrong + RIGHT)).mean()
+        return total + self.w_right * (wrong / (wrong + TOLERANCE)).mean()
 
     def _keep(self, frames: Tensor, out: Tensor, clean: Tensor) -> None:
         if not self.training:

@@ -23,7 +23,7 @@ from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.recipes.restore import RESTORER
-from mitigate.restoration.frames import RIGHT, SensorRestorer
+from mitigate.restoration.frames import TOLERANCE, SensorRestorer
 from mitigate.restoration.network import texture
 from mitigate.restoration.pairs import Pairs, pairs_of
 from mitigate.restoration.restorer import Restorer
@@ -40,7 +40,7 @@ OFFSETS = {"learned": 0, "held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_0
 class Judged(NamedTuple):
     """Of N instants of V views: stats [N, V, s] and textures [N, V, t], which the gate reads;
     before, after [N]: mean error over the range as they are and as restored. spent [N]: share of
-    right pixels before less that afterwards (``frames.RIGHT``)."""
+    right pixels before less that afterwards (``frames.TOLERANCE``)."""
 
     stats: Tensor
     textures: Tensor
@@ -164,7 +164,7 @@ class RestoreGate(Recipe):
         seen, _ = self.net.scaled(frames)
         wrong = [((x - wanted).abs() * valid).mean(1) for x in (seen, made)]
         errors = [part.mean((1, 2)) for part in wrong]
-        right = [(part < RIGHT).float().mean((1, 2)) for part in wrong]
+        right = [(part < TOLERANCE).float().mean((1, 2)) for part in wrong]
         parts = (*read, *errors, right[0] - right[1])
         stats, textures, *others = (part.unflatten(0, (-1, views)) for part in parts)
         return stats, textures, *(part.mean(1) for part in others)

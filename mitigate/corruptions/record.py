@@ -2,7 +2,7 @@
 
 A corruption of your own is such a record, found by the entry point group ``mitigate.corruptions``
 (``docs/bring-your-own.md``); ours stand at the end of ``rgb.py``, ``eld.py``,
-``depth.py``, ``language/families.py`` and the files of ``unseen``.
+``depth.py``, ``language/families.py``, ``broad/__init__.py`` and the files of ``unseen``.
 """
 
 from __future__ import annotations

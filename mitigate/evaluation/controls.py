@@ -52,10 +52,13 @@ class OracleAgent:
 
 
 class RandomAgent:
-    """Forward, left and right at random, with a small chance of STOP; keyed by the text."""
+    """Forward, left and right at random, with a small chance of STOP; keyed by ``episode``, an id,
+    since many episodes may have one text."""
+
+    episode = ""
 
     def reset(self, instruction: str) -> None:
-        self.rng = generator("random agent", instruction)
+        self.rng = generator("random agent", self.episode)
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         if self.rng.random() < _STOP_SHARE:
@@ -74,7 +77,8 @@ def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
 
 
 def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
-    controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": RandomAgent()}
+    chance = RandomAgent()
+    controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": chance}
     held = {rows.identity(row): row for row in rows.read(out)} if out.exists() else {}
     found = []
     for name, agent in controls.items():
@@ -92,6 +96,7 @@ def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> l
         todo = [job for job in jobs if rows.identity(job[1]) not in held]
         with Progress(name, len(jobs), unit="episode", start=len(jobs) - len(todo)) as progress:
             for episode, own in todo:
+                chance.episode = episode.episode_id
                 row = own | run_episode(agent, world, episode, CLEAN, 0)
                 held[rows.identity(row)] = row
                 rows.append(out, [row])

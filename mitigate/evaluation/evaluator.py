@@ -93,9 +93,11 @@ class EpisodeTask:
     def _measures(
         self, world: World, told: Sequence[tuple[Episode, Corruption, int]]
     ) -> Iterator[dict[str, Any]]:
-        """Of (episode, corruption, seed) each, in order."""
+        """Of (episode, corruption, seed) each, in order; one after the other if an agent's prompt,
+        which all its walks share, is corrupted."""
         count, beside = _together(self.agent, world), getattr(world, "beside", None)
-        if beside is not None and count > 1:
+        prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in told)
+        if beside is not None and count > 1 and not prompted:
             worlds = [world, *(beside() for _ in range(count - 1))]
             yield from run_side_by_side(self.agent, worlds, told, self.repaired, self.restorer)
             return

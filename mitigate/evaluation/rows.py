@@ -23,7 +23,7 @@ from mitigate.core.names import short
 Row = dict[str, Any]
 ROWS = "rows.jsonl"  # in the folder of an evaluation
 IDENTITY: dict[str, Any] = {
-    "agent": str,  # first 12 characters of the weights' sha256
+    "agent": str,  # core/identity.py: weights, code, settings, sensors, what stands in front
     "name": str,  # "base", "da_per_episode" ...: the column of a table
     "corruption": str,  # "clean" or one of the suite
     "severity": (int, float),
@@ -118,12 +118,6 @@ def write(path: Path | str, rows: Iterable[Row]) -> None:
 def upsert(*parts: Iterable[Row]) -> list[Row]:
     """Return the rows of all ``parts``, one an identity: the last in the first one's place."""
     return list({identity(row): row for row in chain(*parts)}.values())
-
-
-def missing(rows: Iterable[Row], wanted: Iterable[Row]) -> list[Row]:
-    """Return the ``wanted`` rows (identity keys are enough) that ``rows`` lacks."""
-    done = {identity(row) for row in rows}
-    return [row for row in wanted if identity(row) not in done]
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:

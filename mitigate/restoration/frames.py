@@ -24,7 +24,7 @@ from mitigate.restoration import ring
 from mitigate.restoration.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
-RIGHT = 0.02  # of the range: a pixel that is off by less is right (ours)
+TOLERANCE = 0.02  # of the range: a pixel that is off by less is right (ours)
 # Of the range: by less than this the other views contradict about 99 % of clean pixels (measured on
 # 20 panoramas of val_seen: 98.6 and 99.2 %).
 MARGIN = {RGB: 0.2, DEPTH: 0.02}

@@ -4,12 +4,12 @@ frames of a folder."""
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, Protocol
 
 import numpy as np
 import torch
 
-from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.suite import SENSOR
@@ -36,8 +36,6 @@ class Pairs(Protocol):
     def work(self, job: Any) -> Any: ...
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]: ...
-
-    def figures(self) -> dict[str, np.ndarray]: ...
 
 
 class PosePairs(Poses):
@@ -84,7 +82,8 @@ class PosePairs(Poses):
 class FramePairs:
     """Frames of a folder, each corrupted as an instant of its own (``encoders/sources.py``).
 
-    Args: as ``source_of``; frames: read once. batch: frames of a step.
+    Args: as ``source_of``; frames: read once. panoramas: groups of ``GROUP`` frames of a step.
+    far: metres to which depth is read.
     """
 
     ring = False
@@ -98,12 +97,13 @@ class FramePairs:
         frames: int,
         panoramas: int,
         seed: int,
+        far: float,
     ) -> None:
+        self.depth = replace(SENSOR, z_max=far)
         self.source = source_of(world, sensor, None, "", None)
         self.schedule, self.sensor, self.seed = schedule, sensor, seed
         self.count, self.groups = frames, panoramas
         self.frames: Frames | None = None
-        self._last: np.ndarray | None = None
 
     def start(self) -> None:
         """Read the frames, once."""
@@ -129,7 +129,7 @@ class FramePairs:
         )
         drawn = [self.schedule.draw(self.seed, f"{step}-{group}-{i}", 0) for i in range(GROUP)]
         frames = [
-            corrupted(self.frames, int(index), *draw, SENSOR)
+            corrupted(self.frames, int(index), *draw, self.depth)
             for index, draw in zip(chosen, drawn, strict=True)
         ]
         return np.stack(frames), self.frames.frames[chosen]
@@ -137,12 +137,7 @@ class FramePairs:
     def collate(self, pieces: list[tuple[np.ndarray, np.ndarray]]) -> dict[str, Any]:
         """The groups as tensors "frames" and "clean"."""
         frames, clean = (np.stack(part) for part in zip(*pieces, strict=True))
-        self._last = frames[-1]
         return {"frames": torch.from_numpy(frames), "clean": torch.from_numpy(clean)}
-
-    def figures(self) -> dict[str, np.ndarray]:
-        """The last frames of the last batch."""
-        return {} if self._last is None else {"views": side_by_side(self._last)}
 
 
 def pairs_of(
@@ -156,5 +151,6 @@ def pairs_of(
     episodes. ``how``: sensor, panoramas, seed; and frames, for a folder alone."""
     frames = how.pop("frames")
     if training is None:
-        return FramePairs(world, schedule, frames=frames, **how)
+        far = agent.parts()[how["sensor"]].far
+        return FramePairs(world, schedule, frames=frames, far=far, **how)
     return PosePairs(agent, world, training, schedule, **how)

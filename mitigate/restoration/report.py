@@ -3,7 +3,7 @@
     python -m mitigate.restoration.report checkpoints/restorer --split val_seen --suite unseen_val
 
 Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it is
-off by less than ``RIGHT`` of the range. How much of an agent's success comes back is for
+off by less than ``TOLERANCE`` of the range. How much of an agent's success comes back is for
 `python -m mitigate.evaluate restore=FOLDER` to say.
 """
 
@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,16 +29,18 @@ from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
-from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
+from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.corruptions.gallery import depth_picture
 from mitigate.corruptions.registry import title
+from mitigate.corruptions.suite import SENSOR
 from mitigate.encoders.frames import collect
 from mitigate.encoders.sources import UNSEEN
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate, mean, share
 from mitigate.evaluation.conditions import conditions
-from mitigate.restoration.frames import RIGHT
+from mitigate.restoration.frames import TOLERANCE
 from mitigate.restoration.restorer import Restorer, load_restorer
 from mitigate.worlds.episodes import read_episodes
+from mitigate.worlds.world import depth_sensor
 
 UNITS = {RGB: 1.0, DEPTH: 100.0}  # of the range: levels; metres as centimetres
 SHOWN = (0, 1, 2)  # views of an instant in the picture
@@ -65,19 +68,21 @@ def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
     assert isinstance(trained, Restorer)
     quick = cfg.evaluation
     met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    seen = instants(cfg.env, quick.split, quick.episodes or 300, cfg.seed, list(trained.nets))
-    write(trained, seen, met, cfg.seed, folder, f"{quick.split}, severity {cfg.severity:g}")
+    seen, depth = instants(cfg.env, quick.split, quick.episodes or 300, cfg.seed, trained)
+    about = f"{quick.split}, severity {cfg.severity:g}"
+    write(trained, seen, met, cfg.seed, folder, about, depth)
 
 
 def instants(
-    env: Any, split: str, count: int, seed: int, sensors: Sequence[str]
-) -> list[dict[str, np.ndarray]]:
+    env: Any, split: str, count: int, seed: int, restorer: Restorer
+) -> tuple[list[dict[str, np.ndarray]], DepthSensor]:
     """Clean observations of ``count`` random poses in the scenes of a list of ``env``, or frames of
-    the unseen part of a folder. Raises ValueError for an unknown split."""
+    the unseen part of a folder, and what depth is there. Raises ValueError for an unknown split."""
     made = maker(env.world)()
     if hasattr(made, "shots"):
+        sensor, part = next(iter(restorer.parts().items()))
         found = collect(made, UNSEEN, count, seed).frames
-        return [{sensors[0]: frame[None]} for frame in found]
+        return [{sensor: frame[None]} for frame in found], replace(SENSOR, z_max=part.far)
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
     scenes = sorted({e.scene_id for e in read_episodes(find(env.episodes[split]))})
@@ -89,11 +94,15 @@ def instants(
             made.point(rng), float(rng.uniform(-np.pi, np.pi)), views=None, rgb=True
         )
         observations.append({name: np.copy(value) for name, value in looked.items()})
-    return observations
+    return observations, depth_sensor(made.sensors)
 
 
 def measure(
-    restorer: Restorer, seen: Sequence[dict[str, np.ndarray]], met: Sequence[Corruption], seed: int
+    restorer: Restorer,
+    seen: Sequence[dict[str, np.ndarray]],
+    met: Sequence[Corruption],
+    seed: int,
+    depth: DepthSensor,
 ) -> dict[tuple[str, str], Score]:
     """Scores by sensor and condition; a corruption counts for the sensor that it changes."""
     scores: dict[tuple[str, str], Score] = {}
@@ -103,12 +112,12 @@ def measure(
         for sensor, corruption in wanted:
             rows = []
             for number, clean in enumerate(seen):
-                frames = _corrupted(clean, corruption, seed, number)[sensor]
+                frames = _corrupted(clean, corruption, seed, number, depth)[sensor]
                 made = restorer.restore(sensor, frames)
                 far = restorer.parts()[sensor].range
                 off = [_off(part, clean[sensor], far) for part in (frames, made)]
                 errors = [float(part.mean()) * far * UNITS[sensor] for part in off]
-                right = [float((part < RIGHT).mean()) for part in off]
+                right = [float((part < TOLERANCE).mean()) for part in off]
                 rows.append((*errors, *right, made is not frames))
             before, after, right, kept, hit = np.array(rows, float).T
             scores[sensor, corruption.name] = Score(
@@ -118,9 +127,11 @@ def measure(
     return scores
 
 
-def _corrupted(clean: dict[str, np.ndarray], corruption: Corruption, seed: int, n: int) -> dict:
+def _corrupted(
+    clean: dict[str, np.ndarray], corruption: Corruption, seed: int, n: int, depth: DepthSensor
+) -> dict:
     frames = {name: clean[name] for name in clean if name in (RGB, DEPTH, POSE)}
-    return corrupt_observation(frames, corruption, Key(seed, f"instant {n}", 0))
+    return corrupt_observation(frames, corruption, Key(seed, f"instant {n}", 0), depth)
 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
@@ -159,7 +170,11 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 
 
 def sheet(
-    restorer: Restorer, clean: dict[str, np.ndarray], met: Sequence[Corruption], seed: int
+    restorer: Restorer,
+    clean: dict[str, np.ndarray],
+    met: Sequence[Corruption],
+    seed: int,
+    depth: DepthSensor,
 ) -> np.ndarray | None:
     """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean, under
     these headings. None if no corruption is of a sensor that there is."""
@@ -168,7 +183,7 @@ def sheet(
         sensor = next((s for s in corruption.modalities if s in restorer.nets and s in clean), None)
         if sensor is None:
             continue
-        frames = _corrupted(clean, corruption, seed, 0)[sensor]
+        frames = _corrupted(clean, corruption, seed, 0, depth)[sensor]
         shown = [
             _views(sensor, f) for f in (frames, restorer.restore(sensor, frames), clean[sensor])
         ]
@@ -214,16 +229,17 @@ def write(
     seed: int,
     folder: Path,
     about: str,
+    depth: DepthSensor = SENSOR,
 ) -> None:
     """Measure, print, and write the table and the picture into ``folder``; no picture where
     nothing is corrupted."""
-    scores = measure(restorer.eval(), seen, met, seed)
+    scores = measure(restorer.eval(), seen, met, seed, depth)
     about = f"{len(seen)} instants of {about}, seed {seed}, restorer {restorer.hash}"
     text = table(scores, about)
     with atomic_text(folder / "restoration.md") as file:
         file.write(text)
     print(f"{text}\nwrote {folder / 'restoration.md'}")
-    drawn = sheet(restorer, max(seen, key=_far), [c for c in met if c is not CLEAN], seed)
+    drawn = sheet(restorer, max(seen, key=_far), [c for c in met if c is not CLEAN], seed, depth)
     if drawn is not None:
         encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
         write_bytes(folder / "restoration.jpg", encoded.tobytes())
@@ -256,9 +272,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
             f"suite={options.suite} corrupts no frames of {', '.join(restorer.nets)}: choose "
             "another, such as full or unseen_val."
         )
-    seen = instants(cfg.env, options.split, options.count, seed, list(restorer.nets))
+    seen, depth = instants(cfg.env, options.split, options.count, seed, restorer)
     about = f"{options.split}, suite {options.suite}, severity {options.severity:g}"
-    write(restorer, seen, met, seed, Path(options.out), about)
+    write(restorer, seen, met, seed, Path(options.out), about, depth)
 
 
 if __name__ == "__main__":

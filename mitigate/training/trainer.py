@@ -2,7 +2,7 @@
 
 Data order and noise are functions of (seed, step): the global generators are set anew at each
 step, so neither logging, nor evaluation, nor a kill and a resume changes the weights by one bit
-(on the same machine, with the same number of threads).
+(on the same machine, with the same number of threads, and without a lag: recipes/README.md).
 """
 
 from __future__ import annotations

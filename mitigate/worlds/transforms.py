@@ -98,12 +98,12 @@ class CorruptObservation(Transform):
         corrupted: dict[str, np.ndarray] = {}
         for row in range(len(drawn)) if rows is None else rows:
             corruption, key = drawn[row]
-            name = corruption.modality
-            if name == "none":
+            if not corruption.modalities:
                 continue
             instant = {entry: views[row] for entry, views in frames.items()}
             after = self._corrupt_instant(instant, corruption, key, self.sensor)
-            corrupted.setdefault(name, frames[name].copy())[row] = after[name]
+            for name in corruption.modalities:
+                corrupted.setdefault(name, frames[name].copy())[row] = after[name]
         for name, views in corrupted.items():
             value = stored[name]
             data.set(

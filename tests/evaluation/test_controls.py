@@ -14,16 +14,34 @@ from mitigate.evaluation.controls import OracleAgent, RandomAgent
 from mitigate.evaluation.episode import run_episode
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.episodes import write_episodes
 
 SIZE = 16
 
 
+def at_random(world, episode):
+    agent = RandomAgent()
+    agent.episode = episode.episode_id
+    return run_episode(agent, world, episode, CLEAN, 0)
+
+
 def test_the_random_control_repeats_itself_and_rarely_succeeds():
     world, episodes = ApartmentsWorld(SIZE), load_episodes("val_unseen")[::30]
-    rows = [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
-    assert rows == [run_episode(RandomAgent(), world, e, CLEAN, 0) for e in episodes]
+    rows = [at_random(world, e) for e in episodes]
+    assert rows == [at_random(world, e) for e in episodes]
     oracle = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
     assert sum(r["success"] for r in rows) <= 3 < 10 == sum(r["success"] for r in oracle)
+
+
+def test_episodes_of_one_text_are_walked_at_random_each_for_itself(monkeypatch, tmp_path):
+    episodes = load_episodes("val_seen", "ogn")
+    text = max(episodes, key=lambda e: sum(e.instruction == o.instruction for o in episodes))
+    same = [e for e in episodes if e.instruction == text.instruction][:4]
+    write_episodes(tmp_path / "same.json", same)
+    given = [f"+env.episodes.same={tmp_path / 'same.json'}", "split=same", f"out={tmp_path / 'o'}"]
+    assert called(monkeypatch, *given) == 0
+    found = [r for r in rows.read(tmp_path / "o" / "rows.jsonl") if r["name"] == "random"]
+    assert len(found) == 4 == len({(r["steps"], r["path_length"]) for r in found})
 
 
 @pytest.fixture

@@ -21,7 +21,7 @@ from mitigate.corruptions import (
 )
 from mitigate.evaluation import evaluator
 from mitigate.evaluation.episode import instruction, run_episode
-from mitigate.evaluation.evaluator import evaluate
+from mitigate.evaluation.evaluator import EpisodeTask, evaluate
 from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -285,3 +285,29 @@ def test_weights_that_are_no_numbers_are_not_evaluated(tmp_path):
     with pytest.raises(ValueError, match="The weights of test hold NaN or infinity"):
         run(tmp_path, agent=agent)
     assert not list(tmp_path.iterdir())
+
+
+class Prompted(Straight):
+    """Walks side by side; notes the prompt that it has at every step."""
+
+    system_prompt, together = "You follow routes. {task}", 2
+
+    def begin(self, instruction):
+        self.reset(instruction)
+
+    def act(self, observation):
+        self.heard = getattr(self, "heard", set()) | {self.system_prompt}
+        return super().act(observation)
+
+    def act_all(self, observations, memories):
+        return [self.act(seen) for seen in observations]
+
+
+def test_a_corrupted_prompt_is_met_by_an_agent_that_walks_side_by_side():
+    agent, conditions = Prompted(1), [CLEAN, Corruption("white_box", 1.0)]
+    episode = load_episodes("val_seen")[0]
+    task = EpisodeTask(agent, partial(ApartmentsWorld, 16))
+    with task.ready():
+        jobs = [(episode, condition, {"seed": 0}) for condition in conditions]
+        assert len([*task.work(jobs)]) == 2
+    assert len(agent.heard) == 2 and agent.system_prompt == Prompted.system_prompt

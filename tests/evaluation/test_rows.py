@@ -95,11 +95,6 @@ def test_the_last_measurement_of_an_identity_counts():
     assert rows.upsert([row(1, 0, severity=0)], [row(1, 1, severity=0.0)]) == [row(1, 1)]
 
 
-def test_missing_rows_are_those_not_measured():
-    wanted = [{k: r[k] for k in rows.IDENTITY} for r in cell(0, 4)]
-    assert [r["episode_id"] for r in rows.missing(cell(1, 2), wanted)] == ["2", "3"]
-
-
 def test_files_and_folders_are_gathered(tmp_path):
     rows.append(tmp_path / "a/rows.jsonl", cell(1, 2))
     rows.append(tmp_path / "a/b/more.jsonl.gz", [row(2, True)])

@@ -13,9 +13,9 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import DEPTH, Schedule
-from mitigate.recipes.adapt import Adapt, AdaptViews, differ
-from mitigate.recipes.distil import Distil, DistilViews, policy_kl
-from mitigate.recipes.imitate import Imitate
+from mitigate.recipes.adapt import FRESH, HELD, Adapt, AdaptViews, differ
+from mitigate.recipes.distil import Distil, DistilViews, feature_loss, policy_kl
+from mitigate.recipes.imitate import Imitate, imitation
 from mitigate.training.states import checkpoints
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
@@ -79,6 +79,34 @@ def test_each_term_reaches_what_it_should_and_nothing_else(recipe, batch):
     assert gradients(recipe, values["feat_nodes"]) == everything
     assert gradients(recipe, values["feat_views"]) == {"rgb_encoder", "depth_encoder"}
     assert gradients(recipe, values["waypoints"]) == {"depth_encoder", "waypoint_head"}
+
+
+def test_the_loss_is_the_sum_of_its_terms(recipe, batch):
+    """L = w_il L_il + w_kl T^2 KL + w_feat sum of MSE in units of the teacher's variance."""
+    recipe.eval()
+    with torch.no_grad():
+        values = recipe(batch)
+        out = recipe.agent.decide(batch["decisions"])
+        base = imitation(out, batch["decisions"], recipe.losses)
+    recipe.train()
+    expected = recipe.w_il * base["loss"] + recipe.w_kl * recipe.temperature**2 * values["kl"]
+    expected += recipe.w_feat * (values["feat_nodes"] + values["feat_views"])
+    assert recipe.temperature != 1.0 and recipe.w_kl > 0 and recipe.w_feat > 0
+    assert float(values["loss"]) == pytest.approx(float(expected), rel=1e-5)
+
+
+def test_matched_features_count_in_units_of_the_teachers_variance():
+    teacher = torch.tensor([[0.0, 2.0], [4.0, 6.0]])  # variance 20 / 3
+    student = teacher + torch.tensor([[1.0, -1.0], [2.0, 0.0]])
+    assert float(feature_loss(student, teacher)) == pytest.approx(1.5 / (20 / 3))
+    assert float(feature_loss(10 * student, 10 * teacher)) == pytest.approx(1.5 / (20 / 3))
+
+
+def test_the_kl_of_two_policies_is_that_of_their_softened_choices():
+    student, teacher = torch.tensor([[2.0, 0.0]]), torch.tensor([[0.0, 2.0]])
+    p, q = torch.tensor([1.0, np.e]) / (1 + np.e), torch.tensor([np.e, 1.0]) / (1 + np.e)
+    expected = float((p * (p / q).log()).sum())  # at temperature 2
+    assert float(policy_kl(student, teacher, 2.0)) == pytest.approx(expected, abs=1e-6)
 
 
 def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
@@ -178,7 +206,19 @@ def test_at_the_end_the_adapters_of_its_sensor_make_the_share_that_is_asked_for(
 def test_a_gate_learns_which_views_are_corrupted(tmp_path):
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
     made = AdaptViews(agent, modality="rgb", **VIEWS, own=True)
-    values = made(made.batch(0))
+    batch = made.batch(0)
+    (gate,), corrupted = made.gates, differ(batch["frames"], batch["clean"])
+    made(batch)
+    wrong = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(DistilViews, "forward", lambda *_: {"loss": torch.zeros(())})
+        for sign in (9.0, -9.0):
+            gate.judged.logits = torch.where(corrupted, sign, -sign).reshape(
+                gate.judged.logits.shape
+            )
+            wrong.append(float(made(batch)["gate"]))
+    assert wrong[0] < 0.01 < 5 < wrong[1]
+    values = made(batch)
     assert values["gate"] > 0 and {"opened_corrupted", "opened_clean"} <= set(values)
     start = agent.rgb_encoder.stem.adapter.judge.weight.clone()
     Trainer(made, steps=2, folder=tmp_path, seed=0, lr=1e-2, warmup=0).fit()
@@ -193,7 +233,14 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
         made.finish()
         values = made.evaluate(0)
         again = made.evaluate(0)
-    assert agent.rgb_encoder.stem.adapter.threshold != 0 and values == again
+    gate = agent.rgb_encoder.stem.adapter
+    assert gate.threshold != 0 and values == again
+    with torch.no_grad():
+        logits, corrupted = made._judged(gate, HELD, 4, clean=True)
+    opened = float((logits > 0).float().mean())
+    assert not corrupted.any() and opened == pytest.approx(0.25, abs=0.1)
+    drawn = [made.poses.jobs(step) for step in (HELD, FRESH)]
+    assert not {job[0] for jobs in drawn for job in jobs} & {*range(100_000)}
     assert 0 <= values["clean_opened"] < 1 and 0 <= values["corrupted_opened"] <= 1
     with pytest.raises(ValueError, match="touched=0 and strength=1.0 are shares"):
         AdaptViews(agent, modality="rgb", **VIEWS, touched=0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 import torch
 
@@ -16,6 +17,7 @@ from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
 from mitigate.recipes.distil import policy_kl
 from mitigate.recipes.imitate import Imitate, check_losses, imitation
+from mitigate.training.rollouts import Rollouts
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -128,3 +130,43 @@ def test_logits_that_are_no_numbers_give_a_loss_that_is_none():
     assert loss(nan, nan, nan) != loss(nan, nan, nan)
     assert loss(nan, 1.0, 0.0, mask=torch.tensor([[False, True, True]])) == loss(far, 1.0, 0.0)
     assert float(policy_kl(torch.zeros(1, 3), torch.full((1, 3), nan), 2.0)) != 0
+
+
+def test_imitation_is_a_weighted_mean_and_adds_the_losses_by_their_weights():
+    """Two decisions of two choices: the first is right with 0.8, the second with 0.4."""
+    logits = torch.tensor([[0.8, 0.2], [0.6, 0.4]]).log()
+    decisions = SimpleNamespace(
+        target=torch.tensor([[1.0, 0.0], [0.0, 1.0]]), weight=torch.tensor([1.0, 3.0])
+    )
+    out = Output(logits, losses={"near": torch.tensor(2.0), "far": torch.tensor(5.0)})
+    values = imitation(out, decisions, {"near": 0.5})
+    expected = -(1.0 * np.log(0.8) + 3.0 * np.log(0.4)) / 4.0
+    assert float(values["imitation"]) == pytest.approx(expected, abs=1e-6)
+    assert float(values["loss"]) == pytest.approx(expected + 0.5 * 2.0 + 5.0, abs=1e-5)
+    assert float(values["accuracy"]) == 0.5
+
+
+def test_every_step_and_piece_meets_other_episodes_and_other_keys():
+    """What training draws anew must not come again."""
+    drawn, keys = [], []
+
+    class Listed(DrawnEpisodes):
+        def draw(self, rng, piece):
+            drawn.append(float(rng.random()))
+            return super().draw(rng, piece)
+
+    class Kept:
+        def collect(self, worlds, episodes, **_):
+            keys.extend((world.seed, world.name) for world in worlds)
+            return []
+
+    schedule = Schedule("per_frame", 0.6)
+    how = {"episodes": 8, "expert_share": 1.0, "seed": 7}
+    made = Rollouts(Kept(), SOURCES["world"], Listed(2), schedule, **how)
+    for step in (0, 1):
+        for job in made.jobs(step):
+            made.work(job)
+    assert len(drawn) == len({*drawn}) == len(keys) == len({*keys}) == 16
+    first = [*keys]
+    made.work(made.jobs(0)[0])
+    assert keys[len(first) :] == first[: len(keys) - len(first)]

@@ -128,6 +128,21 @@ def _of_folder(path) -> Restore:
     return Restore(Restorer([RGB], width=4), world, None, RGB, schedule, panoramas=1, frames=8)
 
 
+def test_depth_of_a_folder_is_corrupted_as_far_as_the_restorer_sees(tmp_path):
+    """Else all beyond ten metres would read ten, and be what is learned from."""
+    for scene in range(3):
+        (tmp_path / f"s{scene}").mkdir()
+        metres = np.full((24, 24), 21 + scene, np.float32)
+        np.save(tmp_path / f"s{scene}/0.npy", metres)
+    agent = Restorer([DEPTH], depth_width=4, far=40.0)
+    world = partial(FolderFrames, str(tmp_path), sensor=DEPTH)
+    schedule = Schedule("per_episode", 0.6, clean_share=0.0, names=("gaussian_noise",))
+    made = Restore(agent, world, None, DEPTH, schedule, panoramas=1, frames=3)
+    made.start()
+    batch = made.batch(0)
+    assert batch["frames"].mean() > 18 and batch["clean"].min() >= 21
+
+
 def test_a_schedule_without_a_corruption_of_the_sensor_is_refused():
     with pytest.raises(ValueError, match="draws no depth corruption"):
         recipe_of(DEPTH, names=("flare",))

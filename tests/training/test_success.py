@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from functools import partial
 
+import numpy as np
 import torch
+from torch import nn
 
+from mitigate.core.observation import Observation, cameras
 from mitigate.core.precision import computing
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import EpisodeTask
@@ -15,14 +18,48 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
 
 
+class Grey:
+    """Shows one grey view, and is over after a step; STOP is right."""
+
+    rule, sensors, done = "STOP", cameras(16, views=1), True
+
+    def reset(self, episode):
+        self.done = False
+        return self.look()
+
+    def step(self, action):
+        self.done, self.won = True, action == 0
+        return self.look()
+
+    def look(self):
+        frames = {
+            "rgb": np.full((16, 16, 3), 128, np.uint8),
+            "depth": np.full((16, 16, 1), 2.0, np.float32),
+        }
+        return Observation({"pose": np.zeros(3, np.float32)}, lambda: frames, tuple(frames))
+
+    def measures(self):
+        return {"success": int(self.won), "spl": float(self.won)}
+
+
+class Careful(nn.Module):
+    """Stops where RGB is grey."""
+
+    def reset(self, instruction):
+        pass
+
+    def act(self, observation):
+        return int((observation["rgb"] != 128).any())
+
+
 def test_rates_do_not_depend_on_the_number_of_processes(capsys):
-    agent, world = wanderer(stop=0.0).train(), partial(ApartmentsWorld, 16)
-    schedule = Schedule("success_distributed", 0.6, names=("flare", "missing_data"))
+    agent, world = Careful().train(), Grey
+    schedule = Schedule("success_distributed", 0.6, names=("low_light", "missing_data"))
     options = {"episodes": 2, "seed": 0, "step": 60}
     none, alone, two = (
         measure(agent, schedule, world, DrawnEpisodes(2), **options, workers=n) for n in (0, 1, 2)
     )
-    assert none == alone == two and set(alone) == {"flare", "missing_data"} and not agent.training
+    assert none == alone == two == {"low_light": 0.0, "missing_data": 1.0} and not agent.training
     assert "success at step 60: 4 walks" in capsys.readouterr().out
 
 

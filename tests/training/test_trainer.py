@@ -66,6 +66,24 @@ def test_a_resumed_run_equals_an_unbroken_one(tmp_path, precision):
     assert same(whole, trained(tmp_path / "broken", precision=precision))
 
 
+def test_a_resumed_run_has_logged_what_an_unbroken_one_has(tmp_path):
+    from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+    how = {"log_every": 5, "save_every": 5, "eval_every": 5}
+    steps = []
+    for name in ("whole", "broken"):
+        trained(tmp_path / name, **how)
+        if name == "broken":
+            states.checkpoints(tmp_path / name)[-1].unlink()  # back to step 15
+            trained(tmp_path / name, **how)
+        events = EventAccumulator(str(tmp_path / name))
+        events.Reload()
+        steps.append(
+            {tag: [e.step for e in events.Scalars(tag)] for tag in ("loss", "eval/weight")}
+        )
+    assert steps[0] == steps[1] and steps[0]["loss"] == [5, 10, 15, 20]
+
+
 def test_logging_evaluation_and_saving_do_not_change_the_weights(tmp_path):
     quiet = trained(tmp_path / "quiet", log_every=0, save_every=0)
     busy = trained(tmp_path / "busy", log_every=1, save_every=1, eval_every=2, figure_every=3)

@@ -111,6 +111,12 @@ def test_every_row_of_a_batch_gets_what_the_suite_gives():
     assert changed > 20
 
 
+def test_a_pair_changes_both_entries():
+    pair = Corruption("low_light+missing_data", 0.8)
+    clean, hurt = Corridor().reset(), hurt_env(schedule=pair).reset()
+    assert all((hurt[name] != clean[name]).any() for name in ("rgb", "depth"))
+
+
 def test_pixels_do_not_depend_on_the_split_into_workers():
     together = seen(hurt_env(4).rollout(12, break_when_any_done=False))
     for worker in (0, 1):

@@ -59,7 +59,9 @@ def test_routes_go_around_what_is_occupied():
 
 def test_a_frontier_lies_between_known_and_unknown():
     grid = looked(*[(wall(3.0), np.zeros(3))] * 3)
-    for group in planning.frontiers(grid):
+    groups = planning.frontiers(grid)
+    assert groups
+    for group in groups:
         assert grid.known[group[:, 0], group[:, 1]].all()
         around = [grid.known[i - 1 : i + 2, j - 1 : j + 2].all() for i, j in group]
         assert not any(around)
