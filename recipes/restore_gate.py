@@ -34,7 +34,8 @@ from mitigate.worlds.world import TrainingEpisodes
 CLEAN_SHARE = 0.35  # of the instants that are learned from (ours)
 BETTER = 0.85  # of the error before: what restoring must get below to be worth it (ours)
 SPENT = 0.15  # of the pixels (ours)
-OFFSETS = {"learned": 0, "held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000}  # steps
+# Steps, so that no instant is one that the network was trained on, and none serves two ends.
+OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 
 class Judged(NamedTuple):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core import workers as processes
-from mitigate.core.progress import Progress
+from mitigate.core.progress import Progress, say
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import WORTH, EpisodeTask
@@ -64,7 +64,8 @@ def refuse(schedule: Schedule | None) -> None:
 
 
 def prior_rates(path: Path | str) -> dict[str, float]:
-    """Success by corruption in a file of result rows.
+    """Success by corruption in a file of result rows. Says of which split they are: a training that
+    draws by them has seen it.
 
     Raises FileNotFoundError or ValueError for a file that is not there or broken, and ValueError
     if it mixes agents, splits or severities.
@@ -81,6 +82,7 @@ def prior_rates(path: Path | str) -> dict[str, float]:
                 f"{path} holds rows of several {what} ({', '.join(sorted(held))}), so its success "
                 "rates say nothing about one agent. Name a file of one evaluation (prior=...)."
             )
+    say(f"draws by the success on {', '.join(kinds['splits'])} in {path}: report on other episodes")
     return success_rates(found)
 
 
