@@ -185,9 +185,8 @@ def _methods(kind: type) -> Iterator[tuple[str, Any]]:
         if each is object or not is_users(each.__module__, file or ""):
             continue
         for name, one in vars(each).items():
-            function = getattr(
-                one, "__func__", getattr(one, "fget", one)
-            )  # static, class, property
+            bound = getattr(one, "__func__", one)  # of a static or class method
+            function = getattr(bound, "fget", bound)  # of a property
             if isinstance(function, types.FunctionType):
                 yield name, function
 

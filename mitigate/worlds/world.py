@@ -163,7 +163,7 @@ class Corrupted(WorldWrapper):
 
     def _seen(self, clean: Observation) -> Observation:
         if not isinstance(clean, Observation):
-            raise TypeError(
+            raise ValueError(
                 f"{type(self.world).__name__} showed a {type(clean).__name__}: its reset() and "
                 "step() return an Observation, such as Observation({'pose': pose}, "
                 "lambda: {'rgb': rgb}, ('rgb',)) (docs/bring-your-own.md)."
