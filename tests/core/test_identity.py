@@ -67,7 +67,7 @@ def _hashes(folder, agent, sources):
     """The hash of the class ``agent`` in one module whose source is one after the other."""
     found = []
     for number, source in enumerate(sources):
-        (folder / "own_agent.py").write_text(source + "#" * number)  # of other lengths
+        (folder / "own_agent.py").write_text(source + "#" * 9 * number)  # of other lengths
         sys.modules.pop("own_agent", None)
         importlib.invalidate_caches()
         linecache.clearcache()
