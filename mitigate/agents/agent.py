@@ -24,7 +24,8 @@ class Agent(Protocol):
     """What can be evaluated: any object that turns observations into low-level actions.
 
     An agent that works with a prompt has it in an attribute ``system_prompt``, read at ``reset``.
-    ``views`` (attribute, optional): 12 for a panorama, 1 for a camera ahead.
+    ``views`` (attribute, optional): 12 for a panorama, 1 for a camera ahead; worlds that show
+    another number are refused.
     ``tasks`` (attribute, optional): of what episode lists call ``info["task"]`` ("vln", a route;
     "ogn", an object), those that it can do; an evaluation warns of others. Without it, all.
     ``taken(action, metres, radians)`` (optional): somebody else drives; since the agent's last
