@@ -166,7 +166,7 @@ def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
 def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     """Return the tensors of a safetensors file; ValueError if it is damaged, by its sidecar (if it
     has one) or by itself, PermissionError if it may not be read."""
-    file.open("rb").close()
+    file.open("rb").close()  # tells what may not be read from what is damaged
     problem = checksums.problem(file)
     if not problem:
         try:

@@ -30,12 +30,12 @@ MOST = 100_000  # things that are looked at in all (ours)
 _LISTS: tuple[Any, ...] = (list, tuple, deque, type({}.values()))
 _CONTAINERS = (*_LISTS, set, frozenset, dict, types.MappingProxyType)
 _GETTERS = (operator.itemgetter, operator.attrgetter, operator.methodcaller)
+_PLAIN = (str, bytes, int, float, complex, type(None), Enum)
 _NO_WEIGHTS = (
-    *(str, bytes, int, float, complex, type(None), type, Enum, PurePath, np.generic, np.dtype),
+    *(*_PLAIN, type, PurePath, np.generic, np.dtype),
     *(torch.device, torch.dtype, torch.Size, torch.Generator, np.random.Generator, random.Random),
     *(np.random.RandomState, np.ufunc, logging.Logger, types.ModuleType, Observation),
 )
-_PLAIN = (str, bytes, int, float, complex, type(None), Enum)
 _BY_VERSION = ("mitigate", "torch")  # packages that are known by their version, wherever they are
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
 _OWN_OF_TORCH = frozenset(vars(nn.Module()))  # hooks, parameters, and modules that it lists itself
@@ -79,9 +79,9 @@ def held(agent: Any) -> Held:
             continue
         inside, many = _inside(value, whole=value is agent), isinstance(value, _CONTAINERS)
         fixed = isinstance(value, (types.FunctionType, partial)) or (fixed and many)
-        if fixed:
-            inside = None if inside is None else [*inside]
-            plain = [part for part in inside or () if isinstance(part[1], _PLAIN)]
+        if fixed and inside is not None:
+            inside = [*inside]
+            plain = [(own, part) for own, part in inside if isinstance(part, _PLAIN)]
             found.constants |= {".".join((*place, own)): part for own, part in plain}
         able = (part for part in inside or () if not isinstance(part[1], _NO_WEIGHTS))
         parts = [*islice(able, most + 1 if many else None)]

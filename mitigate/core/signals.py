@@ -9,6 +9,8 @@ import signal
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from multiprocessing import resource_tracker
+from multiprocessing.process import BaseProcess
 from types import FrameType
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
@@ -84,3 +86,22 @@ def unbroken() -> Iterator[None]:
         yield
     if not ending.nested:
         ending.check()
+
+
+def start_worker(process: BaseProcess) -> None:
+    """Start a worker's ``process``, in which these signals wait until it calls
+    :func:`leave_to_parent`: what it imports before knows nothing of them."""
+    resource_tracker.ensure_running()  # which lets signals through when it starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+    try:
+        process.start()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def leave_to_parent() -> None:
+    """Ignore these signals in a worker: they reach a command's whole process group, and the parent
+    finishes what is at hand and ends the workers."""
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)

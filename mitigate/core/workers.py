@@ -17,14 +17,13 @@ import traceback
 from collections import deque
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager, suppress
-from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.reduction import ForkingPickler
 from typing import Any, ClassVar, Protocol
 
 from mitigate.core.errors import said
 from mitigate.core.progress import Progress, duration
-from mitigate.core.signals import ENDING, held
+from mitigate.core.signals import held, leave_to_parent, start_worker
 
 SECOND = 1.0  # between two looks at workers that say nothing
 STUCK = 60.0  # seconds with one job after which a worker is reported, and again after as many
@@ -106,7 +105,7 @@ class _Worker:
     def __init__(self, context: Any, task: bytes) -> None:
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, task), daemon=True)
-        start(self.process)
+        start_worker(self.process)
         theirs.close()  # so that its death closes the pipe
         self.left: deque[tuple[int, Any]] = deque()
         self.heard = self.told = time.monotonic()
@@ -248,28 +247,6 @@ def context(preload: str) -> Any:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([preload])
     return context
-
-
-def start(process: Any) -> None:
-    """Start a worker's ``process``, in which the signals that end a command wait until it calls
-    :func:`leave_to_parent`: what it imports before knows nothing of them."""
-    if not hasattr(signal, "pthread_sigmask"):
-        return process.start()
-    resource_tracker.ensure_running()  # which lets signals through when it starts
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
-    try:
-        process.start()
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def leave_to_parent() -> None:
-    """Ignore, in a worker, the signals that end a command: they reach its whole process group, and
-    the parent finishes what is at hand and ends the workers."""
-    for number in ENDING:
-        signal.signal(number, signal.SIG_IGN)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)
 
 
 def _serve(pipe: Connection, copy: bytes) -> None:

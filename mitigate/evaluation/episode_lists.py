@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections import Counter
 from collections.abc import Sequence
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 from omegaconf import DictConfig
@@ -30,10 +31,11 @@ def episodes(env: DictConfig, split: str, count: int | None) -> list:
     """
     from mitigate.worlds.episodes import read_episodes
 
-    if count is not None and (isinstance(count, bool) or not isinstance(count, int)):
-        raise ValueError(f"episodes={count!r} is no whole number: give 1 or more, or None for all.")
-    if count is not None and count < 1:
-        raise ValueError(f"episodes={count} is none: give 1 or more, or null for all of the list.")
+    if count is not None and not (isinstance(count, Integral) and count >= 1):
+        raise ValueError(
+            f"episodes={count!r} is none: give a whole number, 1 or more, or null for all of the "
+            "list."
+        )
     if not env.episodes:
         raise ValueError(f"env={env.name} has no episodes, so nothing can be walked in it.")
     if split not in env.episodes:

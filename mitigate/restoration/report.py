@@ -59,6 +59,20 @@ class Score(NamedTuple):
     restored: Estimate
 
 
+class Instants(NamedTuple):
+    """Clean observations, and what depth is where they were seen."""
+
+    clean: list[dict[str, np.ndarray]]
+    depth: DepthSensor = SENSOR
+
+    def corrupted(self, number: int, corruption: Corruption, seed: int) -> dict[str, np.ndarray]:
+        """The frames of an observation under a corruption."""
+        seen = self.clean[number]
+        frames = {name: seen[name] for name in seen if name in (RGB, DEPTH, POSE)}
+        key = Key(seed, f"instant {number}", 0)
+        return corrupt_observation(frames, corruption, key, self.depth)
+
+
 def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
     """Print and write ``restoration.md`` and ``restoration.jpg``: what a training's restorer does
     to ``evaluation.episodes`` random instants of unseen scenes, under the conditions of the suite.
@@ -68,21 +82,19 @@ def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
     assert isinstance(trained, Restorer)
     quick = cfg.evaluation
     met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    seen, depth = instants(cfg.env, quick.split, quick.episodes or 300, cfg.seed, trained)
-    about = f"{quick.split}, severity {cfg.severity:g}"
-    write(trained, seen, met, cfg.seed, folder, about, depth)
+    seen = instants(cfg.env, quick.split, quick.episodes or 300, cfg.seed, trained)
+    write(trained, seen, met, cfg.seed, folder, f"{quick.split}, severity {cfg.severity:g}")
 
 
-def instants(
-    env: Any, split: str, count: int, seed: int, restorer: Restorer
-) -> tuple[list[dict[str, np.ndarray]], DepthSensor]:
+def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) -> Instants:
     """Clean observations of ``count`` random poses in the scenes of a list of ``env``, or frames of
-    the unseen part of a folder, and what depth is there. Raises ValueError for an unknown split."""
+    the unseen part of a folder. Raises ValueError for an unknown split."""
     made = maker(env.world)()
     if hasattr(made, "shots"):
         sensor, part = next(iter(restorer.parts().items()))
         found = collect(made, UNSEEN, count, seed).frames
-        return [{sensor: frame[None]} for frame in found], replace(SENSOR, z_max=part.far)
+        clean = [{sensor: frame[None]} for frame in found]
+        return Instants(clean, replace(SENSOR, z_max=part.far))
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
     scenes = sorted({e.scene_id for e in read_episodes(find(env.episodes[split]))})
@@ -94,25 +106,21 @@ def instants(
             made.point(rng), float(rng.uniform(-np.pi, np.pi)), views=None, rgb=True
         )
         observations.append({name: np.copy(value) for name, value in looked.items()})
-    return observations, depth_sensor(made.sensors)
+    return Instants(observations, depth_sensor(made.sensors))
 
 
 def measure(
-    restorer: Restorer,
-    seen: Sequence[dict[str, np.ndarray]],
-    met: Sequence[Corruption],
-    seed: int,
-    depth: DepthSensor,
+    restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> dict[tuple[str, str], Score]:
     """Scores by sensor and condition; a corruption counts for the sensor that it changes."""
     scores: dict[tuple[str, str], Score] = {}
     wanted = [(s, c) for c in met for s in restorer.nets if c is CLEAN or s in c.modalities]
-    wanted = [(s, c) for s, c in wanted if s in seen[0]]
+    wanted = [(s, c) for s, c in wanted if s in seen.clean[0]]
     with Progress("restoration", len(wanted), unit="condition") as progress:
         for sensor, corruption in wanted:
             rows = []
-            for number, clean in enumerate(seen):
-                frames = _corrupted(clean, corruption, seed, number, depth)[sensor]
+            for number, clean in enumerate(seen.clean):
+                frames = seen.corrupted(number, corruption, seed)[sensor]
                 made = restorer.restore(sensor, frames)
                 far = restorer.parts()[sensor].range
                 off = [_off(part, clean[sensor], far) for part in (frames, made)]
@@ -125,13 +133,6 @@ def measure(
             )
             progress.advance(note=corruption.name)
     return scores
-
-
-def _corrupted(
-    clean: dict[str, np.ndarray], corruption: Corruption, seed: int, n: int, depth: DepthSensor
-) -> dict:
-    frames = {name: clean[name] for name in clean if name in (RGB, DEPTH, POSE)}
-    return corrupt_observation(frames, corruption, Key(seed, f"instant {n}", 0), depth)
 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
@@ -170,20 +171,18 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 
 
 def sheet(
-    restorer: Restorer,
-    clean: dict[str, np.ndarray],
-    met: Sequence[Corruption],
-    seed: int,
-    depth: DepthSensor,
+    restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """uint8 RGB: a row a corruption; three views of an instant corrupted, restored, clean, under
-    these headings. None if no corruption is of a sensor that there is."""
+    """uint8 RGB: a row a corruption; three views of the instant that sees farthest corrupted,
+    restored, clean, under these headings. None if no corruption is of a sensor that there is."""
+    number = max(range(len(seen.clean)), key=lambda n: _far(seen.clean[n]))
+    clean = seen.clean[number]
     rows: list[np.ndarray] = []
     for corruption in met:
         sensor = next((s for s in corruption.modalities if s in restorer.nets and s in clean), None)
         if sensor is None:
             continue
-        frames = _corrupted(clean, corruption, seed, 0, depth)[sensor]
+        frames = seen.corrupted(number, corruption, seed)[sensor]
         shown = [
             _views(sensor, f) for f in (frames, restorer.restore(sensor, frames), clean[sensor])
         ]
@@ -224,22 +223,21 @@ def _views(sensor: str, frames: np.ndarray) -> np.ndarray:
 
 def write(
     restorer: Restorer,
-    seen: Sequence[dict[str, np.ndarray]],
+    seen: Instants,
     met: Sequence[Corruption],
     seed: int,
     folder: Path,
     about: str,
-    depth: DepthSensor = SENSOR,
 ) -> None:
     """Measure, print, and write the table and the picture into ``folder``; no picture where
     nothing is corrupted."""
-    scores = measure(restorer.eval(), seen, met, seed, depth)
-    about = f"{len(seen)} instants of {about}, seed {seed}, restorer {restorer.hash}"
+    scores = measure(restorer.eval(), seen, met, seed)
+    about = f"{len(seen.clean)} instants of {about}, seed {seed}, restorer {restorer.hash}"
     text = table(scores, about)
     with atomic_text(folder / "restoration.md") as file:
         file.write(text)
     print(f"{text}\nwrote {folder / 'restoration.md'}")
-    drawn = sheet(restorer, max(seen, key=_far), [c for c in met if c is not CLEAN], seed, depth)
+    drawn = sheet(restorer, seen, [c for c in met if c is not CLEAN], seed)
     if drawn is not None:
         encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
         write_bytes(folder / "restoration.jpg", encoded.tobytes())
@@ -272,9 +270,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
             f"suite={options.suite} corrupts no frames of {', '.join(restorer.nets)}: choose "
             "another, such as full or unseen_val."
         )
-    seen, depth = instants(cfg.env, options.split, options.count, seed, restorer)
+    seen = instants(cfg.env, options.split, options.count, seed, restorer)
     about = f"{options.split}, suite {options.suite}, severity {options.severity:g}"
-    write(restorer, seen, met, seed, Path(options.out), about, depth)
+    write(restorer, seen, met, seed, Path(options.out), about)
 
 
 if __name__ == "__main__":

@@ -31,7 +31,7 @@ class Journal:
     def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
         from torch.utils.tensorboard import SummaryWriter  # slow to import
 
-        self._writer = SummaryWriter(str(folder), purge_step=start + 1 if start else 0)
+        self._writer = SummaryWriter(str(folder), purge_step=start + 1)
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
         self._measured = start, time.process_time()

@@ -21,14 +21,8 @@ import torch
 from mitigate.core import precision
 from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
-from mitigate.core.workers import (
-    WorkersDied,
-    context,
-    leave_to_parent,
-    packed,
-    portable,
-    start,
-)
+from mitigate.core.signals import leave_to_parent, start_worker
+from mitigate.core.workers import WorkersDied, context, packed, portable
 from mitigate.training.recipe import Recipe, do
 
 MOST = 8  # workers worth starting: the recipes make 2 to 4 pieces of a step, some steps ahead
@@ -158,7 +152,7 @@ class _Worker:
         made = context(PRELOAD)
         self.connection, other = made.Pipe()
         self.process = made.Process(target=_serve, args=(other,), daemon=True)
-        start(self.process)
+        start_worker(self.process)
         other.close()  # so that the worker's death ends the connection
 
     def _replace(self) -> None:

@@ -75,7 +75,7 @@ def test_the_same_command_only_walks_what_is_missing(monkeypatch, tmp_path, walk
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        ("episodes=0", "episodes=0 is none: give 1 or more"),
+        ("episodes=0", "episodes=0 is none: give a whole number, 1 or more"),
         ("split=val_sen", "Did you mean val_seen?"),
         ("env=corridor", "There is no env 'corridor'"),
         ("--split", "options are written split=VALUE"),

@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from mitigate.core.observation import DEPTH, RGB, Observation
-from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
+from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.restoration import choices, report, ring
 from mitigate.restoration.restorer import Restorer, load_restorer, restorer_of
 from mitigate.restoration.world import Restored
@@ -362,14 +362,25 @@ def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):
     assert shipped.doubt(RGB, seen[RGB]) < 0 < shipped.doubt(RGB, dark[RGB])
 
 
+def test_a_report_corrupts_depth_as_far_as_its_world_sees(panorama):
+    near = {**panorama, DEPTH: np.minimum(panorama[DEPTH], 5.0)}
+    lost = Corruption("missing_data", 1.0)
+    far = [
+        report.Instants([near], depth).corrupted(0, lost, 0)[DEPTH].max()
+        for depth in (DepthSensor(z_max=5.0), DepthSensor())
+    ]
+    assert far == [5.0, 10.0]
+
+
 @pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
 def test_a_report_of_what_corrupts_no_sensor_that_there_is_has_a_table_and_no_picture(
     tmp_path, panorama, met
 ):
     """As at the end of a training with suite=clean, or of RGB alone for a restorer of depth."""
     only = opened(Restorer([DEPTH], depth_width=4).eval())
-    report.write(only, [panorama], met, 0, tmp_path, "one")
+    report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
     assert [path.name for path in tmp_path.iterdir()] == ["restoration.md"]
     assert "Clean" in (tmp_path / "restoration.md").read_text()
-    report.write(only, [panorama], [*met, Corruption("missing_data", 0.6)], 0, tmp_path, "one")
+    met = [*met, Corruption("missing_data", 0.6)]
+    report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
     assert (tmp_path / "restoration.jpg").is_file()
