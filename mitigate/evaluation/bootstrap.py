@@ -14,6 +14,8 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
+from mitigate.evaluation import metrics
+
 RESAMPLES = 10_000
 LEVEL = 0.95
 Z = 1.959964  # of the normal distribution at LEVEL
@@ -146,13 +148,12 @@ def prs_difference(
 
 
 def _prs(clean: ArrayLike, corrupted: ArrayLike, options: dict) -> tuple[float, np.ndarray]:
-    corrupted = np.atleast_2d(np.asarray(corrupted, float)).mean(axis=0)  # of each episode
-    table = np.stack([np.asarray(clean, float), corrupted])
-    means = resampled_means(table, **options)
+    """PRS as ``metrics.prs`` defines it, and that of each resample."""
+    clean, corrupted = np.asarray(clean, float), np.atleast_2d(np.asarray(corrupted, float))
+    means = resampled_means(np.stack([clean, corrupted.mean(axis=0)]), **options)
     with np.errstate(divide="ignore", invalid="ignore"):
         samples = means[:, 1] / means[:, 0]
-    base = table[0].mean()
-    return (float(table[1].mean() / base) if base else math.nan), samples
+    return metrics.prs(clean.mean(), corrupted.mean(axis=1)), samples
 
 
 def _estimate(value: float, samples: np.ndarray) -> Estimate:
