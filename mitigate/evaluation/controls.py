@@ -12,11 +12,11 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from omegaconf import DictConfig
 
-from mitigate.agents.agent import Agent
 from mitigate.core import conf
 from mitigate.core.build import maker
 from mitigate.core.locks import FolderLock
@@ -26,12 +26,14 @@ from mitigate.core.options import check_dashes, config_folder, without_config_fo
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import making, rows, walked
+from mitigate.evaluation import rows
 from mitigate.evaluation.bootstrap import share
-from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
+
+if TYPE_CHECKING:  # nothing slow is imported before main() has checked the options
+    from mitigate.agents.agent import Agent
 
 OUT = "runs/controls"
 OPTIONS = ("env", "split", "episodes", "out")  # those of an evaluation that mean anything here
@@ -69,6 +71,8 @@ class RandomAgent:
 def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
     """Walk both on the episodes that ``cfg``, an evaluation's, names; return their rows, which are
     in the folder ``out`` too. Those that it has count."""
+    from mitigate.evaluation import making, walked
+
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     with FolderLock(out):
         world, made_by = making.first(maker(cfg.env.world))
@@ -77,6 +81,8 @@ def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
 
 
 def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> list[rows.Row]:
+    from mitigate.evaluation.episode import run_episode
+
     chance = RandomAgent()
     controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": chance}
     held = {rows.identity(row): row for row in rows.read(out)} if out.exists() else {}

@@ -11,13 +11,14 @@ import argparse
 import json
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mitigate.core import build, conf, settings
 from mitigate.core.options import paths_and_overrides
-from mitigate.evaluation import evaluate
-from mitigate.shipping import hardened, others
-from mitigate.shipping.export import HARDENED, export
-from mitigate.shipping.others import Walks
+from mitigate.evaluation.episode_lists import episodes
+
+if TYPE_CHECKING:  # nothing slow is imported before main() has read the command line
+    from mitigate.shipping.others import Walks
 
 
 def main() -> None:
@@ -38,12 +39,18 @@ def main() -> None:
     )
     parser.add_argument("--config-dir", type=Path, help="where such configs are")
     parser.add_argument(
-        "--out", type=Path, default=HARDENED, help=f"folder to write it in (default {HARDENED})"
+        "--out",
+        type=Path,
+        default=argparse.SUPPRESS,
+        help="folder to write it in (default checkpoints/hardened)",
     )
     parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
     given = vars(parser.parse_intermixed_args())
+    from mitigate.shipping import hardened
+    from mitigate.shipping.export import export
+
     overrides, configs = given.pop("overrides"), given.pop("config_dir")
     given["rows"], more = paths_and_overrides(given["rows"])
     try:
@@ -63,6 +70,8 @@ def main() -> None:
 
 def _own_kind(run: Path) -> list[str]:
     """The option that names the agent of ``run`` where it is one of ours that has no programs."""
+    from mitigate.shipping import hardened
+
     config = run / hardened.CONFIG
     kind = hardened.kind_of(config) if config.is_file() else hardened.TARGET
     name = "" if kind == hardened.TARGET else settings.named(kind)
@@ -72,7 +81,9 @@ def _own_kind(run: Path) -> list[str]:
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     """How to make the agent and the world that ``overrides`` name; the agent's settings are those
     beside the run's weights, read as data."""
+    from mitigate.shipping import others
+
     cfg = conf.composed("evaluate", overrides, configs)
     node = build.settings_of(cfg.agent, str(run / "agent"), overrides)
-    listed = evaluate.episodes(cfg.env, cfg.split, others.WALKS)
-    return Walks(build.maker(node), build.maker(cfg.env.world), listed)
+    listed = episodes(cfg.env, cfg.split, others.WALKS)
+    return others.Walks(build.maker(node), build.maker(cfg.env.world), listed)

@@ -53,7 +53,7 @@ def walked(monkeypatch):
         ids.append(episode.episode_id)
         return {"success": 1, "spl": 1.0}
 
-    monkeypatch.setattr(controls, "run_episode", walk)
+    monkeypatch.setattr("mitigate.evaluation.episode.run_episode", walk)
     return ids
 
 
