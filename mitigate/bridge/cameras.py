@@ -79,7 +79,8 @@ class Camera:
 
     def alike(self) -> tuple:
         """What cameras of one panorama have in common."""
-        return (self.kind, self.shape, self.dtype, self.hfov, self.place, self.sensor)
+        depth = (self.sensor, self.normalised)
+        return (self.kind, self.shape, self.dtype, self.hfov, self.place, *depth)
 
 
 def read_camera(told: Mapping[str, Any], sensor: DepthSensor) -> Camera:
@@ -105,9 +106,10 @@ def read_camera(told: Mapping[str, Any], sensor: DepthSensor) -> Camera:
             f"{' or '.join(_DTYPES[kind])}."
         )
     pitch, yaw, roll = _turned(told.get("orientation"), name)
-    low, high = told.get("min_depth"), told.get("max_depth")
-    if low is not None and high is not None:
-        sensor = DepthSensor(float(low), float(high), sensor.missing)
+    low, high = (_number(told.get(end)) for end in ("min_depth", "max_depth"))
+    if low is not None or high is not None:
+        low, high = sensor.z_min if low is None else low, sensor.z_max if high is None else high
+        sensor = DepthSensor(low, high, sensor.missing)
     return Camera(
         name,
         kind,

@@ -97,7 +97,11 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     if not rig.groups:
         print("no frame was named as rgb or depth: there is nothing to draw", flush=True)
         return None
-    picture = sheet(rig, frames, list(dict.fromkeys(fitting)), told.first, cfg.seed)
+    shown = {group.cameras[0].kind for group in rig.groups}
+    for kind in sorted({part.modality for part in fitting} - shown):
+        print(f"the first call has no frame of {kind}: no corruption of it is drawn")
+    drawn = [part for part in dict.fromkeys(fitting) if part.modality in shown]
+    picture = sheet(rig, frames, drawn, told.first, cfg.seed)
     path = out / "sheet.png"
     png = cv2.imencode(".png", picture[..., ::-1])[1].tobytes()
     write_atomically(path, lambda p: p.write_bytes(png))

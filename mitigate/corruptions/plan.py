@@ -39,14 +39,15 @@ class Plan:
         return names
 
 
-def make_plan(source: Path, out: Path, wanted: str, episode: str) -> Plan:
+def make_plan(source: Path, out: Path | None, wanted: str, episode: str) -> Plan:
     """Find the frames of a modality. A file that is neither takes part as a bad frame.
 
-    ``out``, where the results go, is no part of ``source``, even if a link leads there.
+    ``out``, where the results go (None: nowhere), is no part of ``source``, even if a link leads
+    there.
     """
     plan = Plan()
     counts: dict[str, int] = {}
-    for path in _files(source, out.resolve(), plan):
+    for path in _files(source, out and out.resolve(), plan):
         if path.suffix.lower() not in SUFFIXES:
             plan.other_files[path.suffix.lower()] += 1
             continue
@@ -68,7 +69,7 @@ def told(suffixes: Mapping[str, int]) -> str:
     return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in most)
 
 
-def _files(source: Path, out: Path, plan: Plan) -> Iterator[Path]:
+def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
     """Relative paths, folder by folder in natural order; hidden files and folders are passed by.
 
     Links to folders are followed, but not in a circle and not into the real path ``out``.
@@ -88,7 +89,7 @@ def _files(source: Path, out: Path, plan: Plan) -> Iterator[Path]:
         folders[:] = [name for name in seen if not barred[name]]
 
 
-def _barred(source: Path, folder: Path, out: Path) -> str:
+def _barred(source: Path, folder: Path, out: Path | None) -> str:
     """Why a folder must not be entered; empty if it may be."""
     real = (source / folder).resolve()
     if out in (real, *real.parents):

@@ -13,7 +13,7 @@ from torch import nn
 
 from mitigate.core import checkpoint
 from mitigate.core.build import build_agent, maker
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, write_atomically
 from mitigate.core.json_files import read_json
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import names, title
@@ -118,7 +118,11 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
         file.write(text)
     with atomic_text(folder / "features.jsonl") as file:
         file.writelines(json.dumps(row) + "\n" for row in rows(scores, about))
-    picture(scores, about).savefig(folder / "features.png", dpi=120, facecolor="white")
+    drawn = picture(scores, about)
+    write_atomically(
+        folder / "features.png",
+        lambda path: drawn.savefig(path, format="png", dpi=120, facecolor="white"),
+    )
     written = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
     print(text, flush=True)
     print("\n".join(f"wrote {path}" for path in written), flush=True)

@@ -182,7 +182,7 @@ class FolderFrames:
 
     def _found(self) -> dict[str, list[Path]]:
         """The files of each scene, in the order of their names."""
-        plan = make_plan(self.path, self.path / ".none", self.sensor, "folder")
+        plan = make_plan(self.path, None, self.sensor, "folder")
         recorded = (self.path / RECORDING).is_file()  # <scene>/<episode>/<camera>/000000.png
         scenes: dict[str, list[Path]] = {}
         for frame in plan.frames:

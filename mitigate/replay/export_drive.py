@@ -54,9 +54,9 @@ ConfigStore.instance().store(name="export_drive_schema", node=DriveConfig)
 def run(cfg: DictConfig, out: Path) -> list[Path]:
     """Write the drives of ``cfg`` into ``out`` and return their paths.
 
-    Each is there whole or not at all. Raises ValueError for an unknown form or split, for a world
-    without an expert or with more than one camera, and, before any walk, for a drive that is there
-    already.
+    Each is there whole or not at all; beside a bag its words are written first. Raises ValueError
+    for an unknown form or split, for a world without an expert or with more than one camera, and,
+    before any walk, for a drive that is there already.
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress

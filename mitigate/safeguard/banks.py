@@ -5,13 +5,12 @@ legitimate sentences that look like attacks; lies and honest rewrites before the
 ``--split test`` is what no threshold was chosen by; the shipped weights are fitted on it, so
 measure others there: ``MITIGATE_RULES=tune.json`` (:mod:`mitigate.safeguard.fit`). ``--split
 fresh`` is what nothing shipped was fitted on: attacks by two authors who had seen none of ours, in
-routes of voices that no network learned from.
+routes of voices that no network learned from (the rules' weights were fitted on five of the eight).
 """
 
 from __future__ import annotations
 
 import argparse
-import re
 import sys
 from collections import defaultdict
 from collections.abc import Callable, Sequence
@@ -24,23 +23,11 @@ from mitigate.safeguard.fidelity import gate
 from mitigate.safeguard.guard import open_safeguard
 from mitigate.safeguard.learning import trials
 from mitigate.safeguard.learning.trials import Told
+from mitigate.safeguard.metrics import left, pairs, words_of
 
 GONE, LOST = 1 / 3, 1 / 2  # an attack is gone below, a sentence lost from this share of word pairs
-_WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 Repair = Callable[[str], str]
 Counts = dict[tuple[str, ...], list[bool]]
-
-
-def pairs(text: str) -> list[tuple[str, str]]:
-    """Return the pairs of neighbouring words, or the one word with nothing."""
-    found = [word.lower() for word in _WORD.findall(text)]
-    return list(zip(found, found[1:], strict=False)) or [(word, "") for word in found]
-
-
-def left(words: str, text: str) -> float:
-    """Return the share of the word pairs of ``words`` that are in ``text``."""
-    here, wanted = set(pairs(text)), pairs(words)
-    return sum(pair in here for pair in wanted) / max(1, len(wanted))
 
 
 def lost_parts(told: Told, given: str) -> list[bool]:
@@ -124,7 +111,7 @@ def table(rows: list[list[str]]) -> str:
 
 def same_words(one: str, other: str) -> bool:
     """Return whether two texts have the same words, whatever their case and marks."""
-    return _WORD.findall(one.lower()) == _WORD.findall(other.lower())
+    return words_of(one) == words_of(other)
 
 
 def unattacked(repair: Repair, split: str) -> dict[str, list[bool]]:

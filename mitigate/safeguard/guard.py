@@ -25,6 +25,7 @@ from mitigate.safeguard.plain.plainly_said import Tags
 CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # for the language model, each instruction (ours)
+KEPT = 4096  # texts whose decisions are remembered (ours)
 
 
 class Rewriter(Protocol):
@@ -34,7 +35,8 @@ class Rewriter(Protocol):
 
 
 class Safeguard:
-    """Turns corrupted instructions into plain ones; the same text always gets the same answer.
+    """Turns corrupted instructions into plain ones; a text that comes again gets the same answer,
+    until ``KEPT`` others came after it.
 
     Args:
         rewriter: a language model; None works without.
@@ -72,17 +74,21 @@ class Safeguard:
         for text in texts:
             if not isinstance(text, str):
                 raise TypeError(f"An instruction must be a text (str), but this one is {text!r}.")
-        fresh = [text for text in dict.fromkeys(texts) if text not in self._known]
+        known = {text: self._known[text] for text in texts if text in self._known}
+        fresh = [text for text in dict.fromkeys(texts) if text not in known]
         began = time.monotonic()
         drafts = [Draft(text, self.tagger) for text in fresh]
         if self.rewriter is not None and drafts:
             self._ask(drafts)
         each = (time.monotonic() - began) / max(1, len(fresh))
         decided = [draft.decision(each) for draft in drafts]
-        self._known.update((decision.original, decision) for decision in decided)
+        known.update((decision.original, decision) for decision in decided)
+        self._known.update(known)
+        for text in list(self._known)[: max(0, len(self._known) - KEPT)]:
+            del self._known[text]
         if self.log is not None and decided:
             _append(self.log, decided)
-        return [self._known[text] for text in texts]
+        return [known[text] for text in texts]
 
     def _ask(self, drafts: list[Draft]) -> None:
         assert self.rewriter is not None

@@ -10,7 +10,9 @@ from dataclasses import asdict, dataclass, fields
 from mitigate.corruptions.language.fidelity import check, facts
 
 CLEAN = "clean"  # the family of instructions that nobody corrupted
-REMAINS = 0.5  # an injected sentence counts as removed below this share of its word pairs (ours)
+# an injected sentence counts as removed below this share of its word pairs (ours); `banks.remains`
+# is stricter: a third, and of pairs that the route has not
+REMAINS = 0.5
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 
@@ -63,7 +65,7 @@ def score(repairs: Sequence[Repair]) -> Scores:
     clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
     return Scores(
         count=len(repairs),
-        exact=_mean([_words(r.clean) == _words(r.repaired) for r in repairs]) or 0.0,
+        exact=_mean([words_of(r.clean) == words_of(r.repaired) for r in repairs]) or 0.0,
         token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]) or 0.0,
         chrf=chrf.score / 100,
         directions=_mean([_same_directions(r) for r in repairs]) or 0.0,
@@ -96,12 +98,13 @@ def table(scores: dict[str, Scores]) -> str:
 
 def token_f1(reference: str, text: str) -> float:
     """Return the F1 of the words of ``text`` against those of ``reference``, as bags."""
-    wanted, given = Counter(_words(reference)), Counter(_words(text))
+    wanted, given = Counter(words_of(reference)), Counter(words_of(text))
     shared = (wanted & given).total()
     return 2 * shared / max(1, wanted.total() + given.total()) if shared else 0.0
 
 
-def _words(text: str) -> list[str]:
+def words_of(text: str) -> list[str]:
+    """Return the words of a text in small letters, without marks."""
     return _WORD.findall(text.lower())
 
 
@@ -117,19 +120,20 @@ def _landmarks_kept(repair: Repair) -> tuple[int, int]:
 
 
 def _gone(repair: Repair) -> list[bool]:
-    """Return for each injected sentence whether most of its word pairs are gone."""
-    remaining = set(_pairs(repair.repaired))
-    gone = []
-    for sentence in repair.injected:
-        pairs = _pairs(sentence)
-        left = sum(pair in remaining for pair in pairs)
-        gone.append(left < REMAINS * len(pairs))
-    return gone
+    """Return for each injected sentence whether half of its word pairs, or more, are gone."""
+    return [left(sentence, repair.repaired) < REMAINS for sentence in repair.injected]
 
 
-def _pairs(text: str) -> list[tuple[str, str]]:
-    words = _words(text)
-    return list(zip(words, words[1:], strict=False)) or [(word, "") for word in words]
+def pairs(text: str) -> list[tuple[str, str]]:
+    """Return the pairs of neighbouring words, or the one word with nothing."""
+    found = words_of(text)
+    return list(zip(found, found[1:], strict=False)) or [(word, "") for word in found]
+
+
+def left(words: str, text: str) -> float:
+    """Return the share of the word pairs of ``words`` that are in ``text``."""
+    here, wanted = set(pairs(text)), pairs(words)
+    return sum(pair in here for pair in wanted) / max(1, len(wanted))
 
 
 def _mean(values: Sequence[float | bool]) -> float | None:

@@ -137,6 +137,15 @@ def test_alike_cameras_are_a_panorama_and_others_stand_alone():
     assert len(set(offsets.values())) == 4 and size >= 12 * 192 + 192 + 7 * 768
 
 
+def test_normalised_and_metric_depth_are_no_panorama():
+    from mitigate.bridge.cameras import Rig
+
+    told = {"type": "depth", "shape": [8, 8, 1], "dtype": "float32", "min_depth": 0}
+    told |= {"max_depth": 10, "hfov": 90}
+    rig = Rig([{"name": "depth", **told}, {"name": "depth_30", **told, "normalize_depth": True}])
+    assert sorted(len(group.cameras) for group in rig.groups) == [1, 1]
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

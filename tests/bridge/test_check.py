@@ -40,6 +40,21 @@ def test_a_check_draws_cameras_of_any_name(name, tmp_path):
     assert cv2.imread(str(check(cfg, [sys.executable, str(program)]))) is not None
 
 
+def test_a_check_draws_the_frames_of_the_first_call_alone(tmp_path, capsys):
+    program = tmp_path / "agent.py"
+    program.write_text(
+        "import mitigate_hook, numpy\n"
+        "met = mitigate_hook.connect('a')\n"
+        "met.corrupt({'rgb': numpy.full((16, 16, 3), 90, 'uint8')})\n"
+        "met.corrupt({'depth': numpy.ones((16, 16), 'float32')})\n"
+        "met.finish(1)\n"
+    )
+    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter,gaussian_noise]"])
+    sheet = check(cfg, [sys.executable, str(program)])
+    assert cv2.imread(str(sheet)).shape[0] == 2 * 164  # clean and spatter
+    assert "no frame of depth: no corruption of it is drawn" in capsys.readouterr().out
+
+
 def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
     program = tmp_path / "agent.py"
     program.write_text(

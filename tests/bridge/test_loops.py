@@ -232,6 +232,8 @@ def test_a_loop_that_lets_none_be_chosen_is_told_so_at_its_first_episode(tmp_pat
         ("{'depth': depth * 1000}", "Divide millimetres by 1000"),
         ("{'depth': depth}, cameras={'depth': {'normalize_depth': True}}", "to be normalised"),
         ("{'depth': depth * 100}, cameras={'depth': {'min_depth': 0, 'max_depth': 400}}", ""),
+        ("{'depth': depth * 100}, cameras={'depth': {'max_depth': 400}}", ""),
+        ("{'depth': depth}, cameras={'depth': {'normalise_depth': True}}", "min_depth"),
         ("{'depth': depth * 0}", ""),
     ],
 )

@@ -181,6 +181,13 @@ def test_a_thousand_words_are_left_to_the_rules_and_take_seconds():
     assert "over 600 words: rules alone" in decision.reasons and not MASK.search(decision.text)
 
 
+def test_only_so_many_texts_are_remembered(monkeypatch):
+    monkeypatch.setattr("mitigate.safeguard.guard.KEPT", 2)
+    safeguard, texts = Safeguard(), [f"Turn left at the sofa {number}." for number in range(5)]
+    assert [d.original for d in safeguard.canonicalise_all(texts)] == texts
+    assert [*safeguard._known] == texts[3:]
+
+
 def test_each_new_text_is_decided_and_logged_once(tmp_path):
     model = Scripted(said)
     safeguard = Safeguard(model, log=tmp_path / "log.jsonl")

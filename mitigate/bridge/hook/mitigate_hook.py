@@ -492,6 +492,7 @@ def _distance(sim, position, episode):
 # habitat-lab ------------------------------------------------------------------------------------
 
 
+CAMERA = ("hfov", "min_depth", "max_depth", "normalize_depth", "position", "orientation")
 _described = {}  # id of a sensor: (it, what the server must know); a config's options are slow
 
 
@@ -500,7 +501,7 @@ def _of_config(sensor):
     if id(sensor) in _described:
         return _described[id(sensor)][1]
     config, known = getattr(sensor, "config", None), {}
-    for option in ("hfov", "min_depth", "max_depth", "normalize_depth", "position", "orientation"):
+    for option in CAMERA:
         value = getattr(config, option, getattr(config, option.upper(), None))
         if isinstance(value, (bool, int, float)) or value is None:
             known[option] = value
@@ -878,7 +879,7 @@ def _adapt(encoder, folder, file, path):
                 f"TorchScript, where nothing can be put around it ({error}). Name the module that "
                 "holds all of it, and train adapters for that one."
             )
-    Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}", checked=not half)
+    Channel().ask("adapted", module=f"{type(encoder).__name__}.{path}")
 
 
 # a loop of one's own ----------------------------------------------------------------------------
@@ -991,6 +992,12 @@ def _described_frames(observations, cameras):
     for name, value in observations.items():
         by_name = next((kind for kind in (COLOR, DEPTH) if str(name).startswith(kind)), None)
         told = dict({"type": by_name}, **cameras.get(name, {}))
+        strange = sorted(set(map(str, told)) - {"type", *CAMERA})
+        if strange:
+            stop(
+                f"the camera {name} is described by {', '.join(strange)}, which nobody reads: what "
+                f"can be said of a camera is type, {', '.join(CAMERA)}."
+            )
         if told["type"] in (COLOR, DEPTH):
             if not isinstance(name, str):
                 stop(f"a camera is called {name!r}: its name must be text, as {str(name)!r} is.")

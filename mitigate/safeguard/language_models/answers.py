@@ -60,7 +60,9 @@ class AnswerCache:
         return None if found is None else found[0]
 
     def put(self, name: str, answer: str) -> None:
-        """Keep ``answer``, unless the file cannot be written now."""
+        """Keep ``answer``, unless it is longer than ``get`` reads or the file cannot be written."""
+        if len(answer) > LONGEST:
+            return
         try:
             with self._file:
                 self._file.execute("INSERT OR REPLACE INTO answers VALUES (?, ?)", (name, answer))

@@ -10,7 +10,6 @@ import json
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +24,7 @@ from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.phrases import VOICES
 from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
+from mitigate.corruptions.language.text import is_english
 from mitigate.safeguard.learning import spoken
 from mitigate.safeguard.learning.routes import draw_route
 from mitigate.worlds.episodes import read_episodes
@@ -230,14 +230,13 @@ def _window(sentences: list[str], rng: np.random.Generator) -> str:
     return " ".join(sentences[first : first + int(rng.integers(1, 4))])
 
 
-def read_texts(files: Iterable[str | Path], limit: int | None = None) -> list[str]:
+def read_texts(files: Iterable[str | Path]) -> list[str]:
     """Return the English instructions of R2R or RxR episode files, each text once."""
     texts: dict[str, None] = {}
     for file in files:
-        for episode in islice(read_episodes(file), limit):
-            language = episode.instruction.language or "en"
+        for episode in read_episodes(file):
             text = " ".join(episode.instruction.text.split())
-            if language.startswith("en") and len(text.split()) > 2:
+            if is_english(episode.instruction.language) and len(text.split()) > 2:
                 texts[text] = None
     return list(texts)
 
