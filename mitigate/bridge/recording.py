@@ -26,10 +26,11 @@ from mitigate.bridge.episodes import stem_of
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.locks import is_alive
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions.frame_files import counts
 
 CAMERAS = "cameras.json"
 LONGEST = 150  # characters of a name that are kept in a path (ours; a file name has 255 bytes)
-MILLIMETRES, MOST = 1000.0, 65535  # of a count of 16-bit depth; its largest one
+UNIT = 0.001  # metres of a count of 16-bit depth
 _PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
 _LEFT = re.compile(r"\..+\.(\d+)\.tmp")  # the folder of an episode that a process is in
 
@@ -67,7 +68,7 @@ class Recorder:
         self.here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
         shutil.rmtree(self.here, ignore_errors=True)
         self.here.mkdir(parents=True)
-        note = {"unit": 1 / MILLIMETRES, "depth": "16-bit PNG", "frames": "clean"}
+        note = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}
         with atomic_text(self.folder / RECORDING) as file:
             json.dump(note, file)
         said = ("scene", "id", "text", "tokens", "language", "category")
@@ -132,9 +133,7 @@ def png(camera: Camera, frame: np.ndarray) -> bytes:
         picture = frame[..., ::-1]
     else:
         metres = camera.metres(frame.reshape(frame.shape[:2]).astype(np.float32))
-        valid = np.isfinite(metres) & (metres > 0)
-        counts = np.rint(np.where(valid, metres, 0) * MILLIMETRES)
-        picture = np.clip(counts, valid, MOST).astype(np.uint16)
+        picture = counts(metres, UNIT)
     done, encoded = cv2.imencode(".png", picture, [cv2.IMWRITE_PNG_COMPRESSION, 1])
     if not done:
         raise ValueError(f"The frame of the camera {camera.name!r} cannot be written as PNG.")

@@ -14,6 +14,7 @@ from numba import njit
 from mitigate.core import observation
 
 NEAREST = np.float32(1e-3)  # metres: valid depth never falls below
+LEAST = np.float32(1e-6)  # of the range: what valid depth at or under z_min becomes, as 0 is a hole
 BEYOND = 3.0  # times z_max: a frame with hardly anything nearer is not in metres (ours)
 LEAST_NEAR = 10  # one valid pixel in so many is nearer; outdoors, the ground alone is (ours)
 LOOKED_AT = 8192  # pixels, to tell the unit by (ours)
@@ -46,9 +47,9 @@ class DepthSensor:
         return np.where(normalised == 0, 0, metres).astype(np.float32)
 
     def from_metres(self, metres: np.ndarray) -> np.ndarray:
-        """Metres to [0, 1] float; the sentinel 0 (no reading) stays 0."""
+        """Metres to [0, 1] float; the sentinel 0 (no reading) stays 0, and nothing else is 0."""
         unit = (metres - self.z_min) / np.float32(self.z_max - self.z_min)
-        return np.where(metres == 0, 0, np.clip(unit, 0, 1)).astype(np.float32)
+        return np.where(metres == 0, 0, np.clip(unit, LEAST, 1)).astype(np.float32)
 
 
 @njit(inline="always")

@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageOps
 
-DEPTH, RGB = "depth", "rgb"
+from mitigate.core.observation import DEPTH, RGB
+
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
 JPEG_QUALITY = 95  # (ours) with full colour resolution; used with format=same alone
 PNG_LEVEL = 3  # of zlib (ours): half the time of the default 6 for a few per cent more bytes
@@ -78,9 +79,15 @@ def corrupted(
     stored = _decode(path)
     metres = (stored * unit).astype(np.float32)
     after = corrupt_frame(metres)
-    counts = np.clip(np.rint(after / unit), 1, MOST).astype(np.uint16)
-    counts[after <= 0] = 0
-    return _encode(Image.fromarray(np.where(_same(after, metres), stored, counts)), suffix)
+    written = np.where(_same(after, metres), stored, counts(after, unit))
+    return _encode(Image.fromarray(written), suffix)
+
+
+def counts(metres: np.ndarray, unit: float) -> np.ndarray:
+    """Metres as uint16 counts of ``unit`` metres, as a 16-bit PNG holds them: 0 where nothing is
+    read, 1 or more elsewhere."""
+    valid = np.isfinite(metres) & (metres > 0)
+    return np.clip(np.rint(np.where(valid, metres, 0) / unit), valid, MOST).astype(np.uint16)
 
 
 def read(path: Path, unit: float) -> np.ndarray:

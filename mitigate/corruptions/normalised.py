@@ -6,11 +6,9 @@ import numpy as np
 from numba import njit
 
 from mitigate.core import observation
-from mitigate.corruptions.depth_sensor import DepthSensor
+from mitigate.corruptions.depth_sensor import LEAST, DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.suite import SENSOR, Corruption, check_corruption, corrupt_observation
-
-LEAST = np.float32(1e-6)  # of the range: what valid depth at or under z_min becomes, as 0 is a hole
 
 
 def corrupt_normalised(

@@ -25,9 +25,11 @@ from mitigate.core.files import atomic_text, make_folder, write_bytes
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.options import paths_and_overrides
+from mitigate.corruptions.frame_files import counts
 
 FORMS = ("frames", "bag", "mcap")
 _OTHERS = re.compile(r"[^\w-]+")  # signs that the name of a drive does not have
+UNIT = 0.001  # metres of a count of its 16-bit depth
 SECOND = 1_000_000_000  # nanoseconds; a step takes one
 TOPICS = {
     RGB: "/camera/color/image_raw",
@@ -117,16 +119,11 @@ def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], words: str)
     """Write a drive as a folder: ``rgb/``, ``depth/``, ``poses.csv`` and ``instruction.txt``."""
     for number, step in enumerate(steps):
         write_bytes(path / RGB / f"{number:06d}.png", _png(step[RGB][..., ::-1]))
-        write_bytes(path / DEPTH / f"{number:06d}.png", _png(millimetres(step[DEPTH])))
+        write_bytes(path / DEPTH / f"{number:06d}.png", _png(counts(step[DEPTH][..., 0], UNIT)))
     write_bytes(path / "instruction.txt", words.encode())
     with atomic_text(path / "poses.csv") as file:
         file.write("x,y,heading\n")
         file.writelines(",".join(f"{float(v):.6f}" for v in step[POSE]) + "\n" for step in steps)
-
-
-def millimetres(depth: np.ndarray) -> np.ndarray:
-    """Metres [H, W, 1] as uint16 [H, W], 0 where there is no reading."""
-    return np.clip(np.rint(depth[..., 0] * 1000), 0, 65535).astype(np.uint16)
 
 
 def _png(picture: np.ndarray) -> bytes:
@@ -181,8 +178,8 @@ def messages(
     yield "info", info(header, height, width, "plumb_bob", *matrices, 0, 0, roi)
     image = types["sensor_msgs/msg/Image"]
     yield RGB, image(header, height, width, "rgb8", 0, width * 3, step[RGB].ravel())
-    counts = millimetres(step[DEPTH])
-    yield DEPTH, image(header, height, width, "16UC1", 0, width * 2, counts.ravel().view(np.uint8))
+    depth = counts(step[DEPTH], UNIT).ravel().view(np.uint8)
+    yield DEPTH, image(header, height, width, "16UC1", 0, width * 2, depth)
 
 
 def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:

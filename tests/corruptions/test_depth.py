@@ -184,6 +184,8 @@ def test_a_normalised_sensor_goes_through_metres_and_back():
     unit = np.array([0.0, 0.2, 1.0], np.float32)
     assert sensor.to_metres(unit).tolist() == pytest.approx([0.0, 1.4, 5.0])
     assert sensor.from_metres(sensor.to_metres(unit)) == pytest.approx(unit)
+    near = sensor.from_metres(np.array([0.0, sensor.z_min / 2, sensor.z_min]))
+    assert near[0] == 0 and (near[1:] > 0).all()  # a reading is no hole
     assert sensor.to_metres(unit).dtype == np.float32
 
 
