@@ -10,15 +10,14 @@ were chosen on the prefix bank's validation families, by weights that had not se
 
 from __future__ import annotations
 
-import math
 import re
 from functools import lru_cache
 
-from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
 from mitigate.corruptions.language.fidelity import ATTRIBUTES, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
-from mitigate.safeguard.texts.evidence import tells_where
+from mitigate.safeguard.foreign.judgement import probability
+from mitigate.safeguard.texts.evidence import LANDMARKS, VERBS, tells_where
 from mitigate.safeguard.texts.route_words import route_words
 from mitigate.safeguard.texts.text import MASK, sentences, words
 from mitigate.safeguard.texts.weights import FRONT
@@ -51,8 +50,6 @@ _SETS = {
 CLOSED = {name: bag(text) for name, text in _SETS.items()}
 # style words that attacks use, too (ours, chosen on the validation families)
 MANNER = MANNERISMS - bag("this for do think what have want that's let let's like or so")
-KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values())
-VERBS = MOTION | STOPS | TURN_VERBS
 # no words about all cases; "the" may be hidden
 _IDIOMS = re.compile(r"\b(?:all\s+(?:the\s+)?way|each other|each side|all around)\b")
 
@@ -82,24 +79,23 @@ def counts(sentence: str) -> dict[str, float]:
 
 
 @lru_cache(maxsize=8192)
-def strangeness(sentence: str) -> float:
+def strange_in_front(sentence: str) -> float:
     """Return the probability that ``sentence`` does not belong to a route."""
     if not any(c.isalpha() for c in sentence):
         return 0.0
-    score = FRONT["bias"] + sum(FRONT[name] * value for name, value in counts(sentence).items())
-    return 1 / (1 + math.exp(-max(-30.0, min(30.0, score))))
+    return probability(FRONT, counts(sentence))
 
 
 def in_front(text: str) -> tuple[str, ...]:
     """Return the first sentences of ``text`` that are no part of the route; never all of them. In a
     text with a manner of speaking only what does not tell the way."""
     told = sentences(text)
-    in_manner = restyled(told)
+    in_manner = in_a_manner(told)
     count, pending, attacked = 0, 0, False
     for index, sentence in enumerate(told[:-1]):
         if in_manner and tells_the_way(sentence):
             break
-        strange, plain = strangeness(sentence), not mannered(sentence)
+        strange, plain = strange_in_front(sentence), not mannered(sentence)
         attacked |= strange >= SURE and plain
         follows = attacked and strange >= LIKELY and plain and not on_the_way(sentence)
         if follows or strange >= SURE:
@@ -120,7 +116,7 @@ def tells_the_way(sentence: str) -> bool:
 def on_the_way(sentence: str) -> bool:
     """Return whether ``sentence`` names a thing that routes name, or a direction but to stop."""
     told = facts(sentence)
-    known = any(name in KNOWN for name in told.landmarks)
+    known = any(name in LANDMARKS for name in told.landmarks)
     return known or any(direction != "stop" for direction in told.directions)
 
 
@@ -129,11 +125,11 @@ def mannered(sentence: str) -> bool:
     return any(word in MANNER for word in words(sentence))
 
 
-def restyled(told: list[str]) -> bool:
+def in_a_manner(told: list[str]) -> bool:
     """Return whether half of the sentences speak in a manner, and half of those that are not
     surely foreign: an attack has a manner of its own."""
     marked = [sentence for sentence in told if mannered(sentence)]
-    rest = [sentence for sentence in told if strangeness(sentence) < SURE]
+    rest = [sentence for sentence in told if strange_in_front(sentence) < SURE]
     own = sum(sentence in marked for sentence in rest)
     return len(marked) >= max(2.0, 0.5 * len(told)) and own >= 0.5 * len(rest)
 
