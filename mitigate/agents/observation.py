@@ -7,7 +7,7 @@ only walks badly.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -22,9 +22,18 @@ NEAREST = 1.0  # metres (ours): a room of which nothing lies farther away is rar
 CHANNELS = {RGB: 3, DEPTH: 1}
 
 
-def check_views(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
-    """Raise ValueError if ``agent`` says how many views it takes (``views``), and the world with
-    these sensors, called ``world``, shows another number."""
+def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
+    """Raise ValueError if the world with these sensors, called ``world``, shows no RGB or no depth
+    though ``agent`` says that it reads it (``sensors``), or another number of views than it says
+    that it takes (``views``)."""
+    reads = getattr(agent, "sensors", ())
+    lacking = [name for name in (RGB, DEPTH) if name not in sensors]
+    for name in lacking if isinstance(reads, Sequence) else ():
+        if name in reads:
+            raise ValueError(
+                f"{type(agent).__name__} reads {name}, which the world {world} does not show: it "
+                f"shows {', '.join(sensors)}. Choose another agent, or another world (env=...)."
+            )
     wanted = getattr(agent, "views", None)
     if wanted not in (1, VIEWS):
         return

@@ -147,8 +147,8 @@ class StepwiseAgent(nn.Module):
         self, seen: Observation, expert: Any, episode: Episode, clean: bool
     ) -> dict[str, Any]:
         return {
-            "frames": {name: np.asarray(seen[name]) for name in self.needs},
-            "clean": {name: np.asarray(seen.clean[name]) for name in self.needs if clean},
+            "frames": {name: np.array(seen[name]) for name in self.needs},  # a world may reuse its
+            "clean": {name: np.array(seen.clean[name]) for name in self.needs if clean},  # arrays
             "answer": int(expert.action()),
             "text": episode.instruction.text,
             "episode_id": episode.episode_id,

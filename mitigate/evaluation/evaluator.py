@@ -22,7 +22,7 @@ from typing import Any, ClassVar
 import torch
 
 from mitigate.agents.agent import Agent, SideBySide
-from mitigate.agents.observation import check_views
+from mitigate.agents.observation import check_fits
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.held import in_eval_mode, networks
@@ -91,14 +91,14 @@ class EpisodeTask:
                 yield {**label, **measures}
 
     def _measures(
-        self, world: World, told: Sequence[tuple[Episode, Corruption, int]]
+        self, world: Any, told: Sequence[tuple[Episode, Corruption, int]]
     ) -> Iterator[dict[str, Any]]:
         """Of (episode, corruption, seed) each, in order; one after the other if an agent's prompt,
         which all its walks share, is corrupted."""
-        count, beside = _together(self.agent, world), getattr(world, "beside", None)
+        count = _together(self.agent, world)
         prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in told)
-        if beside is not None and count > 1 and not prompted:
-            worlds = [world, *(beside() for _ in range(count - 1))]
+        if count > 1 and not prompted:
+            worlds = [world, *(world.beside() for _ in range(count - 1))]
             yield from run_side_by_side(self.agent, worlds, told, self.repaired, self.restorer)
             return
         for job in told:
@@ -111,7 +111,10 @@ class EpisodeTask:
 
 def _together(agent: Any, world: Any) -> int:
     """How many episodes the agent walks at once in such worlds."""
-    return agent.together if isinstance(agent, SideBySide) and hasattr(world, "beside") else 1
+    if not isinstance(agent, SideBySide) or not hasattr(world, "beside"):
+        return 1
+    # what stands around a world may pass on its ``beside``, which makes others without it
+    return agent.together if type(world.beside()) is type(world) else 1
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
@@ -152,7 +155,7 @@ def evaluate(
         check_finite(agent, f"The weights of {name}")
     known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
-    check_views(agent, made.sensors, type(made).__name__)
+    check_fits(agent, made.sensors, type(made).__name__)
     label = {
         "agent": known_as or identity(agent, made.sensors, _fronts(safeguard, restorer)),
         "name": name,

@@ -17,7 +17,7 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf, open_dict
 from torch import nn
 
-from mitigate.agents.observation import check_views
+from mitigate.agents.observation import check_fits
 from mitigate.core.build import build, located, maker
 from mitigate.core.conf import CONF
 from mitigate.core.observation import DEPTH, RGB
@@ -200,8 +200,8 @@ def check(cfg: DictConfig, agent: nn.Module, folder: Path, ranks: Ranks | None =
                 f"{type(agent).__name__} cannot be trained by the stage {name} of recipe="
                 f"{cfg.name}: {misfit}"
             )
-    if hasattr(agent, "views"):
-        check_views(agent, maker(cfg.env.world)().sensors, cfg.env.name)
+    if hasattr(agent, "views") or hasattr(agent, "sensors"):
+        check_fits(agent, maker(cfg.env.world)().sensors, cfg.env.name)
     _check_folder(cfg, folder)
     _check_stages(cfg, agent, ranks or Ranks())
 

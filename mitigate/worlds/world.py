@@ -53,8 +53,8 @@ class World(Protocol):
     def done(self) -> bool: ...
 
     def reset(self, episode: Episode) -> Observation:
-        """Begin an episode; frames are rendered when they are read. Raises ValueError for an
-        episode of another world."""
+        """Begin an episode; frames are rendered when they are read. The arrays may be the world's
+        own: whoever keeps them copies them. Raises ValueError for an episode of another world."""
 
     def step(self, action: int) -> Observation: ...
 

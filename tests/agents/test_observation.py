@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 import torch
+from torch import nn
 
+from mitigate.agents.observation import check_fits
 from mitigate.agents.topological import TopologicalAgent
+from mitigate.core.observation import DEPTH, cameras
 
 
 @pytest.fixture(scope="module")
@@ -96,3 +99,12 @@ def test_views_of_any_size_are_brought_to_the_agents_own():
             torch.testing.assert_close(own, other)
     with pytest.raises(ValueError, match="multiple of 16"):
         TopologicalAgent(size=50)
+
+
+def test_a_world_without_what_an_agent_reads_is_refused(agent):
+    shown = cameras(64)
+    check_fits(agent, shown, "Hall")
+    alone = {name: sensor for name, sensor in shown.items() if name != DEPTH}
+    with pytest.raises(ValueError, match="reads depth, which the world Hall does not show: .*rgb"):
+        check_fits(agent, alone, "Hall")
+    check_fits(nn.Linear(1, 1), alone, "Hall")  # it does not say what it reads

@@ -21,7 +21,7 @@ from mitigate.corruptions import (
 )
 from mitigate.evaluation import evaluator
 from mitigate.evaluation.episode import instruction, run_episode
-from mitigate.evaluation.evaluator import EpisodeTask, evaluate
+from mitigate.evaluation.evaluator import EpisodeTask, _together, evaluate
 from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -301,6 +301,25 @@ class Prompted(Straight):
 
     def act_all(self, observations, memories):
         return [self.act(seen) for seen in observations]
+
+
+class Own(ApartmentsWorld):
+    """A world of one's own, made of a shipped one."""
+
+
+class Around:
+    """What passes on all that it does not do itself."""
+
+    def __init__(self) -> None:
+        self.world = ApartmentsWorld(16)
+
+    def __getattr__(self, name):
+        return getattr(self.world, name)
+
+
+def test_episodes_side_by_side_are_all_walked_in_a_world_of_ones_own():
+    assert type(Own(16).beside()) is Own and _together(Prompted(1), Own(16)) == Prompted.together
+    assert _together(Prompted(1), Around()) == 1  # its worlds beside it would be others
 
 
 def test_a_corrupted_prompt_is_met_by_an_agent_that_walks_side_by_side():

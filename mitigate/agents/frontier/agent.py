@@ -39,6 +39,7 @@ from mitigate.core.observation import (
     FORWARD,
     FORWARD_METRES,
     LEFT,
+    POSE,
     RGB,
     RIGHT,
     STOP,
@@ -68,7 +69,7 @@ class FrontierAgent(nn.Module):
     Raises ValueError for an unknown name in ``blind``.
     """
 
-    views = 1
+    views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)  # it finds objects, it follows no routes
     together = 8  # episodes side by side (ours): encoding one frame alone takes twice as long
     encoders: ClassVar = {RGB: camera.ENCODERS[RGB]}

@@ -115,8 +115,8 @@ class Walk:
         self.before = -1
 
     def see(self) -> dict[str, np.ndarray]:
-        """The frames here."""
-        return {n: checked.frame(self.observation, n, 1) for n in self.sensors}
+        """A copy of the frames here: a world may reuse its arrays."""
+        return {n: np.array(checked.frame(self.observation, n, 1)) for n in self.sensors}
 
     def note(self, kept: dict[str, np.ndarray], clean: bool, frames: bool) -> None:
         """Write a step down, with the expert's answer to it."""
@@ -124,10 +124,10 @@ class Walk:
         seen = {**(self.see() if frames else {}), **kept}
         if clean:
             before = self.observation.clean
-            seen |= {f"clean_{n}": checked.frame(before, n, 1) for n in self.sensors}
+            seen |= {f"clean_{n}": np.array(checked.frame(before, n, 1)) for n in self.sensors}
         truth: Mapping[str, np.ndarray] = getattr(self.world, "truth", dict)()
         labels = (*(agent_labels(self.sensors) if frames else ()), "goal")
-        seen |= {name: truth[name] for name in labels if name in truth}
+        seen |= {name: np.array(truth[name]) for name in labels if name in truth}
         weight = INFLECTION if action != self.before else 1.0
         metres = self._metres()
         self.steps.append(

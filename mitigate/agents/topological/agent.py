@@ -32,7 +32,7 @@ from mitigate.agents.topological.rollout import Piece
 from mitigate.agents.topological.waypoints import WaypointHead, select
 from mitigate.core import names
 from mitigate.core.memory import Memory
-from mitigate.core.observation import STOP, VIEWS
+from mitigate.core.observation import DEPTH, POSE, RGB, STOP, VIEWS
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
@@ -61,7 +61,7 @@ class TopologicalAgent(nn.Module):
     Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
     """
 
-    views = VIEWS
+    views, sensors = VIEWS, (RGB, DEPTH, POSE)
     rgb_encoder: RGBEncoder | ImageNetEncoder
 
     def __init__(

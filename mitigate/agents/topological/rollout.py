@@ -109,15 +109,16 @@ class LiveWalk:
 
     def look(self) -> None:
         """Read the frames here, with their labels, into ``looks``."""
-        rgb, depth = checked.frames(self.observation)
-        kept = {RGB: rgb, DEPTH: depth}
+        kept = dict(zip((RGB, DEPTH), checked.frames(self.observation), strict=True))
         if self.clean:
             before = checked.frames(self.observation.clean)
-            kept |= {CLEAN_RGB: before[0], CLEAN_DEPTH: before[1]}
+            kept |= dict(zip((CLEAN_RGB, CLEAN_DEPTH), before, strict=True))
         truth: Mapping[str, np.ndarray] = (
             getattr(self.world, "truth", dict)() if self.labels else {}
         )
-        self.looks.append(kept | {name: truth[name] for name in self.labels if name in truth})
+        kept |= {name: truth[name] for name in self.labels if name in truth}
+        # copies: a world may reuse its arrays
+        self.looks.append({name: np.array(value) for name, value in kept.items()})
 
     def pose(self) -> np.ndarray:
         return checked.pose(self.observation).astype(np.float64)

@@ -12,7 +12,7 @@ from typing import Any
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
-from mitigate.agents.observation import check_views
+from mitigate.agents.observation import check_fits
 from mitigate.core import conf, seeding
 from mitigate.core.build import agent_option, located, maker
 from mitigate.core.held import held, in_eval_mode
@@ -180,7 +180,7 @@ def _first_world(
         )
     world, made_by = making.first(make_world)
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
-    check_views(agent, world.sensors, type(world).__name__)
+    check_fits(agent, world.sensors, type(world).__name__)
     return world, made_by
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -93,7 +94,7 @@ class ApartmentsWorld:
 
     def beside(self) -> ApartmentsWorld:
         """Another one, for an episode at the same time; both keep what the other rendered."""
-        other = ApartmentsWorld(**self.__getstate__())
+        other = copy.copy(self)  # of a class derived from this one, too
         other._memory = self._memory
         return other
 
