@@ -10,6 +10,8 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from mitigate.core.held import in_eval_mode
+
 Run = Callable[[int], Any]  # runs the encoder on so many frames
 MAP, TOKENS = "map", "tokens"
 
@@ -40,12 +42,8 @@ def look(model: nn.Module, run: Run) -> dict[str, Site | str]:
 
     ``run(2)`` and ``run(3)`` are called: the axis that grows is that of the frames.
     """
-    training = model.training
-    model.eval()
-    try:
+    with in_eval_mode(model):
         two, three = _shapes(model, run, 2), _shapes(model, run, 3)
-    finally:
-        model.train(training)
     found: dict[str, Site | str] = {}
     for order, (name, (shape, calls)) in enumerate(two.items()):
         found[name] = _site(shape, three.get(name, (None, 0))[0], order, calls)

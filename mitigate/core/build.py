@@ -41,7 +41,7 @@ def build(node: DictConfig, **given: Any) -> Any:
     """
     try:
         plain = _plain(node)
-        makers = {k: Maker(v) for k, v in plain.items() if isinstance(v, dict) and PARTIAL in v}
+        makers = {k: Maker(v) for k, v in plain.items() if isinstance(v, dict) and v.get(PARTIAL)}
         rest = OmegaConf.create({k: v for k, v in plain.items() if k not in makers})
         make = instantiate(rest, _partial_=True, _convert_="all")
         _check_arguments(plain, (*plain, *given))

@@ -177,7 +177,8 @@ def load_config(
     own, overrides = without_config_folder([*overrides])
     further = further or config_folder(own)
     if further is not None:
-        overrides = [*overrides, f"hydra.searchpath=[file://{further.resolve()}]"]
+        place = str(further.resolve()).replace("\\", "\\\\").replace('"', '\\"')
+        overrides = [*overrides, f'hydra.searchpath=["file://{place}"]']
     import_module(TYPES[primary])
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(CONF), version_base="1.3"):

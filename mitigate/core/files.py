@@ -28,7 +28,7 @@ def find(path: str | Path) -> Path:
     """Return ``path``, or where the project itself has it, if it does not exist from here: the
     configs name shipped weights and episodes as ``checkpoints/base``, ``mitigate/worlds/...``.
     ``~`` is the home folder."""
-    own = Path(path).expanduser()
+    own = Path(os.path.expanduser(path))  # of a user that there is; else the path as it is
     places = (own, ROOT / own, PACKAGE / own)
     return next((place for place in places if place.exists()), own)
 

@@ -32,6 +32,12 @@ class Frames:
     def __len__(self) -> int:
         return len(self.frames)
 
+    def some(self, chosen: np.ndarray) -> Frames:
+        """Those of the numbers ``chosen``, in their order."""
+        labels = None if self.labels is None else self.labels[chosen]
+        headings = [self.headings[index] for index in chosen]
+        return Frames(self.frames[chosen], headings, labels, self.scene[chosen], self.names)
+
     def sha256(self) -> str:
         """The first 12 hex digits of the sha256 of all pixels."""
         return hashlib.sha256(np.ascontiguousarray(self.frames).data).hexdigest()[:12]

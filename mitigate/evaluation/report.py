@@ -113,7 +113,7 @@ def _table(section: Section) -> str:
         for metric in METRICS:
             cells = [_prs(section, (c, block, metric)) for c in section.columns]
             lines.append([f"**PRS-{metric} ({block})**", *cells])
-        lines += _by_seed(section, block, "PRS-SR", lambda value: f"{value:.2f}")
+        lines += _by_seed(section, block, "PRS-SR", _prs_of_seed)
         if len(section.columns) > 1:
             for metric in METRICS:
                 cells = [_change(section, (c, block, metric)) for c in section.columns]
@@ -240,6 +240,10 @@ def _prs(section: Section, place: tuple[str, str, str]) -> str:
     if math.isnan(prs.value):
         return f"undefined{marks}"
     return f"**{prs.value:.2f}** {prs.interval('.2f')}{marks}"
+
+
+def _prs_of_seed(value: float) -> str:
+    return "undefined" if math.isnan(value) else f"{value:.2f}"
 
 
 def _moved(section: Section, change: Estimate | None) -> str:

@@ -87,22 +87,44 @@ def draw_trajectories(
         seed: of the corruption's keys. fronts: what stands in front of agents, by their names.
     """
     walks = list(walked(agents, world, episode, corruption, seed, fronts))
-    start = dict(world.reset(episode))
-    key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
-    met = corrupt_observation(start, corruption, key, sensor)
+    entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
     above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
-    entry = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
-    far = float(start[DEPTH].max()) if DEPTH in start else 0.0
-    _show(above, start[entry], far, f"start, straight ahead in the middle: {entry}, clean")
-    _show(below, met[entry], far, f"{label(corruption.name)}, severity {corruption.severity:g}")
+    clean = f"start, straight ahead in the middle: {entry}, clean"
+    met = f"{label(corruption.name)}, severity {corruption.severity:g}"
+    for axes, picture, title in zip((above, below), sight, (clean, met), strict=False):
+        axes.imshow(picture)
+        axes.set_title(title, fontsize=9)
+    above.axis("off")
+    below.axis("off")
     getattr(world, "draw", _blank)(plan)
-    _draw_walks(plan, start[POSE], episode, walks)
+    _draw_walks(plan, world.reset(episode)[POSE], episode, walks)
     figure.suptitle("\n".join(textwrap.wrap(episode.instruction.text, 100)), fontsize=11)
     out = Path(out)
     out.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(out, dpi=DPI, facecolor="white")
     return out
+
+
+def first_sight(
+    world: World, episode: Episode, corruption: Corruption, seed: int
+) -> tuple[str, list[np.ndarray]]:
+    """Return what shows at the start: "depth" if ``corruption`` is of depth alone or the world has
+    no RGB, else "rgb", and pictures of it, uint8 [H, W, 3], clean and corrupted. Of a world without
+    frames "" and none."""
+    clean = dict(world.reset(episode))
+    key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
+    met = corrupt_observation(clean, corruption, key, sensor)
+    first = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
+    entry = next((name for name in (first, RGB, DEPTH) if name in clean), "")
+    far = float(clean[DEPTH].max()) if DEPTH in clean else 0.0
+    return entry, [_picture(np.asarray(held[entry]), far) for held in (clean, met) if entry]
+
+
+def _picture(frames: np.ndarray, far: float) -> np.ndarray:
+    views = frames if frames.ndim == 4 else frames[None]
+    shown = strip(views) if len(views) == VIEWS else np.concatenate(list(views), axis=1)
+    return depth_picture(shown[..., 0], far) if shown.shape[-1] == 1 else shown
 
 
 def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
@@ -221,7 +243,7 @@ class Traced:
         return self._kept(self.world.step(action))
 
     def _kept(self, seen: Observation) -> Observation:
-        here = np.asarray(seen[POSE][:2], np.float64)
+        here = np.array(seen[POSE][:2], np.float64)
         if not self.path or not np.array_equal(here, self.path[-1]):
             self.path.append(here)
         return seen
@@ -243,11 +265,3 @@ def _draw_walks(axes: Axes, start: np.ndarray, episode: Episode, walks: Sequence
     ahead = 0.6 * np.array([-np.sin(start[2]), np.cos(start[2])])
     axes.arrow(*start[:2], *ahead, width=0.05, color="black", zorder=8)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, fontsize=9, frameon=False)
-
-
-def _show(axes: Axes, views: np.ndarray, far: float, title: str) -> None:
-    views = views if views.ndim == 4 else views[None]
-    picture = strip(views) if len(views) == VIEWS else np.concatenate(list(views), axis=1)
-    axes.imshow(depth_picture(picture[..., 0], far) if picture.shape[-1] == 1 else picture)
-    axes.set_title(title, fontsize=9)
-    axes.axis("off")

@@ -116,23 +116,27 @@ class FramePairs:
         assert self.frames is not None
         return {"frames_sha256": self.frames.sha256()}
 
-    def jobs(self, step: int) -> list[tuple[int, int]]:
-        """(step, group) of each group of frames."""
-        return [(step, group) for group in range(self.groups)]
+    def __getstate__(self) -> dict[str, Any]:
+        """Without the frames, of which workers get those of their jobs."""
+        return {**self.__dict__, "frames": None}
 
-    def work(self, job: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
-        """Corrupted and clean frames [GROUP, H, W, c] of a group."""
+    def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
+        """(step, group, its frames) of each group."""
         assert self.frames is not None, "start() reads the frames"
-        step, group = job
-        chosen = generator(self.seed, "restore frames", step, group).integers(
-            len(self.frames), size=GROUP
-        )
-        drawn = [self.schedule.draw(self.seed, f"{step}-{group}-{i}", 0) for i in range(GROUP)]
-        frames = [
-            corrupted(self.frames, int(index), *draw, self.depth)
-            for index, draw in zip(chosen, drawn, strict=True)
-        ]
-        return np.stack(frames), self.frames.frames[chosen]
+        made = []
+        for group in range(self.groups):
+            rng = generator(self.seed, "restore frames", step, group)
+            made.append((step, group, self.frames.some(rng.integers(len(self.frames), size=GROUP))))
+        return made
+
+    def work(self, job: tuple[int, int, Frames]) -> tuple[np.ndarray, np.ndarray]:
+        """Corrupted and clean frames [GROUP, H, W, c] of a group."""
+        step, group, clean = job
+        frames = []
+        for index in range(len(clean)):
+            drawn = self.schedule.draw(self.seed, f"{step}-{group}-{index}", 0)
+            frames.append(corrupted(clean, index, *drawn, self.depth))
+        return np.stack(frames), clean.frames
 
     def collate(self, pieces: list[tuple[np.ndarray, np.ndarray]]) -> dict[str, Any]:
         """The groups as tensors "frames" and "clean"."""

@@ -25,8 +25,8 @@ WAIT = timedelta(hours=2)  # for a rank that makes a cache, or evaluates (ours)
 
 class Ranks:
     """``number`` of ``count`` processes, as torchrun's variables say; use it as a context manager,
-    which opens and closes the process group (gloo on CPUs, nccl on GPUs) and silences all but the
-    first."""
+    which opens and closes the process group (gloo for tensors of CPUs, nccl for those of GPUs) and
+    silences all but the first."""
 
     def __init__(self, number: int = 0, count: int = 1) -> None:
         self.number, self.count = number, count
@@ -41,7 +41,7 @@ class Ranks:
             if torch.cuda.is_available():
                 torch.cuda.set_device(int(os.environ.get("LOCAL_RANK", 0)))
             # ranks that do not find each other end, and torchrun starts them again
-            backend = "nccl" if torch.cuda.is_available() else "gloo"
+            backend = "cpu:gloo,cuda:nccl" if torch.cuda.is_available() else "gloo"
             dist.init_process_group(backend, timeout=FIND)
             _set_pg_timeout(WAIT)
             if not self.first:
@@ -80,19 +80,32 @@ class Ranks:
         agent's auxiliary losses and errors in units of a batch's variance, are means of ranks."""
         if self.count == 1:
             return
+        parameters = list(parameters)
+        told = dict.fromkeys(values, float(weight)), [p.grad is not None for p in parameters]
         held: list[Any] = [None] * self.count
-        dist.all_gather_object(held, dict.fromkeys(values, float(weight)))
-        share = weight / max(sum(max(one.values()) for one in held), 1e-12)
-        for parameter in parameters:
+        dist.all_gather_object(held, told)
+        weights, moved = zip(*held, strict=True)
+        share = weight / max(sum(max(one.values()) for one in weights), 1e-12)
+        for parameter, moves in zip(parameters, map(any, zip(*moved, strict=True)), strict=True):
+            if not moves:  # on no rank: the optimizer leaves it alone, as in one process
+                continue
             if parameter.grad is None:  # it had no part in this rank's pieces
                 parameter.grad = torch.zeros_like(parameter)
             dist.all_reduce(parameter.grad.mul_(share))
         some = next(iter(values.values()))
-        for name in sorted({name for one in held for name in one}):  # a rank may lack some
-            own = weight / max(sum(one.get(name, 0.0) for one in held), 1e-12)
+        for name in sorted({name for one in weights for name in one}):  # a rank may lack some
+            own = weight / max(sum(one.get(name, 0.0) for one in weights), 1e-12)
             value = values[name] * own if name in values else torch.zeros_like(some)
             dist.all_reduce(value)
             values[name] = value
+
+    def of_first(self, value: Any) -> Any:
+        """Return the ``value`` that the first rank has."""
+        if self.count == 1:
+            return value
+        held = [value]
+        dist.broadcast_object_list(held, src=0)
+        return held[0]
 
     def wait(self) -> None:
         """Return when all ranks are here."""

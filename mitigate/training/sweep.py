@@ -65,7 +65,7 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
 
     for chosen in made:
         conf.composed(cfg.command, with_kind(chosen) if cfg.command == "evaluate" else chosen)
-    chains, problems = [chain(cfg, chosen) for chosen in made], []
+    chains, problems = [chain(cfg, chosen, made) for chosen in made], []
     with Progress("sweep", len(chains), unit="run") as progress:
 
         def told(number: int, outcome: programs.Outcome) -> None:
@@ -113,11 +113,20 @@ def combinations(options: Sequence[str]) -> list[list[str]]:
     return [list(chosen) for chosen in product(*values)]
 
 
-def chain(cfg: DictConfig, options: Sequence[str]) -> programs.Chain:
-    """The run of one combination."""
+def _name(options: Sequence[str]) -> str:
+    """Options in signs that a file name may have."""
+    named = ",".join(without_config_folder(options)[1])
+    return re.sub(r"[^A-Za-z0-9._+-]+", "_", named.replace("=", "-")) or "default"
+
+
+def chain(
+    cfg: DictConfig, options: Sequence[str], combined: Sequence[Sequence[str]] = ()
+) -> programs.Chain:
+    """The run of one combination; a digest tells it from one of ``combined`` whose name would be
+    the same (``checkpoint=a/b`` and ``a_b``)."""
     _, named = without_config_folder(options)
-    name = re.sub(r"[^A-Za-z0-9._+-]+", "_", ",".join(named).replace("=", "-")) or "default"
-    if len(name) > LONGEST:
+    name = _name(options)
+    if len(name) > LONGEST or [*map(_name, combined)].count(name) > 1:
         name = f"{name[:LONGEST]}-{seeding.digest(*named):032x}"[: LONGEST + 9]
     words = [f"mitigate.{cfg.command}", *options, f"runs={cfg.runs}"]
     if cfg.command == "evaluate":  # which would put two seeds into one folder

@@ -166,7 +166,8 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     checkpoint.save_agent(agent, folder / "agent")
     with atomic_text(folder / "agent" / "config.yaml") as file:
         file.write(OmegaConf.to_yaml({"agent": written(cfg.agent, agent)}))
-    OmegaConf.save(cfg, folder / "config.yaml", resolve=True)
+    with atomic_text(folder / "config.yaml") as file:
+        file.write(OmegaConf.to_yaml(cfg, resolve=True))
     if cfg.evaluation.enabled:
         base = load(cfg.agent, cfg.init, cfg.seed) if has_base(cfg) else None
         get_method(cfg.report)(cfg, base, agent, folder)

@@ -98,8 +98,9 @@ class Trainer:
         self.log_every, self.save_every, self.grad_clip = log_every, save_every, grad_clip
         self.eval_every, self.figure_every = eval_every, figure_every
         self.device = device_of(device)
-        self.asked, self.precision = precision, choose(precision, self.device)
         self.workers, self.ranks, self.lag = workers, ranks or Ranks(), lag
+        self.asked = precision
+        self.precision = self.ranks.of_first(choose(precision, self.device))
         self.recipe = recipe.to(self.device)
         self.name = name or type(recipe).__name__
         self.config = states.as_json(config or {}) | {

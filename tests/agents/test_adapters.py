@@ -166,6 +166,13 @@ def test_an_adapter_of_each_kind_is_scaled(kind):
     assert torch.equal(model(x), clean)
 
 
+def test_a_look_at_an_encoder_leaves_each_of_its_modules_in_its_mode():
+    model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8)).train()
+    model[1].eval()  # as someone has it who trains around a frozen encoder
+    insert_adapters(model, ["0"], run=lambda n: model(torch.zeros(n, 3, 8, 8)))
+    assert model.training and model[0].training and not model[1].training
+
+
 def test_what_cannot_be_scaled_is_refused():
     model = nn.Sequential(nn.Conv2d(8, 8, 1))
     with pytest.raises(ValueError, match="no adapters to scale"):

@@ -48,6 +48,12 @@ def test_an_entry_marked_partial_arrives_as_such_a_function():
     assert made.cars[0].engine is not made.cars[1].engine and made.cars[1].doors == 3
 
 
+def test_an_entry_that_is_marked_not_partial_is_made():
+    engine = {"_target_": f"{__name__}.Engine", "_partial_": False}
+    cfg = OmegaConf.create({"_target_": f"{__name__}.Car", "engine": engine})
+    assert isinstance(build.build(cfg).engine, Engine)
+
+
 @pytest.mark.parametrize("target", [f"{__name__}.Cart", "no_such_module.Car"])
 def test_what_cannot_be_imported_is_named_with_where_it_is_looked_for(target):
     for make in (lambda: build.build(OmegaConf.create({"_target_": target})), build.located):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mitigate.core import options
+from mitigate.core import conf, options
 
 REPLACES = "{0} is there already, and +{0}= replaces it."
 
@@ -82,3 +82,12 @@ def test_many_runs_may_be_asked_for_behind_other_options(flag):
 )
 def test_what_an_option_is_set_to_is_read_as_hydra_reads_it(given, wanted):
     assert options.values(given, "checkpoint") == wanted
+
+
+@pytest.mark.parametrize("name", ["mine (2)", "a,b", 'say "hi"', "it's", "ü = x"])
+def test_a_folder_of_configs_may_have_any_name(tmp_path, name):
+    folder = tmp_path / name
+    (folder / "suite").mkdir(parents=True)
+    (folder / "suite" / "own.yaml").write_text("conditions: [clean, flare]\n")
+    given = [f"--config-dir={folder}", "suite=own"]
+    assert list(conf.load_config("evaluate", given).suite.conditions) == ["clean", "flare"]

@@ -6,9 +6,15 @@ import cv2
 import numpy as np
 import pytest
 
+from mitigate.core.observation import DEPTH, POSE, RGB, Observation
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import trajectories
-from mitigate.evaluation.trajectories import draw_trajectories, won_back, write_pictures
+from mitigate.evaluation.trajectories import (
+    draw_trajectories,
+    first_sight,
+    won_back,
+    write_pictures,
+)
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.evaluation.made_rows import row
@@ -57,6 +63,24 @@ def test_a_picture_shows_the_first_agent_clean_and_all_corrupted(tmp_path, monke
     assert labels == ["reference path", "base, clean", f"base, {shown}", f"hardened, {shown}"]
     assert [len(path) for path, _ in drawn[1:]] == [2, 2, 4]
     assert all("fail" in rest[1] for _, rest in drawn[1:])
+
+
+class Shows(ApartmentsWorld):
+    """An apartment in which one kind of frame shows, or none."""
+
+    only: tuple[str, ...] = ()
+
+    def reset(self, episode):
+        seen = super().reset(episode)
+        return Observation({name: seen[name] for name in (POSE, *self.only)})
+
+
+@pytest.mark.parametrize(("only", "entry"), [((DEPTH,), DEPTH), ((RGB,), RGB), ((), "")])
+def test_at_the_start_what_the_world_shows_is_seen(only, entry):
+    world, episode = Shows(16, views=1), load_episodes("val_seen")[0]
+    world.only = only
+    found, pictures = first_sight(world, episode, Corruption("black_box", 1.0), 0)
+    assert found == entry and [p.shape for p in pictures] == [(16, 16, 3)] * 2 * bool(entry)
 
 
 def test_pictures_and_a_sheet_of_the_episodes_won_back(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from functools import partial
 
 import numpy as np
@@ -119,6 +120,13 @@ def test_a_folder_of_frames_will_do(tmp_path):
     recipe.start()
     batch = recipe.batch(0)
     assert batch["frames"].shape == batch["clean"].shape == (1, 12, 24, 24, 3)
+    there = pickle.loads(
+        pickle.dumps(recipe)
+    )  # on a worker, which gets the frames of its jobs alone
+    assert there.pairs.frames is None
+    sent = pickle.loads(pickle.dumps(recipe.jobs(0)))
+    again = there.collate(0, [there.work(job) for job in sent])
+    assert torch.equal(again["frames"], batch["frames"])
     assert batch["views"] == 1 and recipe(batch)["loss"].item() > 0
 
 

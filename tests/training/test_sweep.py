@@ -108,6 +108,12 @@ def test_runs_have_a_log_each_share_the_cores_and_evaluations_a_folder_each(tmp_
     assert there.environment["PYTHON_CPU_COUNT"] == "4"
 
 
+def test_combinations_whose_names_would_be_one_have_a_digest_each(tmp_path):
+    cfg = config(tmp_path, "command=evaluate")
+    made = sweep.combinations(["checkpoint=a/b,a_b"])
+    assert len({sweep.chain(cfg, one, made).log for one in made}) == 2
+
+
 def test_a_failed_run_stops_no_other_and_the_table_is_written(tmp_path, fake):
     options = ["severity=0.3,0.6", "seed=0,1"]
     with pytest.raises(ValueError, match="2 of 4 runs failed.*Run again"):

@@ -135,6 +135,7 @@ def _rows(value: Any) -> str:
     if good:
         path = PurePosixPath(value["file"])
         good = not path.is_absolute() and ".." not in path.parts and "\\" not in value["file"]
+        good = good and not value["file"].startswith("~")
     return "" if good else 'an object of "file" (a path below this folder), "sha256" and "count"'
 
 

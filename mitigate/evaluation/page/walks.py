@@ -16,18 +16,16 @@ import numpy as np
 
 from mitigate.agents.agent import Agent
 from mitigate.core.identity import identity
-from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
-from mitigate.core.pictures import strip
-from mitigate.corruptions import Corruption, Key, corrupt_observation
-from mitigate.corruptions.gallery import depth_picture
+from mitigate.core.observation import POSE
+from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import instruction
 from mitigate.evaluation.episode_lists import GOLDEN
 from mitigate.evaluation.page.choosing import choose, outcome
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
-from mitigate.evaluation.trajectories import Walk, walked
+from mitigate.evaluation.trajectories import Walk, first_sight, walked
 from mitigate.worlds.episodes import Episode, from_vlnce
-from mitigate.worlds.world import World, depth_sensor, remembering
+from mitigate.worlds.world import World, remembering
 
 AGREED = ("success", "spl", "steps")
 CLOSE = 1e-6  # of a measure that rows round to six digits
@@ -69,7 +67,7 @@ def walk_again(
         with remembering(world):
             episode = known[episode_id]
             walks = list(walked(agents, world, episode, corruption, seed))
-            views = _views(world, episode, corruption, seed)
+            views = [_jpeg(sight) for sight in first_sight(world, episode, corruption, seed)[1]]
             drawn = _drawn(episode, corruption, walks, index, hashes)
             drawn |= {key: own[0][key] for key in ("split", "rule", "seed")}
             drawn |= {"views": views, "heard": instruction(episode, corruption, seed)}
@@ -157,24 +155,6 @@ def _fewer_colours(png: io.BytesIO) -> bytes:
     out = io.BytesIO()
     Image.open(png).convert("RGB").quantize(PLAN_COLOURS).save(out, "PNG", optimize=True)
     return out.getvalue()
-
-
-def _views(world: World, episode: Episode, corruption: Corruption, seed: int) -> list[str]:
-    """Return the first thing seen, clean and corrupted, as JPEG addresses."""
-    clean = dict(world.reset(episode))
-    key, sensor = Key(seed, episode.episode_id, 0), depth_sensor(world.sensors)
-    met = corrupt_observation(clean, corruption, key, sensor)
-    entry = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
-    if entry not in clean:
-        return []
-    far = float(clean[DEPTH].max()) if DEPTH in clean else 0.0
-    return [_jpeg(_shown(np.asarray(frames[entry]), far)) for frames in (clean, met)]
-
-
-def _shown(frames: np.ndarray, far: float) -> np.ndarray:
-    views = frames if frames.ndim == 4 else frames[None]
-    picture = strip(views) if len(views) == VIEWS else np.concatenate(list(views), axis=1)
-    return depth_picture(picture[..., 0], far) if picture.shape[-1] == 1 else picture
 
 
 def _jpeg(picture: np.ndarray) -> str:
