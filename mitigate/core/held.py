@@ -31,9 +31,9 @@ _LISTS: tuple[Any, ...] = (list, tuple, deque, type({}.values()))
 _CONTAINERS = (*_LISTS, set, frozenset, dict, types.MappingProxyType)
 _GETTERS = (operator.itemgetter, operator.attrgetter, operator.methodcaller)
 _PLAIN = (str, bytes, int, float, complex, type(None), Enum)
+_DATA = (*_PLAIN, PurePath, np.generic, np.dtype, torch.device, torch.dtype, torch.Size)
 _NO_WEIGHTS = (
-    *(*_PLAIN, type, PurePath, np.generic, np.dtype),
-    *(torch.device, torch.dtype, torch.Size, torch.Generator, np.random.Generator, random.Random),
+    *(*_DATA, type, torch.Generator, np.random.Generator, random.Random),
     *(np.random.RandomState, np.ufunc, logging.Logger, types.ModuleType, Observation),
 )
 _BY_VERSION = ("mitigate", "torch")  # packages that are known by their version, wherever they are
@@ -45,14 +45,16 @@ _OWN_OF_TORCH = frozenset(vars(nn.Module()))  # hooks, parameters, and modules t
 class Held:
     """networks and arrays (also tensors) by where they are, such as "pol.nets.policy", the agent
     itself as ""; a number in braces is of a set, which has no order. functions: of the user's own
-    code. constants: plain values that functions and partial calls hold, which an attribute, that
-    may change from step to step, is not. unknown: places of what nobody could look into, such as a
-    session of another library, or that are too deep or too many."""
+    code. constants: plain values that functions and partial calls hold. attributes: those that it
+    and its objects, lists and mappings hold, which may change from step to step. unknown: places of
+    what nobody could look into, such as a session of another library, or that are too deep or too
+    many."""
 
     networks: dict[str, nn.Module] = field(default_factory=dict)
     arrays: dict[str, Any] = field(default_factory=dict)
     functions: dict[str, types.FunctionType] = field(default_factory=dict)
     constants: dict[str, Any] = field(default_factory=dict)
+    attributes: dict[str, Any] = field(default_factory=dict)
     unknown: list[str] = field(default_factory=list)
 
 
@@ -79,10 +81,11 @@ def held(agent: Any) -> Held:
             continue
         inside, many = _inside(value, whole=value is agent), isinstance(value, _CONTAINERS)
         fixed = isinstance(value, (types.FunctionType, partial)) or (fixed and many)
-        if fixed and inside is not None:
+        if inside is not None:
             inside = [*inside]
-            plain = [(own, part) for own, part in inside if isinstance(part, _PLAIN)]
-            found.constants |= {".".join((*place, own)): part for own, part in plain}
+            kinds, kept = (_PLAIN, found.constants) if fixed else (_DATA, found.attributes)
+            plain = [(own, part) for own, part in inside if isinstance(part, kinds)]
+            kept.update((".".join((*place, own)), part) for own, part in plain)
         able = (part for part in inside or () if not isinstance(part[1], _NO_WEIGHTS))
         parts = [*islice(able, most + 1 if many else None)]
         if inside is None or (parts and (len(place) >= DEPTH or len(seen) > MOST)):

@@ -31,7 +31,9 @@ DIGITS = 12  # hex digits: 48 bits
 _OF_SET = re.compile(r"\{\d+\}")  # of which each process has another order
 
 
-def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> str:
+def identity(
+    agent: Any, sensors: Mapping[str, Sensor], front: str = "none", *, attributes: bool = False
+) -> str:
     """Return the hash of ``agent`` behind ``sensors``.
 
     It covers the weights (names, types, shapes, values) of the network that it is and of those that
@@ -40,11 +42,12 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
     else that is no weight); the code of its classes and of its networks' (:func:`source_of`), and
     of the functions that it holds or that its code names, with their constants; what each sensor
     gives, and what stands in front of the agent (``front``: the safeguard that repairs its
-    instructions).
+    instructions). ``attributes``: of an agent without ``settings``, also the plain data that its
+    attributes hold now, which may be others after a walk.
     """
     settings, inside = getattr(agent, "settings", dict), held(agent)
-    constants = [f"{place} = {value!r}" for place, value in sorted(inside.constants.items())]
-    code = [*_codes(agent, inside), *constants]
+    loose = inside.attributes if attributes and not hasattr(agent, "settings") else {}
+    code = [*_codes(agent, inside), *_lines(inside.constants)]
     made = {
         "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
         "weights": _weights(inside),
@@ -52,9 +55,15 @@ def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> 
         "sensors": {name: asdict(sensor) for name, sensor in sorted(sensors.items())},
         "front": front,
         **({"code": code} if code else {}),
+        **({"attributes": _lines(loose)} if loose else {}),
     }
     text = json.dumps(made, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
+
+
+def _lines(values: Mapping[str, Any]) -> list[str]:
+    """Plain values by where they are, in an order that is the same in every process."""
+    return sorted(f"{_OF_SET.sub('{}', place)} = {value!r}" for place, value in values.items())
 
 
 def source_of(kind: type) -> list[str]:

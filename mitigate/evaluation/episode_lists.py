@@ -21,29 +21,41 @@ TASKS = {"vln": "follow a route", "ogn": "find an object"}  # info["task"] of an
 
 
 def episodes(env: DictConfig, split: str, count: int | None) -> list:
-    """Return ``count`` episodes of a split's shipped list (all, if None), spread evenly over it.
+    """Return ``count`` episodes of a split's shipped list (all, if None), as :func:`spread`.
 
-    A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
-    whose multiples of the golden section have the smallest fractional parts are spread for any
-    count, and fewer are always among more: rows of 40 episodes count towards 100.
     Raises ValueError for an unknown split, a count below 1, and a list that is empty, names an
     episode twice or has one without an instruction.
     """
     from mitigate.worlds.episodes import read_episodes
 
-    if count is not None and not (isinstance(count, Integral) and count >= 1):
-        raise ValueError(
-            f"episodes={count!r} is none: give a whole number, 1 or more, or null for all of the "
-            "list."
-        )
+    check_count(count)
     if not env.episodes:
         raise ValueError(f"env={env.name} has no episodes, so nothing can be walked in it.")
     if split not in env.episodes:
         raise ValueError(unknown("split", split, env.episodes))
     listed = list(read_episodes(find(env.episodes[split])))
     check_episodes(env.episodes[split], listed)
+    return spread(listed, count)
+
+
+def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
+    """Return ``count`` of the episodes (all, if None), spread evenly over them, in their order.
+
+    A list goes layout by layout: the first 40 of ``val_unseen`` would be 4 of its 30 layouts. Those
+    whose multiples of the golden section have the smallest fractional parts are spread for any
+    count, and fewer are always among more: rows of 40 episodes count towards 100.
+    """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
+
+
+def check_count(count: Any) -> None:
+    """Raise ValueError for what is no number of episodes, nor None for all."""
+    if count is not None and not (isinstance(count, Integral) and int(count) >= 1):
+        raise ValueError(
+            f"episodes={count!r} is none: give a whole number, 1 or more, or null for all of the "
+            "list."
+        )
 
 
 def check_episodes(source: str, listed: Sequence[Episode]) -> None:

@@ -170,14 +170,17 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
     """The table's column: the weights, what options change of the agent, and what stands before
     it."""
+    own = [cfg.name or name_of(cfg.checkpoint), *changed(overrides)]
+    return "+".join([*own, *fronts(cfg.safeguard, cfg.restore)])
+
+
+def fronts(safeguard: str, restore: str | None) -> list[str]:
+    """Return the short names of what stands in front of an agent, as parts of a column's name."""
     from mitigate.restoration import choices as restorers
     from mitigate.safeguard import choices as safeguards
 
-    front = safeguards.label(cfg.safeguard)
-    before = [] if front == "none" else [front]
-    if cfg.restore and restorers.label(cfg.restore) != "none":
-        before.append(restorers.label(cfg.restore))
-    return "+".join([cfg.name or name_of(cfg.checkpoint), *changed(overrides), *before])
+    found = [safeguards.label(safeguard), restorers.label(restore) if restore else "none"]
+    return [name for name in found if name != "none"]
 
 
 def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:

@@ -157,7 +157,7 @@ def evaluate(
     made = world()
     check_fits(agent, made.sensors, type(made).__name__)
     label = {
-        "agent": known_as or identity(agent, made.sensors, _fronts(safeguard, restorer)),
+        "agent": known_as or identity(agent, made.sensors, front_of(safeguard, restorer)),
         "name": name,
         "split": split,
         "seed": seed,
@@ -182,7 +182,7 @@ def evaluate(
     return _in_order(out, [rows.identity(label) for _, _, label in jobs])
 
 
-def _fronts(safeguard: Safeguard | None, restorer: Restorer | None) -> str:
+def front_of(safeguard: Safeguard | None, restorer: Restorer | None) -> str:
     """What stands in front of an agent, for its identity: a safeguard and a restorer by hashes."""
     front = "none" if safeguard is None else safeguard.identity
     return front if restorer is None else f"{front}+restorer-{restorer.hash}"

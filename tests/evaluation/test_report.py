@@ -195,7 +195,7 @@ def test_seeds_are_shown_one_by_one_where_there_are_several():
     found = lines(made)
     assert found["Clean SR, seed by seed"] == ["80.0 / 50.0", "–"]
     assert found["PRS-SR, seed by seed"] == ["0.50 / 0.80", "–"]
-    none = {name: 0 for name in ("clean", *ALL)}
+    none = dict.fromkeys(("clean", *ALL), 0)
     found = lines(column(8, ALL) + column(0, none, seed=1))
     assert found["PRS-SR, seed by seed"] == ["0.50 / undefined"]
     assert "seed by seed" not in markdown(sections(column(8, ALL)))

@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from types import EllipsisType
 from typing import Any
 
 from hydra.errors import HydraException
@@ -15,22 +16,25 @@ from omegaconf.errors import OmegaConfBaseException
 from mitigate.agents.observation import check_fits
 from mitigate.core import conf, seeding
 from mitigate.core.build import agent_option, located, maker
-from mitigate.core.held import held, in_eval_mode
-from mitigate.core.identity import identity
+from mitigate.core.held import in_eval_mode
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
+from mitigate.core.options import without_config_folder
 from mitigate.core.progress import duration
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import making, walked
 from mitigate.evaluation.episode import run_episode
-from mitigate.evaluation.episode_lists import check_episodes
-from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
+from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
+from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate, front_of
 from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
-from mitigate.evaluation.rows import ROWS, read
+from mitigate.evaluation.leaderboard.known import Known
+from mitigate.evaluation.rows import ROWS
+from mitigate.restoration.restorer import restorer_of
+from mitigate.safeguard.guard import open_safeguard
 from mitigate.scale.launcher import count
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.world import World
@@ -38,6 +42,7 @@ from mitigate.worlds.world import World
 EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
 OUT = Path("runs/benchmark")
 TIMED = 2  # clean walks, by the last of which the time is told (ours)
+OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # what options= may name
 
 
 def benchmark(
@@ -45,10 +50,12 @@ def benchmark(
     *,
     name: str | None = None,
     split: str | None = None,
-    episodes: int | None = EPISODES,
+    episodes: int | EllipsisType | None = ...,
     suite: str | Sequence[str] = "full",
     severity: float = 0.6,
     seed: int = 0,
+    safeguard: str = "none",
+    restore: str | None = None,
     workers: int | None = 1,
     options: Sequence[str] = (),
     world: Callable[[], World] | None = None,
@@ -65,41 +72,39 @@ def benchmark(
         agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
         name: heading of the entry; None: of the weights' folder, or the agent's class.
         split: list of episodes of the world; None: its own first, or the name of your own world.
-            episodes: how many, spread over the list; None: all, as entries of the leaderboard have.
+            episodes: how many, spread over the list; None: all, as entries have; unless told, 20 of
+            a split's, and all that are ``listed``.
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
             the corruptions. workers: processes; None: one a core if there is work. More than one
             read the script again, which keeps its call under ``if __name__ == "__main__":``.
-        options: of ``mitigate evaluate``, such as "agent=recurrent" or "--config-dir=mine".
+        safeguard, restore: what stands in front of the agent: "rules", "checkpoints/restorer".
+        options: of its kind and the world: "agent=recurrent", "env.views=1", "--config-dir=mine".
         world, listed: makes a world of your own, and its episodes (or their file), in place of
             those of ``options``; a world of another class than theirs needs both.
-        training_data, link: for the entry. out: folder of the rows; None: one in
-            ``runs/benchmark``.
-    Raises ValueError for no agent, unknown names, numbers out of range, texts that an entry cannot
+        training_data, link: for the entry. out: folder of the rows; None: one in runs/benchmark.
+    Raises ValueError for no agent, names and numbers that there are not, texts that an entry cannot
     hold and a folder with rows of another world, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
-    agent, name = _agent(agent, name, cfg, seed)
-    check_texts(name=name, training_data=training_data, link=link)
+    loaded, told = isinstance(agent, (str, Path)), {"training_data": training_data, "link": link}
+    agent, name = _agent(agent, name, cfg, seed, evaluation.fronts(safeguard, restore))
+    check_texts(name=name, **told)
     made = world or maker(cfg.env.world)
     first, made_by = _first_world(made, met, agent)
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    known_as = _known_as(agent, name, file, first)
-    label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known_as": known_as}
+    front: dict[str, Any] = {"safeguard": open_safeguard(safeguard)}
+    front["restorer"] = restorer_of(restore, first.sensors)
+    known = Known(agent, first.sensors, front_of(**front), loaded=loaded)
+    known.check(file, name)
+    label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known_as": known.hash}
     _tell(agent, made, chosen, len(met), workers)
-    with FolderLock(file.parent):
-        _tell_reused(agent, file)
+    with FolderLock(file.parent), known:
         walked.keep(file.parent, first, made_by, split, chosen)
-        rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label)
-    return entry_of(
-        rows,
-        name,
-        severity=severity,
-        sensors=sensors_of(first.sensors, getattr(agent, "sensors", None)),
-        training_data=training_data,
-        link=link,
-        file="" if file.is_absolute() else file.as_posix(),
-    )
+        rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
+    told["file"] = "" if file.is_absolute() else file.as_posix()
+    shown = sensors_of(first.sensors, getattr(agent, "sensors", None))
+    return entry_of(rows, name, severity=severity, sensors=shown, **told)
 
 
 def _conditions(
@@ -110,6 +115,14 @@ def _conditions(
     seeding.check(seed)
     if isinstance(options, str):
         raise ValueError(f"options is a list of options, such as [{options!r}].")
+    for option in without_config_folder(options)[1]:
+        if not OPTION.match(option):
+            raise ValueError(
+                f"{option} has no effect here: options= are those of the agent and its world "
+                "(agent=..., agent.size=..., env=..., env.views=1, --config-dir=...). All else is "
+                'an argument of benchmark, such as severity=0.3, suite="quick" or '
+                'restore="checkpoints/restorer".'
+            )
     if isinstance(agent, (str, Path)):
         options = [*options, *agent_option(options, str(agent))]
     named = [f"suite={suite}"] if isinstance(suite, str) else []
@@ -127,41 +140,16 @@ def _conditions(
     return cfg, met
 
 
-def _agent(agent: Any, name: str | None, cfg: Any, seed: int) -> tuple[Any, str]:
-    """Return the agent itself, loaded if ``agent`` is a path, and its heading."""
+def _agent(
+    agent: Any, name: str | None, cfg: Any, seed: int, fronts: Sequence[str]
+) -> tuple[Any, str]:
+    """Return the agent itself, loaded if ``agent`` is a path, and its heading, with ``fronts``."""
+    usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
-        loaded = evaluation.load(cfg.agent, str(agent), seed)
-        return loaded, name or evaluation.name_of(str(agent))
+        usual = evaluation.name_of(str(agent))
+        agent = evaluation.load(cfg.agent, str(agent), seed)
     evaluation.check_walks(agent)
-    return agent, name or type(agent).__name__
-
-
-def _known_as(agent: Any, name: str, file: Path, world: World) -> str:
-    """Return the agent's hash, before a walk changes its arrays; raise ValueError if there are rows
-    of that name, and nothing tells whether it has the weights that they were walked with."""
-    known_as = identity(agent, world.sensors)
-    if hasattr(agent, "settings") or not file.exists():
-        return known_as
-    unknown = held(agent).unknown
-    if unknown and any(row["name"] == name for row in read(file)):
-        raise ValueError(
-            f"{file} holds rows of {name}, perhaps of other weights: a {type(agent).__name__} has "
-            f"no settings(), and its {unknown[0]} cannot be looked into, or not as a whole. Name "
-            "another folder (out=...), or give it settings() that say which weights it has."
-        )
-    return known_as
-
-
-def _tell_reused(agent: Any, file: Path) -> None:
-    """Print that rows of before count, where they may be of an agent that was changed since."""
-    if file.exists() and not hasattr(agent, "settings"):
-        print(
-            f"benchmark: rows in {file} count, unless they are of another class, of other code or "
-            f"of other weights: a {type(agent).__name__} has no settings() that says more. If a "
-            "plain attribute was changed (a threshold, a file's name), give it some, or name "
-            "another folder (out=...).",
-            flush=True,
-        )
+    return agent, "+".join([name or usual, *fronts])
 
 
 def _plain(name: str) -> str:
@@ -179,6 +167,14 @@ def _first_world(
             "since each process has its own."
         )
     world, made_by = making.first(make_world)
+    if not hasattr(world, "sensors"):
+        kind = type(world).__name__
+        raise ValueError(
+            f"A {kind} is no world: it has no sensors (docs/bring-your-own.md). If it is a "
+            f"gymnasium environment, give world=lambda: GymWorld({kind}(...), success=...) "
+            "(mitigate.worlds.gym); if it is one of torchrl, TensorDictWorld "
+            "(mitigate.worlds.tensordict)."
+        )
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
     check_fits(agent, world.sensors, type(world).__name__)
     return world, made_by
@@ -195,7 +191,7 @@ def _episodes(
     world: World,
     cfg: Any,
     split: str | None,
-    count: int | None,
+    count: int | EllipsisType | None,
     listed: Sequence[Episode] | Path | str | None,
     given: bool,
 ) -> tuple[str, list[Episode]]:
@@ -207,18 +203,21 @@ def _episodes(
         raise ValueError(
             f"The episodes of {cfg.env.name} are none of {walked.name_of(world)}: give its own, "
             'listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
-            "docs/bring-your-own.md). A gymnasium or torchrl environment reads of each its seed "
-            "alone, info={'seed': 7}."
+            "docs/bring-your-own.md). Of a gymnasium or torchrl environment they are seeds: "
+            "listed=seeded_episodes(range(20)) (mitigate.worlds.seeded)."
         )
     if listed is None:
-        chosen = evaluation.episodes(cfg.env, split, count)
-    else:
-        chosen = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
-        for entry in chosen:
-            if not isinstance(entry, Episode):
-                raise ValueError(f"listed has a {type(entry).__name__} in it, which is no Episode.")
-    check_episodes("listed" if listed is not None else split, chosen)
-    return split, chosen
+        return split, evaluation.episodes(cfg.env, split, EPISODES if count is ... else count)
+    check_count(None if count is ... else count)
+    found = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
+    for entry in found:
+        if not isinstance(entry, Episode):
+            raise ValueError(
+                f"listed has {entry!r:.80} in it, which is no Episode. Of seeds, give "
+                "listed=seeded_episodes([1, 2, 3]) (mitigate.worlds.seeded)."
+            )
+    check_episodes("listed", found)
+    return split, spread(found, None if count is ... else count)
 
 
 def _check_copies(*things: Any) -> None:

@@ -18,7 +18,6 @@ from gymnasium import spaces
 from torch import nn
 
 import mitigate
-from mitigate.core.identity import identity
 from mitigate.evaluation import rows
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
@@ -182,7 +181,51 @@ class Counting(Hidden):
 
 def test_an_agent_is_what_it_was_before_it_walked(walk):
     hashes = {one["agent"] for _ in range(2) for one in walk(Counting()).agents}
-    assert hashes == {identity(Counting(), CorridorWorld().sensors)}
+    assert len(hashes) == 1  # of two objects, neither of which had walked
+    agent = Counting()
+    assert {one["agent"] for _ in range(3) for one in walk(agent).agents} == hashes
+
+
+class Near(Holder):
+    """It stops where its threshold says, which is no weight."""
+
+    def __init__(self, near: float, *others: object) -> None:
+        super().__init__(weight(1))
+        self.near, self.others = near, [*others, {"names": {"a", "b", "c"}}]
+
+
+@pytest.mark.parametrize("other", [Near(2.0), Near(1.0, "x"), Near(1.0, Path("x"))])
+def test_an_attribute_that_was_changed_makes_another_agent(walk, other, capsys):
+    first = walk(Near(1.0))
+    assert "another agent" not in capsys.readouterr().out
+    assert walk(Near(1.0)).agents == first.agents != walk(other).agents
+    assert "whose class, code, weights or attributes were others" in capsys.readouterr().out
+
+
+def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
+    alone, behind = walk(Holder(weight(1))), walk(Holder(weight(1)), safeguard="rules")
+    assert behind.name == "Holder+rules" and behind.agents != alone.agents
+    restored = walk(Holder(weight(1)), restore="checkpoints/restorer:rgb")
+    assert restored.name == "Holder+restorer-rgb" and len(restored.agents) == 1
+
+
+@pytest.mark.parametrize("option", ["severity=0.3", "restore=x", "suite=quick", "workers=2"])
+def test_what_is_no_option_of_the_agent_or_the_world_is_refused(walk, option):
+    with pytest.raises(ValueError, match=f"{option} has no effect here"):
+        walk(Holder(weight(1)), options=[option])
+
+
+def test_episodes_may_be_some_of_those_listed(walk):
+    listed = seeded_episodes(range(9))
+    counts = {n: walk(Holder(weight(1)), listed=listed, episodes=n).episodes for n in (4, None)}
+    assert counts == {4: 4, None: 9}
+    with pytest.raises(ValueError, match=r"listed has 7 in it.*seeded_episodes"):
+        walk(Holder(weight(1)), listed=[7])
+
+
+def test_a_gymnasium_environment_is_told_from_a_world(walk):
+    with pytest.raises(ValueError, match=r"Corridor is no world: .*GymWorld\(Corridor\(...\)"):
+        walk(Holder(weight(1)), Corridor)
 
 
 class Moody(nn.Module):
