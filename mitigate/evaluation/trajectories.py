@@ -260,8 +260,9 @@ def _draw_walks(axes: Axes, start: np.ndarray, episode: Episode, walks: Sequence
         draw_path(axes, reference, REFERENCE, "reference path", "--")
     for walk in walks:
         draw_path(axes, walk.path, walk.colour, walk.legend)
-    goals = np.stack([from_vlnce(goal.position) for goal in episode.goals])
-    axes.plot(*goals.T, "*", color="#ffbf00", mec="black", ms=15, zorder=9, label="goal")
+    if episode.goals:
+        goals = np.stack([from_vlnce(goal.position) for goal in episode.goals])
+        axes.plot(*goals.T, "*", color="#ffbf00", mec="black", ms=15, zorder=9, label="goal")
     ahead = 0.6 * np.array([-np.sin(start[2]), np.cos(start[2])])
     axes.arrow(*start[:2], *ahead, width=0.05, color="black", zorder=8)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), ncols=2, fontsize=9, frameon=False)

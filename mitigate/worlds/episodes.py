@@ -27,6 +27,9 @@ KEYS = (
     "reference_path",
 )
 
+# of an episode that is a seed, whose world reads nothing else of it
+_NOWHERE = {"scene_id": "", "start_position": [0, 0, 0], "start_rotation": [0, 0, 0, 1]}
+
 
 def from_vlnce(position: Vector) -> np.ndarray:
     """VLN-CE position to plan metres, the frame of poses: float64 [2]."""
@@ -89,7 +92,8 @@ class GroundTruth:
 def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[Episode]:
     """Yield the episodes of ``path`` in order.
 
-    ``hidden_goals`` accepts episodes without goals and reference path, as in test splits.
+    ``hidden_goals`` accepts episodes without goals and reference path, as in test splits. Of one
+    that is a seed (``info["seed"]``, ``worlds/seeded.py``) an id and an instruction will do.
     Raises FileNotFoundError, or ValueError naming file, episode and key, while iterating.
     """
     found = False
@@ -195,6 +199,8 @@ def to_json(episode: Episode) -> dict[str, Any]:
 
 def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Episode:
     identity = raw.get("episode_id") if isinstance(raw, dict) else None
+    if isinstance(raw, dict) and isinstance(raw.get("info"), dict) and "seed" in raw["info"]:
+        raw, hidden_goals = {"trajectory_id": identity, **_NOWHERE, **raw}, True
     record = Record(raw, path, f"episode {index} of the list (episode_id {short(identity)})")
     hide = hidden_goals and raw.get("goals") is None and raw.get("reference_path") is None
     info = record.get("info", dict, {})

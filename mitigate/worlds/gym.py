@@ -18,8 +18,8 @@ class GymWorld(SeededWorld):
     """Args:
     env: with discrete actions. Its observation is an RGB frame (uint8 [H, W, 3] or [V, H, W, 3]) or
     a ``Dict`` that holds one.
-    entries: of a ``Dict``, by default those that are called "rgb", "depth" and "pose". success: an
-    entry of ``info``. The others: as ``SeededWorld``.
+    entries: of a ``Dict``, by default those that are called "rgb", "depth" and "pose"; one within
+    another is "camera.rgb". success: an entry of ``info``. The others: as ``SeededWorld``.
 
     Raises ValueError as ``SeededWorld`` does, and for actions that are not discrete.
     """
@@ -35,9 +35,12 @@ class GymWorld(SeededWorld):
         rule: str | None = None,
     ) -> None:
         if not hasattr(env.action_space, "n"):
-            raise ValueError(f"The actions {env.action_space} are not discrete: wrap it.")
-        space = env.observation_space
-        boxes = dict(space.spaces) if hasattr(space, "spaces") else {WHOLE: space}
+            raise ValueError(
+                f"The actions {env.action_space} are not discrete, and an agent answers with one "
+                "whole number: wrap the environment in a gymnasium.ActionWrapper with a Discrete "
+                "action_space, whose action() says what each number does."
+            )
+        boxes = _by_name(env.observation_space)
         known = {RGB: WHOLE} if WHOLE in boxes else {n: n for n in (RGB, DEPTH, POSE) if n in boxes}
         most = {n: np.max(getattr(b, "high", np.inf)) for n, b in boxes.items()}  # of a Box alone
         found = {n: (b.shape, str(b.dtype), float(most[n])) for n, b in boxes.items()}
@@ -46,7 +49,7 @@ class GymWorld(SeededWorld):
 
     def reset(self, episode: Episode) -> Observation:
         seen, self._info = self.env.reset(seed=self._begin(episode))
-        return self._observation(seen if isinstance(seen, Mapping) else {WHOLE: seen})
+        return self._observation(_by_name(seen))
 
     def step(self, action: int) -> Observation:
         """Raises ValueError for an action that the environment does not have, and at the end of an
@@ -65,7 +68,19 @@ class GymWorld(SeededWorld):
                 "False for a failure."
             )
         self._end_step(float(reward), over)
-        return self._observation(seen if isinstance(seen, Mapping) else {WHOLE: seen})
+        return self._observation(_by_name(seen))
 
     def _flag(self) -> bool:
         return bool(self._info.get(self.success))
+
+
+def _by_name(seen: Any) -> dict[str, Any]:
+    """The parts of an observation, or of its space, by dotted name; ``WHOLE`` if it has none."""
+    parts = getattr(seen, "spaces", seen)
+    if not isinstance(parts, Mapping):
+        return {WHOLE: seen}
+    return {
+        f"{name}.{inner}".rstrip("."): part
+        for name, value in parts.items()
+        for inner, part in _by_name(value).items()
+    }

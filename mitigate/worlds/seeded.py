@@ -28,15 +28,16 @@ class SeededWorld:
     """A subclass sets ``_steps``, ``_reward`` and ``done`` as it goes, and says what it saw.
 
     Args: found: shape, dtype and greatest value of each entry of the environment's observations.
-    entries: names of its frames by ours ("rgb", "depth", "pose"). success: the entry that says at
+    entries: names of its frames by ours ("rgb", "depth", "pose"), and of whatever else the agent
+    reads, by the names that it reads ("goal"). success: the entry that says at
     the end whether it went well; None: a reward above 0 in the last step. unit: metres of one unit
     of depth, which whole numbers need, and depth that ends at 1 or below; None: 1. limit: steps
     after which an episode is over at the latest. rule: what success means, in words, for the rows;
     None: what ``success`` says.
 
     Depth that is not finite or below 0 reads 0, no reading. Raises ValueError if an entry is not
-    there, RGB is not uint8, or ``unit`` or ``limit`` is none; and for the first depth of an episode
-    if that cannot be metres.
+    there, frames have other shapes than the suite takes, RGB is not uint8, or ``unit`` or ``limit``
+    is none; and for the first depth of an episode if that cannot be metres.
     """
 
     done = True
@@ -73,6 +74,8 @@ class SeededWorld:
                 f"RGB must be uint8 in 0-255, but it is {self.sensors[RGB].dtype}: take off what "
                 "scales or transposes frames."
             )
+        for name in [name for name in (RGB, DEPTH) if name in self.sensors]:
+            _check_shape(name, self.entries[name], self.sensors[name].shape)
 
     def _check_going(self) -> None:
         """Raise RuntimeError after the last step of an episode."""
@@ -120,6 +123,20 @@ class SeededWorld:
             unit = "Give unit=, the metres of one unit of it (0.001 for millimetres)."
             check_metres(metres, "the depth", unit)
         return metres
+
+
+def _check_shape(name: str, entry: str, shape: tuple[int, ...]) -> None:
+    """Raise ValueError for frames that the suite does not take: ``corruptions/views.py``."""
+    flat = name == DEPTH and len(shape) == 2
+    if flat or (len(shape) in (3, 4) and shape[-1] == (3 if name == RGB else 1)):
+        return
+    channels = "3" if name == RGB else "1"
+    raise ValueError(
+        f"The {name} frames{f' {entry!r}' if entry else ''} have the shape {list(shape)}, and it "
+        f"must be [H, W, {channels}], or [views, H, W, {channels}] for a panorama: channels last, "
+        "no alpha, no grey, no stack. Wrap the environment "
+        "(gymnasium.wrappers.TransformObservation)."
+    )
 
 
 def _check_unit(entry: str, dtype: str, most: float, unit: float | None) -> None:

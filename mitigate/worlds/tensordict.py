@@ -137,8 +137,9 @@ class WorldEnv(EnvBase):
 class EnvWorld(SeededWorld):
     """Any torchrl environment that shows frames as a world, to evaluate in under the suite.
 
-    Args: env: not batched. entries: by default those that are called "rgb", "depth" and "pose".
-    success: an entry of its tensordict. The others: as ``SeededWorld``.
+    Args: env: not batched. entries: by default those that are called "rgb", "depth" and "pose"; one
+    within another is "camera.rgb". success: an entry of its tensordict. The others: as
+    ``SeededWorld``.
 
     Raises ValueError as ``SeededWorld`` does, and for an environment that is batched.
     """
@@ -157,7 +158,8 @@ class EnvWorld(SeededWorld):
             raise ValueError(
                 f"The environment has the batch size {list(env.batch_size)}: give one."
             )
-        specs = dict(env.observation_spec.items())
+        spec = env.observation_spec
+        specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}
         known = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
         found = {name: _measured(spec) for name, spec in specs.items()}
         super().__init__(found, entries or known, success, unit, limit, rule)
@@ -194,7 +196,12 @@ class EnvWorld(SeededWorld):
         return bool(self._now[self.success].any())
 
     def _seen(self) -> Observation:
-        return self._observation({e: self._now[e].numpy() for e in self.entries.values()})
+        keys = {_dotted(key): key for key in self._now.keys(True, True)}
+        return self._observation({e: self._now[keys[e]].numpy() for e in self.entries.values()})
+
+
+def _dotted(key: str | tuple[str, ...]) -> str:
+    return key if isinstance(key, str) else ".".join(key)
 
 
 def _listed(episodes: Any) -> list[Episode]:

@@ -109,6 +109,42 @@ def test_a_success_that_info_never_says_is_told_at_the_end():
     assert run_episode(Brightness(), cut, episode(3), CLEAN, 0)["success"] == 0
 
 
+class Within(Room):
+    """The camera and the goal of it are within parts of the observation."""
+
+    def __init__(self):
+        super().__init__()
+        box = gymnasium.spaces.Dict({"rgb": self.observation_space})
+        goal = gymnasium.spaces.Dict({"polar": gymnasium.spaces.Box(-9, 9, (2,), np.float32)})
+        self.observation_space = gymnasium.spaces.Dict({"camera": box, "goal": goal})
+
+    def _look(self):
+        return {
+            "camera": {"rgb": super()._look()},
+            "goal": {"polar": np.array([self.left, 0.5], np.float32)},
+        }
+
+
+def test_entries_within_entries_and_other_sensors_are_named_with_dots():
+    from mitigate.worlds.gym import GymWorld
+
+    world = GymWorld(Within(), {"rgb": "camera.rgb", "goal": "goal.polar"})
+    seen = world.reset(episode(3))
+    assert seen[RGB].shape == (SIZE, SIZE, 3) and seen["goal"].tolist() == [3.0, 0.5]
+    with pytest.raises(ValueError, match="it has camera.rgb, goal.polar"):
+        GymWorld(Within(), {"rgb": "camera"})
+
+
+@pytest.mark.parametrize("shape", [(SIZE, SIZE, 4), (3, SIZE, SIZE), (SIZE, SIZE), (SIZE, SIZE, 1)])
+def test_frames_that_the_suite_does_not_take_are_refused_before_any_walk(shape):
+    from mitigate.worlds.gym import GymWorld
+
+    room = Room()
+    room.observation_space = gymnasium.spaces.Box(0, 255, shape, np.uint8)
+    with pytest.raises(ValueError, match=r"must be \[H, W, 3\], .*Wrap the environment"):
+        GymWorld(room)
+
+
 class Deep(Room):
     """A room of which depth is seen, the same everywhere."""
 

@@ -21,6 +21,7 @@ from mitigate.worlds.episodes import (
     read_ground_truth,
     write_episodes,
 )
+from mitigate.worlds.seeded import seeded_episodes
 from tests.r2r_ce import FOLDER, ROOT, needs_r2r_ce
 
 R2R = {
@@ -296,3 +297,18 @@ def test_real_ground_truth_belongs_to_its_episodes():
         assert truth.locations.shape[1:] == (3,)
         assert truth.actions[-1] == 0  # STOP
         assert np.allclose(truth.locations[0], episodes[key].start_position, atol=1e-3)
+
+
+def test_of_an_episode_that_is_a_seed_an_id_and_an_instruction_will_do(tmp_path):
+    listed = seeded_episodes(range(3), "Find the lamp.")
+    written = write_episodes(tmp_path / "val.json", listed)
+    assert list(read_episodes(written)) == [
+        dataclasses.replace(one, extra=found.extra)
+        for one, found in zip(listed, read_episodes(written), strict=True)
+    ]
+    least = {"episode_id": "a", "info": {"seed": 7}, "instruction": {"instruction_text": "Go."}}
+    (one,) = read_episodes(write_json(tmp_path / "least.json", {"episodes": [least]}))
+    assert (one.episode_id, one.info, one.instruction.text) == ("a", {"seed": 7}, "Go.")
+    del least["info"]
+    with pytest.raises(ValueError, match="lacks the key"):
+        list(read_episodes(write_json(tmp_path / "none.json", {"episodes": [least]})))

@@ -172,7 +172,7 @@ def _first_world(
         raise ValueError(
             f"A {kind} is no world: it has no sensors (docs/bring-your-own.md). If it is a "
             f"gymnasium environment, give world=lambda: GymWorld({kind}(...), success=...) "
-            "(mitigate.worlds.gym); if it is one of torchrl, TensorDictWorld "
+            "(mitigate.worlds.gym); if it is one of torchrl, EnvWorld "
             "(mitigate.worlds.tensordict)."
         )
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
