@@ -30,6 +30,12 @@ def weights_file(path: str | Path) -> Path:
     """
     given = Path(path)
     file = given if given.suffix == ".safetensors" else given / WEIGHTS
+    if given.is_file() and given != file:
+        raise FileNotFoundError(
+            f"{given} is no .safetensors file, and what else weights are kept in may run code when "
+            "it is opened. Write yours as safetensors: "
+            'safetensors.torch.save_file(policy.state_dict(), "mine.safetensors").'
+        )
     if not file.is_file():
         raise FileNotFoundError(
             f"There are no weights at {given}: expected a .safetensors file or a folder that holds "

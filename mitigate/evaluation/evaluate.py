@@ -144,8 +144,9 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         walked.keep(out, first, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
-            f"evaluate: {cfg.checkpoint} on {cfg.split}, {counted(len(chosen), 'episode')} x "
-            f"{counted(len(met), 'condition')} at severity {cfg.severity:g}",
+            f"evaluate: {cfg.checkpoint or name} on {cfg.split}, "
+            f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
+            f"{cfg.severity:g}",
             flush=True,
         )
         warn_of_tasks(agent, chosen, name, cfg.env.split)
@@ -170,7 +171,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
     """The table's column: the weights, what options change of the agent, and what stands before
     it."""
-    own = [cfg.name or name_of(cfg.checkpoint), *changed(overrides)]
+    usual = name_of(cfg.checkpoint or cfg.agent._target_.rpartition(".")[2])
+    own = [cfg.name or usual, *changed(overrides)]
     return "+".join([*own, *fronts(cfg.safeguard, cfg.restore)])
 
 
@@ -190,17 +192,27 @@ def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
         raise ValueError(f"{idle[0]} is for trainings: an evaluation changes no weights.")
     check_choice(cfg.safeguard)
     seeding.check(cfg.seed)
-    if cfg.checkpoint is None:
+    if cfg.checkpoint is None and _is_network(cfg.agent):
         raise ValueError(
             "checkpoint is not set, and no weights are shipped for this agent: name a run's agent "
-            "folder (checkpoint=runs/.../agent), or choose an agent that walks episodes "
-            "(agent=recurrent; docs/agents.md lists them)."
+            "folder (checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose "
+            "an agent that walks episodes (agent=recurrent; docs/agents.md lists them)."
         )
     if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(
             f"workers={cfg.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
             "null for one a core."
         )
+
+
+def _is_network(node: DictConfig) -> bool:
+    """Whether an agent has weights to read: others, such as one behind an API, are made alone."""
+    from torch import nn
+
+    from mitigate.core.build import located
+
+    kind = located(node._target_)
+    return isinstance(kind, type) and issubclass(kind, nn.Module)
 
 
 def check_walks(agent: Any) -> None:
@@ -210,21 +222,31 @@ def check_walks(agent: Any) -> None:
         raise ValueError(
             f"{agent.__name__} is a class and walks no episodes: give an object of it."
         )
-    if not all(callable(getattr(agent, name, None)) for name in ("reset", "act")):
+    lacking = [f"{n}()" for n in ("reset", "act") if not callable(getattr(agent, n, None))]
+    if lacking:
         raise ValueError(
-            f"A {type(agent).__name__} walks no episodes: it has no reset() and act(). Choose an "
-            "agent that does (agent=..., docs/agents.md)."
+            f"A {type(agent).__name__} walks no episodes: it has no {' and no '.join(lacking)}. "
+            "Choose an agent that does (agent=..., docs/agents.md)."
         )
 
 
-def load(node: DictConfig, weights: str, seed: int = 0, overrides: Sequence[str] = ()) -> nn.Module:
+def load(
+    node: DictConfig, weights: str | None, seed: int = 0, overrides: Sequence[str] = ()
+) -> Any:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
-    by ``node``; what ``overrides`` say of the agent counts more. Raises
-    FileNotFoundError if they are missing, ValueError if they do not fit."""
+    by ``node``; what ``overrides`` say of the agent counts more. None: the agent of ``node``, which
+    is no network. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
     from mitigate.core import build
 
-    settings = build.settings_of(node, weights, overrides)
-    return build.build_agent(settings, weights=weights, seed=seed).eval()
+    if _is_network(node):
+        settings = node if weights is None else build.settings_of(node, weights, overrides)
+        return build.build_agent(settings, weights=weights, seed=seed).eval()
+    if weights is not None:
+        raise ValueError(
+            f"{node._target_} is no torch.nn.Module, which weights could fill: leave out "
+            f"checkpoint={weights}, and let it read them itself."
+        )
+    return build.build_agent(node, weights=None, seed=seed)
 
 
 def report_before_after(

@@ -68,7 +68,7 @@ WRONG = {
         ("recipe=", "recipe"),
         ("agent=hello", "no agent"),
         ("init=/dev/null", "no weights at"),
-        ("init=/etc/passwd", "no weights at"),
+        ("init=/etc/passwd", "is no .safetensors file"),
         ("evaluation.split=nowhere", "no split"),
         ("evaluation.episodes=0", "episodes=0"),
         ("trainer=hello", "trainer"),

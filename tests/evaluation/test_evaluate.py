@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import pytest
+import torch
+from safetensors.torch import save_file
+from torch import nn
 
 from mitigate.core import conf
 from mitigate.evaluation import evaluate, rows
@@ -47,3 +50,56 @@ def test_an_option_of_trainings_is_refused(tmp_path, option):
     with pytest.raises(ValueError, match="is for trainings"):
         evaluate.run(cfg, [option])
     assert not list(tmp_path.iterdir())
+
+
+@pytest.fixture
+def policies(tmp_path):
+    """Options for agents of one's own, of the class that is named."""
+
+    def options(target, *more, settings=""):
+        folder = tmp_path / "mine" / "agent"
+        folder.mkdir(parents=True, exist_ok=True)
+        agent = f"# @package _global_\nagent: {{_target_: {target}{settings}}}\n"
+        (folder / "own.yaml").write_text(agent)
+        of = [f"--config-dir={tmp_path / 'mine'}", "agent=own", f"runs={tmp_path / 'runs'}"]
+        small = ["env.size=16", "episodes=1", "conditions=[clean,flare]", "workers=1"]
+        return conf.load_config("evaluate", [*of, *small, *more])
+
+    return options
+
+
+def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies):
+    straight = "tests.evaluation.straight.Straight"
+    cfg = policies(straight, "restore=checkpoints/restorer:rgb", settings=", steps: 2")
+    found = rows.read(evaluate.run(cfg) / "rows.jsonl")
+    assert {row["name"] for row in found} == {"Straight+restorer-rgb"} and len(found) == 2
+    with pytest.raises(ValueError, match=r"Straight is no torch.nn.Module.*leave out checkpoint="):
+        evaluate.run(policies(straight, "checkpoint=w", settings=", steps: 2"))
+
+
+class Net(nn.Linear):
+    """A policy that somebody trained elsewhere."""
+
+    def __init__(self) -> None:
+        super().__init__(1, 4)
+
+    def reset(self, instruction):
+        pass
+
+    def act(self, observation):
+        return int(self.bias.argmax())
+
+
+def test_weights_that_were_trained_elsewhere_are_read_from_safetensors_alone(policies, tmp_path):
+    net = Net()
+    nn.init.constant_(net.bias, 0.0)
+    net.bias.data[0] = 9.0
+    save_file(net.state_dict(), tmp_path / "w.safetensors")
+    cfg = policies(f"{__name__}.Net", f"checkpoint={tmp_path / 'w.safetensors'}")
+    found = rows.read(evaluate.run(cfg) / "rows.jsonl")
+    assert [(row["name"], row["steps"]) for row in found] == [("w", 1), ("w", 1)]
+    torch.save(net.state_dict(), tmp_path / "w.pt")
+    with pytest.raises(FileNotFoundError, match="may run code.*safetensors.torch.save_file"):
+        evaluate.run(policies(f"{__name__}.Net", f"checkpoint={tmp_path / 'w.pt'}"))
+    with pytest.raises(ValueError, match="or a .safetensors file of its weights"):
+        evaluate.run(policies(f"{__name__}.Net"))
