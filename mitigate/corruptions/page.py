@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from itertools import takewhile
+
+from mitigate.core.files import PACKAGE
 from mitigate.corruptions import eld, keying
 from mitigate.corruptions.curves import EPISODES, GRID, Curve
 from mitigate.corruptions.registry import record
@@ -41,6 +44,16 @@ A random field is white noise on a grid of {side} cells along the shorter side, 
 Gaussian of the stated correlation and resampled to the frame. Constants of our own stand in the
 code with the rest: `mitigate/corruptions/rgb.py`, `mitigate/corruptions/masks.py`,
 `mitigate/corruptions/depth.py`, `mitigate/corruptions/echo.py`, `mitigate/corruptions/eld.py`.
+
+## Suites
+
+`suite=NAME` of an evaluation, a training's comparison or `mitigate run` says which conditions are
+met (`conf/suite`); `conditions=[clean,flare]` names them one by one.
+
+{suites}
+
+Of the eight conditions of instructions `white_box` is for agents with a system prompt, so tables of
+ours have twelve corruptions of frames and seven of instructions, 19 in all.
 
 ## How much it corrupts
 
@@ -122,12 +135,22 @@ def page(found: dict[str, Curve], seed: int) -> str:
         episodes=EPISODES,
         steps=len(GRID),
         table=_strengths(found),
+        suites=suites(),
         blur_most=record("motion_blur").slip,
         step_most=record("quantization").slip,
         blur_slip=f"{found['motion_blur'].slip:.1g}",
         step_slip=f"{found['quantization'].slip:.1g}",
     )
     return HEAD.format(version=SUITE_VERSION, seed=seed) + formulas() + text
+
+
+def suites() -> str:
+    """A table of ``conf/suite``: the name of each file and the comment at its head."""
+    lines = ["| `suite=` | |", "|---|---|"]
+    for file in sorted((PACKAGE / "conf" / "suite").glob("*.yaml")):
+        head = takewhile(lambda line: line.startswith("#"), file.read_text("utf-8").splitlines())
+        lines.append(f"| `{file.stem}` | {' '.join(line[1:].strip() for line in head)} |")
+    return "\n".join(lines)
 
 
 def formulas(names: tuple[str, ...] = NAMES) -> str:

@@ -101,6 +101,7 @@ def test_a_sheet_of_the_unseen_ones_has_a_row_for_each(tmp_path, scene, monkeypa
 
 def test_the_formulas_in_the_documentation_are_those_of_the_code():
     """After a change of a constant: ``python -m mitigate.corruptions.gallery --page``."""
-    assert gallery.page.formulas() in (gallery.DOCS / "corruptions.md").read_text()
+    text = (gallery.DOCS / "corruptions.md").read_text()
+    assert gallery.page.formulas() in text and gallery.page.suites() in text
     text = (gallery.DOCS / "unseen-corruptions.md").read_text()
     assert all(gallery.unseen_page.table(half) in text for half in gallery.unseen_page.PICTURES)
