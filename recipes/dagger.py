@@ -19,8 +19,9 @@ import torch
 from mitigate.core.files import write_bytes
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import Imitate, batch_of, falling_share
+from mitigate.recipes.imitate import Imitate, falling_share
 from mitigate.training import success
+from mitigate.training.rollouts import batch_of
 from mitigate.worlds.world import TrainingEpisodes, World
 
 

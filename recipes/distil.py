@@ -15,26 +15,24 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
 import torch
 from torch import Tensor
 
 from mitigate.core import checkpoint
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import batch_of, check_losses, imitation, loss_weights, masked
-from mitigate.recipes.pretrain import VIEWS_ALONE, views_to_learn
+from mitigate.recipes.imitate import check_losses, imitation, loss_weights, masked
+from mitigate.recipes.pretrain import views_to_learn
 from mitigate.training import limits
-from mitigate.training.parts import OWN, SEEING, TRAINABLE, load_teacher, refuse_gates, train_only
-from mitigate.training.poses import Poses
-from mitigate.training.recipe import Recipe
-from mitigate.training.rollouts import Rollouts
+from mitigate.training.parts import load_teacher, refuse_gates, train_only
+from mitigate.training.poses import OnViews, Poses
+from mitigate.training.rollouts import OnEpisodes, Rollouts
 from mitigate.worlds.world import TrainingEpisodes, World
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
 
-class Distil(Recipe):
+class Distil(OnEpisodes):
     """Args: as ``recipes/imitate.py``; teacher: weights, or "start" for ``agent`` as it is now;
     w_il, w_kl, w_feat, temperature: of the loss above; match: which of the agent's features are
     matched, None: all. A feature that no trained weight makes is not.
@@ -42,9 +40,6 @@ class Distil(Recipe):
     With ``w_kl = w_feat = 0`` this is imitation, bit for bit. Raises FileNotFoundError for a
     missing teacher; ValueError as imitation does, and for a negative weight.
     """
-
-    needs = TRAINABLE
-    otherwise = f"This recipe learns from episodes that the agent walks. {OWN}"
 
     def __init__(
         self,
@@ -103,18 +98,6 @@ class Distil(Recipe):
         self.teacher.eval()
         return self
 
-    def jobs(self, step: int) -> list[tuple]:
-        return self.rollouts.jobs(step, self.workers)
-
-    def pieces(self) -> int:
-        return self.rollouts.pieces
-
-    def work(self, job: tuple) -> Any:
-        return self.rollouts.work(job)
-
-    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
-        return batch_of(self.rollouts.collate(pieces))
-
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
         out = self.agent.decide(decisions)
@@ -147,21 +130,8 @@ class Distil(Recipe):
                 "Output.features, or set w_il."
             )
 
-    def evaluate(self, step: int) -> dict[str, float]:
-        """The schedule's weights, for the log."""
-        return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
 
-    def figures(self, step: int) -> dict[str, np.ndarray]:
-        return self.rollouts.figures()
-
-    def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.rollouts.schedule.state_dict()}
-
-    def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.rollouts.schedule.load_state_dict(state["schedule"])
-
-
-class DistilViews(Recipe):
+class DistilViews(OnViews):
     """Args: agent, modality, world, training, schedule, panoramas, refresh_episodes: as
     ``recipes/pretrain.py``. teacher: weights, or "start" for ``agent`` as it is now. w_labels,
     w_feat: weights of the labels' loss and of the features'. adapters_only: train the agent's
@@ -171,9 +141,6 @@ class DistilViews(Recipe):
     Raises FileNotFoundError for a missing teacher, ValueError for adapters with gates.
     """
 
-    ahead = True
-    needs = SEEING
-    otherwise = VIEWS_ALONE
     teaches_gates: ClassVar[bool] = False
 
     def __init__(
@@ -220,22 +187,6 @@ class DistilViews(Recipe):
         self.teacher.eval()
         return self
 
-    def jobs(self, step: int) -> list[tuple]:
-        return self.poses.jobs(step, self.workers)
-
-    def pieces(self) -> int:
-        return self.poses.pieces
-
-    def work(self, job: tuple) -> Any:
-        return self.poses.work(job)
-
-    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
-        return self.poses.collate(pieces)
-
-    def weight(self, batch: dict[str, Any]) -> float:
-        """Panoramas, or views of one camera."""
-        return float(len(batch["frames"]))
-
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])
         with torch.no_grad():
@@ -243,15 +194,6 @@ class DistilViews(Recipe):
         feat = feature_loss(out.features["views"], wanted.features["views"])
         loss = self.w_labels * out.losses["labels"] + self.w_feat * feat
         return {"loss": loss, "feat": feat, **out.losses, **out.figures}
-
-    def figures(self, step: int) -> dict[str, np.ndarray]:
-        return self.poses.figures()
-
-    def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.poses.schedule.state_dict()}
-
-    def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.poses.schedule.load_state_dict(state["schedule"])
 
 
 def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict[str, Tensor]:

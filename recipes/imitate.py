@@ -12,21 +12,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-import numpy as np
 from torch import Tensor
 
 from mitigate.agents.agent import Decisions, Output
 from mitigate.corruptions import Schedule
 from mitigate.training import limits
-from mitigate.training.parts import OWN, TRAINABLE, train_only
-from mitigate.training.recipe import Recipe
-from mitigate.training.rollouts import Rollouts
+from mitigate.training.parts import train_only
+from mitigate.training.rollouts import OnEpisodes, Rollouts
 from mitigate.worlds.world import TrainingEpisodes, World
 
 DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions (ours)
 
 
-class Imitate(Recipe):
+class Imitate(OnEpisodes):
     """Args:
     agent: trained in place. world, training, schedule: makes a world, where its episodes come from,
     which frame is corrupted by what.
@@ -38,9 +36,6 @@ class Imitate(Recipe):
 
     Raises ValueError for an unknown part and for no episodes.
     """
-
-    needs = TRAINABLE
-    otherwise = f"This recipe learns from episodes that the agent walks. {OWN}"
 
     def __init__(
         self,
@@ -73,39 +68,11 @@ class Imitate(Recipe):
             refresh_episodes=refresh_episodes,
         )
 
-    def identity(self) -> dict[str, str]:
-        return self.rollouts.identity()
-
-    def jobs(self, step: int) -> list[tuple]:
-        return self.rollouts.jobs(step, self.workers)
-
-    def pieces(self) -> int:
-        return self.rollouts.pieces
-
-    def work(self, job: tuple) -> Any:
-        return self.rollouts.work(job)
-
-    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
-        return batch_of(self.rollouts.collate(pieces))
-
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
         out = self.agent.decide(decisions)
         check_losses(self.agent, self.losses, out)
         return imitation(out, decisions, self.losses)
-
-    def evaluate(self, step: int) -> dict[str, float]:
-        """The schedule's weights, for the log."""
-        return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
-
-    def figures(self, step: int) -> dict[str, np.ndarray]:
-        return self.rollouts.figures()
-
-    def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.rollouts.schedule.state_dict()}
-
-    def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.rollouts.schedule.load_state_dict(state["schedule"])
 
 
 def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:
@@ -163,8 +130,3 @@ def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
                 f"recipe.losses weights {name!r}, which decide() of {type(agent).__name__} does "
                 f"not return: its losses are {', '.join(known) or 'none'}."
             )
-
-
-def batch_of(decisions: Decisions) -> dict[str, Any]:
-    """Decisions as the trainer takes a batch."""
-    return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}

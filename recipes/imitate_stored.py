@@ -14,11 +14,11 @@ from torch import Tensor
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import batch_of, check_losses, falling_share, imitation, loss_weights
+from mitigate.recipes.imitate import check_losses, falling_share, imitation, loss_weights
 from mitigate.training import limits, success
 from mitigate.training.parts import TRAINABLE, train_only
 from mitigate.training.recipe import Recipe
-from mitigate.training.rollouts import PIECES
+from mitigate.training.rollouts import PIECES, batch_of
 from mitigate.worlds.world import TrainingEpisodes, World
 
 

@@ -10,33 +10,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 from torch import Tensor
 
 from mitigate.agents.adapters import adapted, adapter_parameters
 from mitigate.agents.agent import Seeing
 from mitigate.corruptions import Schedule
-from mitigate.training.parts import OWN, SEEING, freeze
-from mitigate.training.poses import Poses
-from mitigate.training.recipe import Recipe
+from mitigate.training.parts import freeze
+from mitigate.training.poses import OnViews, Poses
 from mitigate.worlds.world import TrainingEpisodes, World
 
-VIEWS_ALONE = (
-    f"This stage teaches encoders on views alone. {OWN} Of the recipes, imitation, da_per_frame, "
-    "da_per_episode, da_success and ts_distill do without, for agents that learn on episodes; so "
-    "does one of your own with recipes/adapt.py (Adapt)."
-)
 
-
-class Pretrain(Recipe):
+class Pretrain(OnViews):
     """Args: agent: its encoders of ``modality`` ("rgb" or "depth") are trained in place; it must be
     able to ``see`` (``agents/agent.py``). world, training, panoramas, refresh_episodes: as
     ``Poses``. schedule: which panorama is corrupted by what, None: none.
     """
-
-    ahead = True
-    needs = SEEING
-    otherwise = VIEWS_ALONE
 
     def __init__(
         self,
@@ -62,34 +50,9 @@ class Pretrain(Recipe):
             **views_to_learn(agent, modality),
         )
 
-    def jobs(self, step: int) -> list[tuple]:
-        return self.poses.jobs(step, self.workers)
-
-    def pieces(self) -> int:
-        return self.poses.pieces
-
-    def work(self, job: tuple) -> Any:
-        return self.poses.work(job)
-
-    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
-        return self.poses.collate(pieces)
-
-    def weight(self, batch: dict[str, Any]) -> float:
-        """Panoramas, or views of one camera."""
-        return float(len(batch["frames"]))
-
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])
         return {"loss": out.losses["labels"], **out.figures}
-
-    def figures(self, step: int) -> dict[str, np.ndarray]:
-        return self.poses.figures()
-
-    def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.poses.schedule.state_dict()}
-
-    def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.poses.schedule.load_state_dict(state["schedule"])
 
 
 def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> dict[str, Any]:

@@ -28,9 +28,9 @@ SCENES = ("Maze", "FourRooms")  # many rooms as ours have, and four bare ones
 _POSES = 40  # of MiniWorld's agent
 
 
-def ours(size: int, pipe: str = "p3tinydisplay") -> Callable[[], int]:
+def ours(size: int) -> Callable[[], int]:
     """A function that renders a panorama at a random free pose and returns its number of views."""
-    apartment, renderer = Apartment(7), Renderer(size, pipe)
+    apartment, renderer = Apartment(7), Renderer(size)
     renderer.load(apartment)
     space, rng = apartment.space, generator("bench", "apartments")
 

@@ -1,7 +1,7 @@
 """From a config to objects: the only place that instantiates ``_target_`` nodes.
 
-Only configs of this checkout are ever built; a config that came with downloaded weights is read
-as data, because a ``_target_`` in it could run anything.
+Only configs of this checkout and of the user's own (``--config-dir``) are ever built; one that came
+with downloaded weights is read as data, because a ``_target_`` in it could run anything.
 """
 
 from __future__ import annotations

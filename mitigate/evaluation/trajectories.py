@@ -31,6 +31,7 @@ from mitigate.worlds.world import World, depth_sensor
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
 CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
 INCHES, DPI = (9.0, 10.5), 80
+PICTURES = 4  # episodes that are drawn after a training (ours)
 
 
 @dataclass(frozen=True)
@@ -150,10 +151,9 @@ def write_pictures(
     folder: Path | str,
     *,
     seed: int = 0,
-    count: int = 4,
     fronts: Mapping[str, Front] | None = None,
 ) -> list[Path]:
-    """Draw the first ``count`` episodes won back by training, and ``sheet.png`` with all of them.
+    """Draw the first ``PICTURES`` episodes that training won back, and ``sheet.png`` with all.
 
     ``agents`` are before and after, by the names in ``rows`` (``won_back`` is the rule). Where
     nothing was won back, or there is one agent alone, the first corrupted row is drawn instead. Of
@@ -165,7 +165,7 @@ def write_pictures(
     place = {episode_id: index for index, episode_id in enumerate(known)}
     rows = sorted(rows, key=lambda row: place[row["episode_id"]])
     before, after = list(agents)[0], list(agents)[-1]
-    chosen = list(won_back(rows, before, after))[:count] or _first_corrupted(rows)
+    chosen = list(won_back(rows, before, after))[:PICTURES] or _first_corrupted(rows)
     written = []
     for episode_id, corruption in chosen:
         safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]  # an id may hold what no file name should

@@ -13,11 +13,17 @@ from mitigate.core.observation import RGB, VIEWS
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
-from mitigate.training.parts import hold_statistics
+from mitigate.training.parts import OWN, SEEING, hold_statistics
+from mitigate.training.recipe import Recipe
 from mitigate.training.success import measure
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
 PIECE = 6  # panoramas that one job renders (ours)
+VIEWS_ALONE = (
+    f"This stage teaches encoders on views alone. {OWN} Of the recipes, imitation, da_per_frame, "
+    "da_per_episode, da_success and ts_distill do without, for agents that learn on episodes; so "
+    "does one of your own with recipes/adapt.py (Adapt)."
+)
 
 
 class Poses:
@@ -156,6 +162,40 @@ class Poses:
 
     def _target(self, truth: Mapping[str, np.ndarray]) -> np.ndarray:
         return np.zeros(0, np.float32) if self.label is None else truth[self.label]
+
+
+class OnViews(Recipe):
+    """A recipe that teaches encoders on the views of ``poses``, which its constructor makes."""
+
+    ahead = True
+    needs = SEEING
+    otherwise = VIEWS_ALONE
+    poses: Poses
+
+    def jobs(self, step: int) -> list[tuple]:
+        return self.poses.jobs(step, self.workers)
+
+    def pieces(self) -> int:
+        return self.poses.pieces
+
+    def work(self, job: tuple) -> Any:
+        return self.poses.work(job)
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        return self.poses.collate(pieces)
+
+    def weight(self, batch: dict[str, Any]) -> float:
+        """Panoramas, or views of one camera."""
+        return float(len(batch["frames"]))
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return self.poses.figures()
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.poses.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.poses.schedule.load_state_dict(state["schedule"])
 
 
 def share_of(scenes: Any, piece: int, pieces: int) -> Any:

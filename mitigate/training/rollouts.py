@@ -17,7 +17,8 @@ from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.training import limits
-from mitigate.training.parts import hold_statistics
+from mitigate.training.parts import OWN, TRAINABLE, hold_statistics
+from mitigate.training.recipe import Recipe
 from mitigate.training.success import measure, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
@@ -131,3 +132,44 @@ class Rollouts:
             )
         )
         hold_statistics(self.agent.train())
+
+
+class OnEpisodes(Recipe):
+    """A recipe that learns from ``rollouts``, which its constructor makes."""
+
+    needs = TRAINABLE
+    otherwise = f"This recipe learns from episodes that the agent walks. {OWN}"
+    rollouts: Rollouts
+
+    def identity(self) -> dict[str, str]:
+        return self.rollouts.identity()
+
+    def jobs(self, step: int) -> list[tuple]:
+        return self.rollouts.jobs(step, self.workers)
+
+    def pieces(self) -> int:
+        return self.rollouts.pieces
+
+    def work(self, job: tuple) -> Any:
+        return self.rollouts.work(job)
+
+    def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
+        return batch_of(self.rollouts.collate(pieces))
+
+    def evaluate(self, step: int) -> dict[str, float]:
+        """The schedule's weights, for the log."""
+        return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return self.rollouts.figures()
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.rollouts.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.rollouts.schedule.load_state_dict(state["schedule"])
+
+
+def batch_of(decisions: Decisions) -> dict[str, Any]:
+    """Decisions as the trainer takes a batch."""
+    return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}

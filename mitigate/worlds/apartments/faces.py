@@ -178,7 +178,7 @@ class FaceBuilder:
         main = variants[self.rng.integers(len(variants))] if variants is not None else np.ones(3)
         pattern = PATTERNS.index("noise" if self.rng.random() < 0.5 else "plain")
         for part in category.parts:
-            low, high = _turned(part, piece, category.width, category.depth)
+            low, high = _turned(part, piece)
             colour = main if part[6] == "main" else np.array(part[6])
             for axis in range(3):
                 others = [k for k in range(3) if k != axis]
@@ -205,7 +205,7 @@ def _corners(
     return corners
 
 
-def _turned(part: tuple, piece: Furniture, width: float, depth: float) -> tuple[tuple, tuple]:
+def _turned(part: tuple, piece: Furniture) -> tuple[tuple, tuple]:
     """World box of a part. Turn 0 backs on low y, 1 on high x, 2 on high y, 3 on low x."""
     px0, px1, py0, py1, z0, z1, _ = part
     x0, y0, x1, y1 = piece.rect

@@ -109,10 +109,10 @@ class Event:
     thing: int = -1
 
 
-def name_of(apartment: Apartment, instance: int, coloured: bool = True) -> str:
+def name_of(apartment: Apartment, instance: int) -> str:
     """What a person calls a piece of furniture, for example "red sofa"."""
     piece = apartment.furniture[instance]
-    return f"{piece.colour} {piece.category}" if coloured and piece.colour else piece.category
+    return f"{piece.colour} {piece.category}" if piece.colour else piece.category
 
 
 def describe(

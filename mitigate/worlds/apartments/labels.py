@@ -79,7 +79,7 @@ def _within(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray, low: int, high: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Labels of the columns of pixels from ``low`` to ``high``."""
-    instance, room, category, colour, kind = _tables(apartment.scene_id, apartment)
+    instance, room, category, colour, kind = _tables(apartment)
     return _label(
         ids,
         depth[..., 0],
@@ -97,7 +97,7 @@ def _within(
 
 
 @lru_cache(maxsize=64)  # each holds its apartment
-def _tables(scene_id: str, apartment: Apartment) -> tuple[np.ndarray, ...]:
+def _tables(apartment: Apartment) -> tuple[np.ndarray, ...]:
     furniture = apartment.furniture
     category = np.array([CATEGORIES.index(p.category) for p in furniture], np.int64)
     colour = np.array(

@@ -22,7 +22,7 @@ class FreeSpace:
     ``free`` is bool ``[ny, nx]``; cell (i, j) covers x in [j, j + 1) * CELL and y likewise.
     """
 
-    def __init__(self, blocked: np.ndarray, keep: tuple[float, float] | None = None) -> None:
+    def __init__(self, blocked: np.ndarray) -> None:
         distance = cv2.distanceTransform(
             (~blocked).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE
         )

@@ -1,9 +1,8 @@
 """Panda3D renderer: one off-screen buffer holds the 12 RGB views and the 12 face-id views.
 
-Software pipe by default (``p3tinydisplay``: no GPU, GL or display); ``p3headlessgl`` on a GPU
-machine. The software pipe cannot read depth back, so a second pass draws every planar face in a
-flat id colour: the id gives the semantic label, and ray-plane intersection gives exact metric
-depth.
+It draws on the processor (Panda3D's ``p3tinydisplay``: no GPU, GL or display), which cannot read
+depth back, so a second pass draws every planar face in a flat id colour: the id gives the semantic
+label, and ray-plane intersection gives exact metric depth.
 """
 
 from __future__ import annotations
@@ -27,11 +26,12 @@ EYE = 1.25  # camera height, metres (VLN-CE)
 FARTHEST = 17.0  # metres; longer than any line through an apartment
 LEAST = 4  # pixels of a view (ours)
 SCENES = 128  # whose geometry a shared renderer keeps, 0.35 MB each; another takes 6 ms (ours)
+PIPE = "p3tinydisplay"
 _COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
 _NEAR = 0.1  # metres; a wall at the agent's radius is at least 0.127 m deep in a 90 degree view
 
 
-def _panda(pipe: str) -> Any:
+def _panda() -> Any:
     with unbroken():  # an error inside its first import ends the process (panda3d 1.10.16)
         from panda3d import core
 
@@ -44,7 +44,7 @@ def _panda(pipe: str) -> Any:
             "textures-power-2 none",
             "audio-library-name null",
             "framebuffer-srgb 0",
-            f"load-display {pipe}",
+            f"load-display {PIPE}",
         ]
     )
     core.load_prc_file_data("mitigate", settings)
@@ -57,13 +57,13 @@ class Renderer:
     Raises ValueError for a ``size`` in pixels below ``LEAST``.
     """
 
-    def __init__(self, size: int = 64, pipe: str = "p3tinydisplay", scenes: int = 48) -> None:
+    def __init__(self, size: int = 64, scenes: int = 48) -> None:
         if size < LEAST:
             raise ValueError(f"A view of size={size} shows nothing: give {LEAST} pixels or more.")
-        self.size, self.core = size, _panda(pipe)
+        self.size, self.core = size, _panda()
         core = self.core
         self.engine = core.GraphicsEngine.get_global_ptr()
-        self.pipe = _make_pipe(core, pipe)
+        self.pipe = _make_pipe(core)
         properties = core.FrameBufferProperties()
         properties.set_rgb_color(True)
         properties.set_rgba_bits(8, 8, 8, 8)
@@ -73,8 +73,7 @@ class Renderer:
         self.buffer = self.engine.make_output(self.pipe, "panorama", 0, properties, window, flags)
         if self.buffer is None:
             raise RuntimeError(
-                f"Panda3D could not open an off-screen buffer with the {pipe} pipe; run "
-                "`make doctor`."
+                f"Panda3D could not open an off-screen buffer with {PIPE}; run `make doctor`."
             )
         self.buffer.set_active(False)  # a frame draws every active buffer of the process
         weakref.finalize(self, self.engine.remove_window, self.buffer)
@@ -226,14 +225,13 @@ def shared_renderer(size: int) -> Renderer:
     return Renderer(size, scenes=SCENES)
 
 
-def _make_pipe(core: Any, name: str) -> Any:
+def _make_pipe(core: Any) -> Any:
     selection = core.GraphicsPipeSelection.get_global_ptr()
-    kind = "TinyOffscreenGraphicsPipe" if name == "p3tinydisplay" else ""
-    selection.make_module_pipe(name)
+    selection.make_module_pipe(PIPE)
     for index in range(selection.get_num_pipe_types()):
-        if kind and str(selection.get_pipe_type(index)) == kind:
+        if str(selection.get_pipe_type(index)) == "TinyOffscreenGraphicsPipe":
             return selection.make_pipe(selection.get_pipe_type(index))
-    return selection.make_module_pipe(name)
+    return selection.make_module_pipe(PIPE)
 
 
 def _id_colours(ids: np.ndarray) -> np.ndarray:

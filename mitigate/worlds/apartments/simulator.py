@@ -37,16 +37,14 @@ def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> 
 class Simulator:
     """One agent in one apartment. Actions and step limit are VLN-CE's (``core/observation.py``)."""
 
-    def __init__(
-        self, size: int = 64, pipe: str = "p3tinydisplay", renderer: Renderer | None = None
-    ) -> None:
-        self.size, self.pipe = size, pipe
+    def __init__(self, size: int = 64, renderer: Renderer | None = None) -> None:
+        self.size = size
         self._renderer = renderer  # several simulators may share one
 
     @property
     def renderer(self) -> Renderer:
         if self._renderer is None:
-            self._renderer = Renderer(self.size, self.pipe)
+            self._renderer = Renderer(self.size)
         return self._renderer
 
     def reset(self, episode: Episode) -> None:
