@@ -103,7 +103,8 @@ def read_camera(told: Mapping[str, Any], sensor: DepthSensor) -> Camera:
     if told.get("dtype") not in _DTYPES[kind]:
         raise ValueError(
             f"The camera {name!r} gives {kind} as {told.get('dtype')}; it must be "
-            f"{' or '.join(_DTYPES[kind])}."
+            f"{' or '.join(_DTYPES[kind])}"
+            f"{', in metres: divide millimetres by 1000' if kind == DEPTH else ''}."
         )
     pitch, yaw, roll = _turned(told.get("orientation"), name)
     low, high = (_number(told.get(end)) for end in ("min_depth", "max_depth"))

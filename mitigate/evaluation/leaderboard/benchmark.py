@@ -37,7 +37,7 @@ from mitigate.restoration.restorer import restorer_of
 from mitigate.safeguard.guard import open_safeguard
 from mitigate.scale.launcher import count
 from mitigate.worlds.episodes import Episode, read_episodes
-from mitigate.worlds.world import World
+from mitigate.worlds.world import Corrupted, World
 
 EPISODES = 20  # of a first look (ours): an SR is then known to about 17 points
 OUT = Path("runs/benchmark")
@@ -98,7 +98,7 @@ def benchmark(
     known = Known(agent, first.sensors, front_of(**front), loaded=loaded)
     known.check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known_as": known.hash}
-    _tell(agent, made, chosen, len(met), workers)
+    _tell(agent, made, chosen, met, workers)
     with FolderLock(file.parent), known:
         walked.keep(file.parent, first, made_by, split, chosen)
         rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
@@ -237,21 +237,23 @@ def _tell(
     agent: Any,
     make_world: Callable[[], World],
     episodes: Sequence[Episode],
-    conditions: int,
+    conditions: Sequence[Corruption],
     workers: int | None,
 ) -> None:
     """Print how much there is to walk, and about how long it takes, from a few clean walks."""
-    total = len(episodes) * conditions
+    total = len(episodes) * len(conditions)
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
     if processes > 1:
         _check_copies(agent, make_world)
     world = make_world()
+    for condition in conditions:  # compiles what corrupts
+        dict(Corrupted(world, condition, 0).reset(episodes[0]))
     with in_eval_mode(agent):
         for episode in episodes[:TIMED]:  # the first one loads what is needed
             started = time.monotonic()
             run_episode(agent, world, episode, CLEAN, 0)
             each = time.monotonic() - started
-    grid = f"{counted(len(episodes), 'episode')} x {counted(conditions, 'condition')}"
+    grid = f"{counted(len(episodes), 'episode')} x {counted(len(conditions), 'condition')}"
     print(
         f"benchmark: {grid} = {counted(total, 'walk')} of about "
         f"{each:.2g} s on {processes} process{'es' * (processes > 1)}: about "
