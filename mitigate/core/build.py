@@ -40,11 +40,11 @@ def build(node: DictConfig, **given: Any) -> Any:
     it was raised.
     """
     try:
-        plain = _plain(node)
-        makers = {k: Maker(v) for k, v in plain.items() if isinstance(v, dict) and v.get(PARTIAL)}
-        rest = OmegaConf.create({k: v for k, v in plain.items() if k not in makers})
+        held = plain(node)
+        makers = {k: Maker(v) for k, v in held.items() if isinstance(v, dict) and v.get(PARTIAL)}
+        rest = OmegaConf.create({k: v for k, v in held.items() if k not in makers})
         make = instantiate(rest, _partial_=True, _convert_="all")
-        _check_arguments(plain, (*plain, *given))
+        _check_arguments(held, (*held, *given))
         return make(**makers, **given)  # not through instantiate, which would copy what is given
     except InstantiationException as error:
         cause = error.__cause__
@@ -82,10 +82,11 @@ class Maker:
         return build(OmegaConf.create(self.node))
 
 
-def _plain(node: DictConfig) -> dict[str, Any]:
-    plain = OmegaConf.to_container(node, resolve=True)
-    assert isinstance(plain, dict)
-    return {str(name): value for name, value in plain.items()}
+def plain(node: DictConfig) -> dict[str, Any]:
+    """A node of a config as plain data."""
+    held = OmegaConf.to_container(node, resolve=True)
+    assert isinstance(held, dict)
+    return {str(name): value for name, value in held.items()}
 
 
 def located(target: str) -> Any:
@@ -105,7 +106,7 @@ def _not_loaded(error: object) -> str:
 
 def maker(node: DictConfig) -> Maker:
     """Return a function that makes what ``node`` describes."""
-    return Maker(_plain(node))
+    return Maker(plain(node))
 
 
 def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -> DictConfig:
@@ -131,7 +132,7 @@ def begun_from(node: DictConfig, weights: str | None) -> DictConfig:
     if weights is None:
         return node
     open_ = {k: v for k, v in carried(node, weights).items() if node.get(k) is None}
-    merged = OmegaConf.merge(OmegaConf.create(_plain(node)), open_)
+    merged = OmegaConf.merge(OmegaConf.create(plain(node)), open_)
     assert isinstance(merged, DictConfig)
     return merged
 
@@ -192,11 +193,11 @@ def build_agent(
 
     weights = None if weights is None else str(find(weights))
     if hardened.is_ours(node._target_):  # numbers that would take all memory, patterns for ever
-        hardened.check_own(_plain(node))
+        hardened.check_own(plain(node))
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if not hasattr(agent, "settings"):  # those of its config are what is known of it
-        known = {k: v for k, v in _plain(node).items() if k != "_target_"}
+        known = {k: v for k, v in plain(node).items() if k != "_target_"}
         agent.settings = partial(dict, known)
     if weights is not None and parts:
         for name in parts:

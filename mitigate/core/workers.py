@@ -83,20 +83,25 @@ def results(
     worker that dies is replaced, and what it had not finished runs again in a fresh process; at
     the next, WorkersDied is raised. What a job raises is raised here.
     """
-    numbers = itertools.count()
-    numbered = [[(next(numbers), job) for job in group] for group in groups if len(group)]
-    workers = min(workers, len(numbered))
+    given = numbered(groups)
+    workers = min(workers, len(given))
     if workers > 1:
-        yield from _Crew(task, numbered, workers, progress).results()
-    elif numbered:
+        yield from _Crew(task, given, workers, progress).results()
+    elif given:
         with task.ready():
-            for group in numbered:
+            for group in given:
                 found = task.work([job for _, job in group])
                 for number, _ in group:
                     with held() as ending:  # a job that was begun is finished
                         result = next(found)
                     yield number, result
                     ending.check()
+
+
+def numbered(groups: Sequence[Sequence[Any]]) -> list[list[tuple[int, Any]]]:
+    """The jobs of each group with their numbers, counted through all groups; no empty group."""
+    numbers = itertools.count()
+    return [[(next(numbers), job) for job in group] for group in groups if len(group)]
 
 
 class _Worker:

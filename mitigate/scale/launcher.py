@@ -102,16 +102,6 @@ def results(
     return _home(launcher).results(task, groups, started, progress, launcher)
 
 
-def numbered(groups: Sequence[Sequence[Any]]) -> list[list[tuple[int, Any]]]:
-    """The jobs of each group with their numbers, counted through all groups; no empty group."""
-    found, number = [], 0
-    for group in groups:
-        if len(group):
-            found.append([(number + at, job) for at, job in enumerate(group)])
-            number += len(group)
-    return found
-
-
 def lost(what: str, attempts: int, done: int, total: int) -> workers.WorkersDied:
     """The error for a group of jobs that no worker finished."""
     return workers.WorkersDied(

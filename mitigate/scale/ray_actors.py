@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.core.names import short
 from mitigate.core.progress import Progress
-from mitigate.core.workers import SECOND, STUCK, Task
-from mitigate.scale.launcher import lost, numbered
+from mitigate.core.workers import SECOND, STUCK, Task, numbered
+from mitigate.scale.launcher import lost
 
 if TYPE_CHECKING:
     from mitigate.scale.launcher import RayConfig

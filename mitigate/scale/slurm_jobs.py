@@ -24,9 +24,9 @@ from typing import TYPE_CHECKING, Any
 from mitigate.core.files import write_bytes
 from mitigate.core.names import unknown
 from mitigate.core.progress import Progress
-from mitigate.core.workers import SECOND, Task
+from mitigate.core.workers import SECOND, Task, numbered
 from mitigate.core.workers import results as run_here
-from mitigate.scale.launcher import lost, numbered
+from mitigate.scale.launcher import lost
 
 if TYPE_CHECKING:
     from mitigate.scale.launcher import SlurmConfig

@@ -18,7 +18,7 @@ from omegaconf import DictConfig, OmegaConf, open_dict
 from torch import nn
 
 from mitigate.agents.observation import check_fits
-from mitigate.core.build import build, located, maker
+from mitigate.core.build import build, located, maker, plain
 from mitigate.core.conf import CONF
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
@@ -32,7 +32,6 @@ from mitigate.training.stages import (
     IDENTITY,
     named,
     not_a_recipe,
-    plain,
     recipe_of,
     trainer_settings,
 )

@@ -16,6 +16,7 @@ from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.training.parts import OWN, SEEING, hold_statistics
 from mitigate.training.recipe import Recipe
 from mitigate.training.success import measure
+from mitigate.worlds.episodes import share_of
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
 PIECE = 6  # panoramas that one job renders (ours)
@@ -196,9 +197,3 @@ class OnViews(Recipe):
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
         self.poses.schedule.load_state_dict(state["schedule"])
-
-
-def share_of(scenes: Any, piece: int, pieces: int) -> Any:
-    """The scenes that piece ``piece`` of ``pieces`` of every step draws from: a worker process then
-    opens only those of its pieces."""
-    return scenes[piece % len(scenes) :: pieces]

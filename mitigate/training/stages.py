@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import DictConfig
 from torch import nn
 
 from mitigate.core import checkpoint, seeding
-from mitigate.core.build import build
+from mitigate.core.build import build, plain
 from mitigate.core.files import atomic_text
 from mitigate.core.identity import code_sha
 from mitigate.training import states
@@ -86,13 +86,6 @@ def trainer_settings(cfg: DictConfig, stage: DictConfig) -> dict[str, Any]:
         for name, value in node.items()
         if value is not None
     }
-
-
-def plain(node: DictConfig) -> dict[str, Any]:
-    """A node of a config as plain data."""
-    held = OmegaConf.to_container(node, resolve=True)
-    assert isinstance(held, dict)
-    return {str(name): value for name, value in held.items()}
 
 
 def _identity(node: dict[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -247,7 +247,7 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
             return {k: data(v) for k, v in value.items() if not str(k).startswith("_")}
         return value
 
-    from mitigate.training.stages import plain
+    from mitigate.core.build import plain
 
     own: dict[str, Any] = getattr(agent, "settings", dict)()
     barred = getattr(agent, OWN_CONFIG_ONLY, ())

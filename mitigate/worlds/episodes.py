@@ -116,6 +116,12 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         )
 
 
+def share_of(items: Any, piece: int, pieces: int) -> Any:
+    """Of a list or range, of scenes say, what piece ``piece`` of ``pieces`` of every step draws
+    from: a worker process then opens only those of its pieces."""
+    return items[piece % len(items) :: pieces]
+
+
 class ListedEpisodes:
     """Training episodes (``worlds/world.py``) drawn from a file.
 
@@ -130,7 +136,7 @@ class ListedEpisodes:
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
         """A function of the generator's state and of ``share``: (piece, of how many)."""
-        mine = self._listed[share[0] % len(self._listed) :: share[1]]
+        mine = share_of(self._listed, *share)
         return mine[int(rng.integers(len(mine)))]
 
     def identity(self) -> dict[str, str]:

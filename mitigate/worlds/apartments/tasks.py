@@ -26,6 +26,7 @@ from mitigate.worlds.episodes import (
     from_vlnce,
     heading_of,
     read_episodes,
+    share_of,
     write_episodes,
 )
 
@@ -157,13 +158,7 @@ class DrawnEpisodes:
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
         """A function of the generator's state and of ``share``: (piece, of how many)."""
-        return draw_training_episode(rng, share_of(self.layouts, *share), self.ogn_share)
-
-
-def share_of(apartments: int, piece: int, pieces: int) -> range:
-    """The training seeds, of the first ``apartments``, that piece ``piece`` of ``pieces`` of every
-    step draws from: a worker process then builds only the apartments of its pieces."""
-    return range(piece % apartments, apartments, pieces)
+        return draw_training_episode(rng, share_of(range(self.layouts), *share), self.ogn_share)
 
 
 def landmarks(episode: Episode) -> list[int]:
