@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from mitigate.corruptions.registry import AND
+from mitigate.evaluation import metrics
 from mitigate.evaluation.blocks import BLOCKS
 from mitigate.evaluation.lists import by_list
 from mitigate.evaluation.rows import Row, upsert
@@ -41,6 +42,11 @@ class Retention:
     corruptions: tuple[str, ...]
     clean: np.ndarray
     corrupted: np.ndarray
+
+    @property
+    def prs(self) -> float:
+        """The PRS; NaN if nothing succeeds clean."""
+        return metrics.prs(float(self.clean.mean()), self.corrupted.mean(axis=1))
 
 
 @dataclass(frozen=True, eq=False)

@@ -220,8 +220,7 @@ def _by_seed(
             found[column, "clean"][seed] = _mean(run.cell(column, "clean", severity, METRICS["SR"]))
             for block, names in blocks.items():
                 for part in run.retention([column], names, severity, METRICS["SR"]) or ():
-                    value = float(part.corrupted.mean() / (part.clean.mean() or math.nan))
-                    found[column, block][seed] = value
+                    found[column, block][seed] = part.prs
     return dict(found)
 
 

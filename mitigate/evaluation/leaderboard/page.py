@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from mitigate.corruptions.registry import AND, UNSEEN
+from mitigate.evaluation import metrics
 from mitigate.evaluation.blocks import BLOCKS, FRAMES, PROMPT_ONLY, SUITE, kind
 from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES
 from mitigate.evaluation.leaderboard.checks import titles
@@ -82,7 +83,7 @@ def _section(entries: list[LeaderboardEntry]) -> dict[str, Any]:
 def _cell(entry: LeaderboardEntry, name: str) -> list[Any]:
     """Return SR, SPL, episodes, and the shares of the clean SR and SPL, over the same episodes."""
     found = [(rates.get(name), rates[CLEAN]) for rates in (entry.SR, entry.SPL)]
-    kept = [shortened(a[0] / b[0]) if a and b and b[0] else None for a, b in found]
+    kept = [shortened(metrics.prs(b[0], [a[0]])) if a and b and b[0] else None for a, b in found]
     return [*(own for own, _ in found), entry.episodes, *kept]
 
 

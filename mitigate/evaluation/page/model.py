@@ -170,9 +170,7 @@ def _kept(section: Section, column: str, name: str, metric: str) -> float | None
     """Return the PRS of one corruption alone: over the episodes that are measured clean, too, and
     None where these are too few for a PRS."""
     parts = section.grid.retention([column], [name], section.severity, METRICS[metric])
-    if parts is None or not parts[0].clean.any():
-        return None
-    return shortened(float(parts[0].corrupted.mean() / parts[0].clean.mean()))
+    return None if parts is None or math.isnan(parts[0].prs) else shortened(parts[0].prs)
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
