@@ -198,7 +198,13 @@ def build_agent(
     agent = build(node)
     if not hasattr(agent, "settings"):  # those of its config are what is known of it
         known = {k: v for k, v in plain(node).items() if k != "_target_"}
-        agent.settings = partial(dict, known)
+        try:
+            agent.settings = partial(dict, known)
+        except (AttributeError, TypeError) as error:  # of a class with slots, or one that is frozen
+            raise ValueError(
+                f"{type(agent).__name__} takes no attribute settings ({error}): give it a method "
+                "settings() that returns its constructor's arguments."
+            ) from error
     if weights is not None and parts:
         for name in parts:
             if name not in agent.parts():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import operator
 import random
+import re
 import sys
 import sysconfig
 import types
@@ -12,6 +13,9 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
+from datetime import date, datetime, timedelta
+from datetime import time as clock_time
+from decimal import Decimal
 from enum import Enum
 from functools import cache, partial
 from itertools import chain, islice
@@ -31,10 +35,13 @@ _LISTS: tuple[Any, ...] = (list, tuple, deque, type({}.values()))
 _CONTAINERS = (*_LISTS, set, frozenset, dict, types.MappingProxyType)
 _GETTERS = (operator.itemgetter, operator.attrgetter, operator.methodcaller)
 _PLAIN = (str, bytes, int, float, complex, type(None), Enum)
-_DATA = (*_PLAIN, PurePath, np.generic, np.dtype, torch.device, torch.dtype, torch.Size)
+_DATA = (
+    *(*_PLAIN, PurePath, np.generic, np.dtype, torch.device, torch.dtype, torch.Size),
+    *(range, slice, re.Pattern, bytearray, Decimal, datetime, date, clock_time, timedelta),
+)
+_GENERATORS = (torch.Generator, np.random.Generator, np.random.RandomState, random.Random)
 _NO_WEIGHTS = (
-    *(*_DATA, type, torch.Generator, np.random.Generator, random.Random),
-    *(np.random.RandomState, np.ufunc, logging.Logger, types.ModuleType, Observation),
+    *(*_DATA, *_GENERATORS, type, np.ufunc, logging.Logger, types.ModuleType, Observation),
 )
 _BY_VERSION = ("mitigate", "torch")  # packages that are known by their version, wherever they are
 _INSTALLED = frozenset(("site-packages", "dist-packages"))
@@ -45,47 +52,53 @@ _OWN_OF_TORCH = frozenset(vars(nn.Module()))  # hooks, parameters, and modules t
 class Held:
     """networks and arrays (also tensors) by where they are, such as "pol.nets.policy", the agent
     itself as ""; a number in braces is of a set, which has no order. functions: of the user's own
-    code. constants: plain values that functions and partial calls hold. attributes: those that it
-    and its objects, lists and mappings hold, which may change from step to step. unknown: places of
-    what nobody could look into, such as a session of another library, or that are too deep or too
-    many."""
+    code. constants: plain values that functions and partial calls hold. attributes: texts of those
+    that it, its objects, their classes, lists, mappings and the modules of networks hold, which may
+    change from step to step, and where one thing has two places. unknown: places of what nobody
+    could look into, such as a session of another library, or that are too deep or too many."""
 
     networks: dict[str, nn.Module] = field(default_factory=dict)
     arrays: dict[str, Any] = field(default_factory=dict)
     functions: dict[str, types.FunctionType] = field(default_factory=dict)
     constants: dict[str, Any] = field(default_factory=dict)
-    attributes: dict[str, Any] = field(default_factory=dict)
+    attributes: dict[str, str] = field(default_factory=dict)
     unknown: list[str] = field(default_factory=list)
 
 
-def held(agent: Any) -> Held:
+def held(agent: Any, *, attributes: bool = False) -> Held:
     """Return what is in ``agent``, in its attributes, its methods, and in the lists, dicts, objects
     and functions that these hold or name; each thing once, where it is found first. Of a large list
-    or dict its first parts that may hold weights are looked into, and the list is unknown."""
+    or dict its first parts that may hold weights are looked into, and the list is unknown.
+    ``attributes``: whether these are asked for."""
     found = Held()
-    seen: dict[int, Any] = {}
+    seen: dict[int, tuple[Any, str]] = {}
     waiting: deque[tuple[tuple[str, ...], Any, int, bool]] = deque([((), agent, PARTS, False)])
     while waiting:
         place, value, most, fixed = waiting.popleft()
-        if id(value) in seen:
-            continue
-        seen[id(value)] = value
         name = ".".join(place)
+        if id(value) in seen:
+            if attributes and not isinstance(value, types.FunctionType):
+                found.attributes[name] = f"as {seen[id(value)][1]}"
+            continue
+        seen[id(value)] = value, name
         if isinstance(value, types.FunctionType) and _is_users(value):
             found.functions[name] = value
         if isinstance(value, nn.Module):
             found.networks[name] = value
-            seen.update((id(m), m) for m in (value.modules() if value is agent else ()))
+            seen.update((id(m), (m, name)) for m in (value.modules() if value is agent else ()))
+            found.attributes |= _of_modules(name, value) if attributes else {}
         elif (array := _array(value)) is not None:
             found.arrays[name] = array
             continue
         inside, many = _inside(value, whole=value is agent), isinstance(value, _CONTAINERS)
         fixed = isinstance(value, (types.FunctionType, partial)) or (fixed and many)
-        if inside is not None:
+        if inside is not None and (fixed or attributes):
             inside = [*inside]
-            kinds, kept = (_PLAIN, found.constants) if fixed else (_DATA, found.attributes)
-            plain = [(own, part) for own, part in inside if isinstance(part, kinds)]
-            kept.update((".".join((*place, own)), part) for own, part in plain)
+            within = [(".".join((*place, own)), part) for own, part in inside]
+            if fixed:
+                found.constants |= {own: part for own, part in within if isinstance(part, _PLAIN)}
+            else:
+                found.attributes |= {own: t for own, part in within if (t := _text(part))}
         able = (part for part in inside or () if not isinstance(part[1], _NO_WEIGHTS))
         parts = [*islice(able, most + 1 if many else None)]
         if inside is None or (parts and (len(place) >= DEPTH or len(seen) > MOST)):
@@ -97,6 +110,34 @@ def held(agent: Any) -> Held:
         for own, part in parts[: most if many else None]:  # numbered ones are no globals
             waiting.append(((*place, own), part, each, fixed and own.isdigit()))
     return found
+
+
+def _text(value: Any) -> str:
+    """Plain data, a class, or the state of a generator as text that is the same in every process;
+    empty for anything else."""
+    if isinstance(value, Enum):
+        return f"{type(value).__qualname__}.{value.name}"
+    if isinstance(value, type):
+        return f"{value.__module__}.{value.__qualname__}"
+    if isinstance(value, torch.Generator):
+        return str(value.get_state().tolist())
+    if isinstance(value, np.random.Generator):
+        return str(value.bit_generator.state)
+    if isinstance(value, np.random.RandomState):
+        return str(value.get_state(legacy=False))
+    if isinstance(value, random.Random):
+        return str(value.getstate())
+    return repr(value) if isinstance(value, _DATA) else ""
+
+
+def _of_modules(name: str, net: nn.Module) -> dict[str, str]:
+    """The plain attributes of the modules of a network."""
+    return {
+        f"{name}.{inner}.{own}": text
+        for inner, module in net.named_modules()
+        for own, value in getattr(module, "__dict__", {}).items()
+        if own not in _OWN_OF_TORCH and (text := _text(value))
+    }
 
 
 def networks(agent: Any) -> list[nn.Module]:

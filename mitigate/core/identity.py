@@ -31,33 +31,42 @@ DIGITS = 12  # hex digits: 48 bits
 _OF_SET = re.compile(r"\{\d+\}")  # of which each process has another order
 
 
-def identity(
-    agent: Any, sensors: Mapping[str, Sensor], front: str = "none", *, attributes: bool = False
-) -> str:
+def identity(agent: Any, sensors: Mapping[str, Sensor], front: str = "none") -> str:
     """Return the hash of ``agent`` behind ``sensors``.
 
-    It covers the weights (names, types, shapes, values) of the network that it is and of those that
-    it holds, wherever they are in it (``core/held.py``), or of its arrays if it has no networks;
-    the agent's class and ``settings`` (a mapping, or a method that returns one: vocabulary and all
-    else that is no weight); the code of its classes and of its networks' (:func:`source_of`), and
-    of the functions that it holds or that its code names, with their constants; what each sensor
-    gives, and what stands in front of the agent (``front``: the safeguard that repairs its
-    instructions). ``attributes``: of an agent without ``settings``, also the plain data that its
-    attributes hold now, which may be others after a walk.
+    It covers all that :func:`made_of` names; what each sensor gives; and what stands in front of
+    the agent (``front``: the safeguard that repairs its instructions).
     """
-    settings, inside = getattr(agent, "settings", dict), held(agent)
-    loose = inside.attributes if attributes and not hasattr(agent, "settings") else {}
+    return hash_of(made_of(agent), sensors, front)
+
+
+def made_of(agent: Any, *, attributes: bool = False) -> dict[str, Any]:
+    """Return what makes ``agent`` the one that it is.
+
+    The weights (names, types, shapes, values) of the network that it is and of those that it holds,
+    wherever they are in it (``core/held.py``), or its arrays if it has no networks; its class and
+    ``settings`` (a mapping, or a method that returns one: vocabulary and all else that is no
+    weight); the code of its classes and of its networks' (:func:`source_of`), and of the functions
+    that it holds or that its code names, with their constants. ``attributes``: of an agent without
+    ``settings``, also the plain data that its attributes hold now, which may be others after a
+    walk.
+    """
+    settings = getattr(agent, "settings", dict)
+    inside = held(agent, attributes=attributes and not hasattr(agent, "settings"))
     code = [*_codes(agent, inside), *_lines(inside.constants)]
-    made = {
+    return {
         "class": f"{type(agent).__module__}.{type(agent).__qualname__}",
         "weights": _weights(inside),
         "settings": settings() if callable(settings) else settings,
-        "sensors": {name: asdict(sensor) for name, sensor in sorted(sensors.items())},
-        "front": front,
         **({"code": code} if code else {}),
-        **({"attributes": _lines(loose)} if loose else {}),
+        **({"attributes": _lines(inside.attributes)} if inside.attributes else {}),
     }
-    text = json.dumps(made, sort_keys=True, default=_plain)
+
+
+def hash_of(made: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str = "none") -> str:
+    """Return the hash of an agent that is made of ``made`` behind ``sensors`` and ``front``."""
+    shown = {name: asdict(sensor) for name, sensor in sorted(sensors.items())}
+    text = json.dumps({**made, "sensors": shown, "front": front}, sort_keys=True, default=_plain)
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 

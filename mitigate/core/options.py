@@ -78,10 +78,11 @@ def check_dashes(options: Sequence[str]) -> None:
 
 
 def flags_first(words: Sequence[str]) -> list[str]:
-    """``words`` of a command line with Hydra's flag of many runs in front, which it does not read
-    behind options."""
+    """``words`` of a command line with Hydra's flag of many runs and its folder of configs in
+    front, which it does not read between options."""
     flags = [word for word in words if word in MULTIRUN]
-    return [*flags[:1], *(word for word in words if word not in MULTIRUN)]
+    folder, others = without_config_folder([word for word in words if word not in MULTIRUN])
+    return [*flags[:1], *folder, *others]
 
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:

@@ -176,12 +176,12 @@ def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
     return "+".join([*own, *fronts(cfg.safeguard, cfg.restore)])
 
 
-def fronts(safeguard: str, restore: str | None) -> list[str]:
+def fronts(safeguard: str | None, restore: str | None) -> list[str]:
     """Return the short names of what stands in front of an agent, as parts of a column's name."""
     from mitigate.restoration import choices as restorers
     from mitigate.safeguard import choices as safeguards
 
-    found = [safeguards.label(safeguard), restorers.label(restore) if restore else "none"]
+    found = [safeguards.label(safeguard or "none"), restorers.label(restore or "none")]
     return [name for name in found if name != "none"]
 
 
@@ -206,13 +206,14 @@ def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
 
 
 def _is_network(node: DictConfig) -> bool:
-    """Whether an agent has weights to read: others, such as one behind an API, are made alone."""
+    """Whether an agent may have weights to read, as a network has and what a function makes may
+    have; others, such as one behind an API, are made alone."""
     from torch import nn
 
     from mitigate.core.build import located
 
     kind = located(node._target_)
-    return isinstance(kind, type) and issubclass(kind, nn.Module)
+    return not isinstance(kind, type) or issubclass(kind, nn.Module)
 
 
 def check_walks(agent: Any) -> None:

@@ -113,7 +113,8 @@ def _together(agent: Any, world: Any) -> int:
     """How many episodes the agent walks at once in such worlds."""
     if not isinstance(agent, SideBySide) or not hasattr(world, "beside"):
         return 1
-    # what stands around a world may pass on its ``beside``, which makes others without it
+    # that of a subclass, or of what stands around a world and passes it on, may make plain ones:
+    # then one episode is walked after the other
     return agent.together if type(world.beside()) is type(world) else 1
 
 

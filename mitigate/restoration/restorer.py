@@ -167,10 +167,10 @@ class Restorer(nn.Module):
 
 
 def restorer_of(choice: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
-    """The restorer of an option ``restore=`` (``choices.py``): none for None; else as
+    """The restorer of an option ``restore=`` (``choices.py``): none for None and "none"; else as
     :func:`load_restorer`. ValueError if it restores none of ``sensors``, which are what a world
     shows, and for a sensor that it is not for."""
-    if choice is None:
+    if choice in (None, "none"):
         return None
     folder, only = parted(choice)
     made = load_restorer(folder)

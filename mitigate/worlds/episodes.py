@@ -122,6 +122,11 @@ def share_of(items: Any, piece: int, pieces: int) -> Any:
     return items[piece % len(items) :: pieces]
 
 
+def is_seed(value: Any) -> bool:
+    """Whether an environment can be seeded by ``value``: a whole number of 31 bits."""
+    return type(value) is int and 0 <= value < 1 << 31
+
+
 class ListedEpisodes:
     """Training episodes (``worlds/world.py``) drawn from a file.
 
@@ -205,9 +210,12 @@ def to_json(episode: Episode) -> dict[str, Any]:
 
 def _episode(raw: Any, path: Path | str, index: int, hidden_goals: bool) -> Episode:
     identity = raw.get("episode_id") if isinstance(raw, dict) else None
-    if isinstance(raw, dict) and isinstance(raw.get("info"), dict) and "seed" in raw["info"]:
+    seeded = isinstance(raw, dict) and isinstance(raw.get("info"), dict) and "seed" in raw["info"]
+    if seeded:
         raw, hidden_goals = {"trajectory_id": identity, **_NOWHERE, **raw}, True
     record = Record(raw, path, f"episode {index} of the list (episode_id {short(identity)})")
+    if seeded and not is_seed(raw["info"]["seed"]):
+        record.fail("has a wrong 'seed' in info: it must be a whole number from 0 to 2147483647")
     hide = hidden_goals and raw.get("goals") is None and raw.get("reference_path") is None
     info = record.get("info", dict, {})
     ids = {key: record.get(key, (int, str)) for key in IDS}

@@ -34,7 +34,8 @@ class GymWorld(SeededWorld):
         limit: int = 500,
         rule: str | None = None,
     ) -> None:
-        if not hasattr(env.action_space, "n"):
+        space = env.action_space
+        if not hasattr(space, "n") or getattr(space, "shape", ()) != ():
             raise ValueError(
                 f"The actions {env.action_space} are not discrete, and an agent answers with one "
                 "whole number: wrap the environment in a gymnasium.ActionWrapper with a Discrete "
@@ -43,7 +44,8 @@ class GymWorld(SeededWorld):
         boxes = _by_name(env.observation_space)
         known = {RGB: WHOLE} if WHOLE in boxes else {n: n for n in (RGB, DEPTH, POSE) if n in boxes}
         most = {n: np.max(getattr(b, "high", np.inf)) for n, b in boxes.items()}  # of a Box alone
-        found = {n: (b.shape, str(b.dtype), float(most[n])) for n, b in boxes.items()}
+        arrays = {n: b for n, b in boxes.items() if b.shape is not None}  # no text, no Tuple
+        found = {n: (b.shape, str(b.dtype), float(most[n])) for n, b in arrays.items()}
         super().__init__(found, entries or known, success, unit, limit, rule)
         self.env = env
 

@@ -10,13 +10,18 @@ import numpy as np
 
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
-from mitigate.worlds.episodes import Episode, Instruction
+from mitigate.worlds.episodes import Episode, Instruction, is_seed
 from mitigate.worlds.metres import check_metres
 
 
 def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") -> list[Episode]:
     """An episode for each seed, all with the same instruction, of a world that reads nothing else
-    of an episode; a list for ``mitigate.benchmark(listed=...)``."""
+    of an episode; a list for ``mitigate.benchmark(listed=...)``. Raises ValueError for a seed that
+    is no whole number from 0 to 2147483647."""
+    seeds = [int(seed) if isinstance(seed, np.integer) else seed for seed in seeds]
+    wrong = [seed for seed in seeds if not is_seed(seed)]
+    if wrong:
+        raise ValueError(f"The seed {wrong[0]!r:.80} must be a whole number from 0 to 2147483647.")
     nowhere, ahead, told = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), Instruction(instruction)
     return [
         Episode(str(seed), str(seed), "", nowhere, ahead, (), told, (), info={"seed": int(seed)})
@@ -56,11 +61,13 @@ class SeededWorld:
         self.entries, self.success = dict(entries), success
         self.unit, self.limit = 1.0 if unit is None else unit, limit
         self.rule = rule or (f"{success} at the end" if success else "reward > 0 at the end")
-        lacking = [entry for entry in self.entries.values() if entry not in found]
+        entries = self.entries.items()
+        lacking = [repr(entry) if entry else name for name, entry in entries if entry not in found]
         if lacking or not self.entries:
             raise ValueError(
-                f"The observation has no entry {', '.join(lacking) or 'rgb or depth'}; it has "
-                f"{', '.join(map(str, found))}. Name its frames: entries={{'rgb': 'image'}}."
+                f"The observation has no array {', '.join(lacking) or 'rgb or depth'}; it has "
+                f"{', '.join(map(str, found)) or 'none'}. Name its frames: "
+                "entries={'rgb': 'image'}."
             )
         self.sensors: dict[str, Sensor] = {}
         for name, entry in self.entries.items():

@@ -62,10 +62,15 @@ def test_many_runs_may_be_asked_for_behind_other_options(flag):
     given = ["recipe=stacked", flag, "seed=0,1", "--config-dir", "mine"]
     assert options.flags_first(given) == [
         flag,
-        "recipe=stacked",
-        "seed=0,1",
         "--config-dir",
         "mine",
+        "recipe=stacked",
+        "seed=0,1",
+    ]
+    assert options.flags_first(["a=1", "--config-dir=mine", "b=2"]) == [
+        "--config-dir=mine",
+        "a=1",
+        "b=2",
     ]
     assert options.flags_first(["seed=0"]) == ["seed=0"]
 

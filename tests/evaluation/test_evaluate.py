@@ -77,6 +77,28 @@ def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies):
         evaluate.run(policies(straight, "checkpoint=w", settings=", steps: 2"))
 
 
+class Slots:
+    """It takes no further attributes."""
+
+    __slots__ = ()
+
+    def reset(self, instruction):
+        pass
+
+    def act(self, observation):
+        return 0
+
+
+def test_an_agent_that_takes_no_settings_is_told_to_have_some(policies):
+    with pytest.raises(ValueError, match=r"Slots takes no attribute settings .* settings\(\)"):
+        evaluate.run(policies(f"{__name__}.Slots"))
+
+
+def made() -> nn.Module:
+    """What a config may name in place of a class."""
+    return Net()
+
+
 class Net(nn.Linear):
     """A policy that somebody trained elsewhere."""
 
@@ -98,6 +120,10 @@ def test_weights_that_were_trained_elsewhere_are_read_from_safetensors_alone(pol
     cfg = policies(f"{__name__}.Net", f"checkpoint={tmp_path / 'w.safetensors'}")
     found = rows.read(evaluate.run(cfg) / "rows.jsonl")
     assert [(row["name"], row["steps"]) for row in found] == [("w", 1), ("w", 1)]
+    by_function = policies(f"{__name__}.made", f"checkpoint={tmp_path / 'w.safetensors'}", "name=f")
+    assert len(rows.read(evaluate.run(by_function) / "rows.jsonl")) == 2
+    with pytest.raises(ValueError, match="checkpoint is not set"):
+        evaluate.run(policies(f"{__name__}.made"))
     torch.save(net.state_dict(), tmp_path / "w.pt")
     with pytest.raises(FileNotFoundError, match="may run code.*safetensors.torch.save_file"):
         evaluate.run(policies(f"{__name__}.Net", f"checkpoint={tmp_path / 'w.pt'}"))

@@ -304,7 +304,11 @@ class Prompted(Straight):
 
 
 class Own(ApartmentsWorld):
-    """A world of one's own, made of a shipped one."""
+    """A world of one's own, made of a shipped one, with a constructor and a state of its own."""
+
+    def __init__(self, dark: float) -> None:
+        super().__init__(16)
+        self.dark = dark
 
 
 class Around:
@@ -317,9 +321,9 @@ class Around:
         return getattr(self.world, name)
 
 
-def test_episodes_side_by_side_are_all_walked_in_a_world_of_ones_own():
-    assert type(Own(16).beside()) is Own and _together(Prompted(1), Own(16)) == Prompted.together
-    assert _together(Prompted(1), Around()) == 1  # its worlds beside it would be others
+def test_side_by_side_no_episode_is_walked_in_another_world_than_ones_own():
+    assert _together(Prompted(1), ApartmentsWorld(16)) == Prompted.together
+    assert _together(Prompted(1), Own(0.7)) == _together(Prompted(1), Around()) == 1
 
 
 def test_a_corrupted_prompt_is_met_by_an_agent_that_walks_side_by_side():

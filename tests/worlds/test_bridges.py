@@ -135,6 +135,32 @@ def test_entries_within_entries_and_other_sensors_are_named_with_dots():
         GymWorld(Within(), {"rgb": "camera"})
 
 
+def test_spaces_that_are_no_arrays_are_told():
+    from mitigate.worlds.gym import GymWorld
+
+    room, spaces = Room("rgb"), gymnasium.spaces
+    room.observation_space = spaces.Dict(
+        {"rgb": room.observation_space["rgb"], "mission": spaces.Text(9)}
+    )
+    GymWorld(room)
+    with pytest.raises(ValueError, match=r"no array 'mission'; it has rgb"):
+        GymWorld(room, {"rgb": "rgb", "words": "mission"})
+    room.observation_space = spaces.Tuple([spaces.Discrete(2)])
+    with pytest.raises(ValueError, match="no array rgb; it has none"):
+        GymWorld(room)
+    room.action_space = spaces.MultiBinary(2)
+    with pytest.raises(ValueError, match="are not discrete"):
+        GymWorld(room)
+
+
+@pytest.mark.parametrize("seed", [-1, 1.5, 1 << 40, True, "7"])
+def test_a_seed_is_a_whole_number_of_31_bits(seed):
+    from mitigate.worlds.seeded import seeded_episodes
+
+    with pytest.raises(ValueError, match="must be a whole number from 0 to 2147483647"):
+        seeded_episodes([0, seed])
+
+
 @pytest.mark.parametrize("shape", [(SIZE, SIZE, 4), (3, SIZE, SIZE), (SIZE, SIZE), (SIZE, SIZE, 1)])
 def test_frames_that_the_suite_does_not_take_are_refused_before_any_walk(shape):
     from mitigate.worlds.gym import GymWorld
@@ -262,5 +288,5 @@ def test_an_environment_of_torchrl_is_a_world():
 
 
 def test_an_environment_without_the_named_frames_is_refused():
-    with pytest.raises(ValueError, match="no entry pixels"):
+    with pytest.raises(ValueError, match="no array 'pixels'"):
         EnvWorld(WorldEnv(ApartmentsWorld(SIZE), load_episodes("val_seen")[:1]), {"rgb": "pixels"})

@@ -309,6 +309,9 @@ def test_of_an_episode_that_is_a_seed_an_id_and_an_instruction_will_do(tmp_path)
     least = {"episode_id": "a", "info": {"seed": 7}, "instruction": {"instruction_text": "Go."}}
     (one,) = read_episodes(write_json(tmp_path / "least.json", {"episodes": [least]}))
     assert (one.episode_id, one.info, one.instruction.text) == ("a", {"seed": 7}, "Go.")
+    wrong = {"episodes": [{**least, "info": {"seed": "abc"}}]}
+    with pytest.raises(ValueError, match="episode 0 .* has a wrong 'seed' in info"):
+        list(read_episodes(write_json(tmp_path / "wrong.json", wrong)))
     del least["info"]
     with pytest.raises(ValueError, match="lacks the key"):
         list(read_episodes(write_json(tmp_path / "none.json", {"episodes": [least]})))

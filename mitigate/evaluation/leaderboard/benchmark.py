@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from types import EllipsisType
 from typing import Any
@@ -54,7 +54,7 @@ def benchmark(
     suite: str | Sequence[str] = "full",
     severity: float = 0.6,
     seed: int = 0,
-    safeguard: str = "none",
+    safeguard: str | None = None,
     restore: str | None = None,
     workers: int | None = 1,
     options: Sequence[str] = (),
@@ -82,8 +82,8 @@ def benchmark(
         world, listed: makes a world of your own, and its episodes (or their file), in place of
             those of ``options``; a world of another class than theirs needs both.
         training_data, link: for the entry. out: folder of the rows; None: one in runs/benchmark.
-    Raises ValueError for no agent, names and numbers that there are not, texts that an entry cannot
-    hold and a folder with rows of another world, FileNotFoundError for missing weights.
+    Raises ValueError for no agent, what there is not, texts that an entry cannot hold and a folder
+    with rows of another world, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
     loaded, told = isinstance(agent, (str, Path)), {"training_data": training_data, "link": link}
@@ -93,15 +93,15 @@ def benchmark(
     first, made_by = _first_world(made, met, agent)
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    front: dict[str, Any] = {"safeguard": open_safeguard(safeguard)}
-    front["restorer"] = restorer_of(restore, first.sensors)
+    front = _front(safeguard, restore, first)
     known = Known(agent, first.sensors, front_of(**front), loaded=loaded)
     known.check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known_as": known.hash}
-    _tell(agent, made, chosen, met, workers)
-    with FolderLock(file.parent), known:
-        walked.keep(file.parent, first, made_by, split, chosen)
-        rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
+    with known:
+        _tell(agent, made, chosen, met, workers)
+        with FolderLock(file.parent):
+            walked.keep(file.parent, first, made_by, split, chosen)
+            rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
     told["file"] = "" if file.is_absolute() else file.as_posix()
     shown = sensors_of(first.sensors, getattr(agent, "sensors", None))
     return entry_of(rows, name, severity=severity, sensors=shown, **told)
@@ -113,8 +113,12 @@ def _conditions(
     """Return the config of an evaluation, for the kind of agent that a path of weights is of, and
     the conditions of the suite, clean first."""
     seeding.check(seed)
-    if isinstance(options, str):
-        raise ValueError(f"options is a list of options, such as [{options!r}].")
+    if isinstance(options, str) or not all(isinstance(one, str) for one in options or ()):
+        raise ValueError(f"options is a list of options ['env=mine'], not {options!r:.80}.")
+    options = [*(options or ())]
+    folder = conf.config_folder(options)
+    if folder is not None and not folder.is_dir():
+        raise ValueError(f"There is no folder {folder}, which --config-dir names.")
     for option in without_config_folder(options)[1]:
         if not OPTION.match(option):
             raise ValueError(
@@ -150,6 +154,14 @@ def _agent(
         agent = evaluation.load(cfg.agent, str(agent), seed)
     evaluation.check_walks(agent)
     return agent, "+".join([name or usual, *fronts])
+
+
+def _front(safeguard: str | None, restore: str | None, world: World) -> dict[str, Any]:
+    """Return what stands in front of the agent, as ``evaluate`` takes it."""
+    return {
+        "safeguard": open_safeguard(safeguard or "none"),
+        "restorer": restorer_of(restore, world.sensors),
+    }
 
 
 def _plain(name: str) -> str:
@@ -209,6 +221,8 @@ def _episodes(
     if listed is None:
         return split, evaluation.episodes(cfg.env, split, EPISODES if count is ... else count)
     check_count(None if count is ... else count)
+    if isinstance(listed, Episode) or not isinstance(listed, (str, Path, Iterable)):
+        raise ValueError(f"listed={listed!r:.80} is no list of episodes, nor the file of one.")
     found = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
     for entry in found:
         if not isinstance(entry, Episode):

@@ -3,23 +3,22 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Mapping
-from contextlib import suppress
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 from mitigate.core.held import held
-from mitigate.core.identity import identity
+from mitigate.core.identity import hash_of, made_of
 from mitigate.core.observation import Sensor
 from mitigate.evaluation.rows import read
 
-# agents without settings(): their hash after the last walk, and the one that their rows have
-_last: weakref.WeakKeyDictionary[Any, tuple[str, str]] = weakref.WeakKeyDictionary()
+# of agents without settings(), by id: itself, what it was made of after its last walk, and before
+_last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
 
 
 class Known:
     """``hash`` of ``agent`` behind ``sensors`` and ``front`` (``core/identity.py``), taken before a
-    walk changes its arrays and attributes; use it as a context manager around walks.
+    walk changes its arrays and attributes; use it as a context manager around all walks.
 
     An agent without ``settings`` has its attributes count, unless it was ``loaded`` from weights:
     of an object that only walks changed since, the hash is that of before them.
@@ -28,19 +27,27 @@ class Known:
     def __init__(
         self, agent: Any, sensors: Mapping[str, Sensor], front: str, *, loaded: bool
     ) -> None:
-        self.agent, self.sensors, self.front = agent, sensors, front
-        self.loose = not loaded and not hasattr(agent, "settings")
-        now = self._now()
-        after, before = self._kept()
-        self.hash = before if after == now else now
+        self.agent, self.loose = agent, not loaded and not hasattr(agent, "settings")
+        now = made_of(agent, attributes=self.loose)
+        same, after, before = _last.get(id(agent), (lambda: None, None, None))
+        self.made = before if same() is agent and after == now else now
+        self.hash = hash_of(self.made, sensors, front)
 
     def __enter__(self) -> Known:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self.loose:
-            with suppress(TypeError):  # of an object that cannot be a key
-                _last[self.agent] = self._now(), self.hash
+        if not self.loose:
+            return
+        agent, key = self.agent, id(self.agent)
+        try:
+            same: Callable[[], Any] = weakref.ref(agent, lambda _: _last.pop(key, None))
+        except TypeError:  # of a class that takes no references: it is kept
+
+            def same() -> Any:
+                return agent
+
+        _last[key] = same, made_of(agent, attributes=True), self.made
 
     def check(self, file: Path, name: str) -> None:
         """Say so if all rows of ``name`` in ``file`` are of another agent. Raise ValueError if
@@ -70,11 +77,3 @@ class Known:
                 "clock: give it settings() if only some of them should.",
                 flush=True,
             )
-
-    def _now(self) -> str:
-        return identity(self.agent, self.sensors, self.front, attributes=self.loose)
-
-    def _kept(self) -> tuple[str, str]:
-        with suppress(TypeError):
-            return _last.get(self.agent, ("", ""))
-        return "", ""

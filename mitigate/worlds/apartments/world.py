@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -94,7 +93,7 @@ class ApartmentsWorld:
 
     def beside(self) -> ApartmentsWorld:
         """Another one, for an episode at the same time; both keep what the other rendered."""
-        other = copy.copy(self)  # of a class derived from this one, too
+        other = ApartmentsWorld(**self.__getstate__())
         other._memory = self._memory
         return other
 

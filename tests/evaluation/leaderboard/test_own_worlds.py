@@ -7,6 +7,8 @@ import re
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
 from functools import partial
 from pathlib import Path
 
@@ -18,6 +20,8 @@ from gymnasium import spaces
 from torch import nn
 
 import mitigate
+from mitigate.core.identity import made_of
+from mitigate.core.observation import STOP
 from mitigate.evaluation import rows
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
@@ -194,12 +198,86 @@ class Near(Holder):
         self.near, self.others = near, [*others, {"names": {"a", "b", "c"}}]
 
 
-@pytest.mark.parametrize("other", [Near(2.0), Near(1.0, "x"), Near(1.0, Path("x"))])
+class Mood(Enum):
+    CALM = object()  # whose repr differs from process to process
+
+
+def leaky(slope: float) -> nn.Module:
+    return nn.Sequential(nn.LeakyReLU(slope))
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        Near(2.0),
+        *(Near(1.0, one) for one in ("x", Path("x"), re.compile("a"), range(3), Mood.CALM, Near)),
+        *(Near(1.0, np.random.default_rng(seed)) for seed in (0, 1)),
+        Near(1.0, leaky(0.1)),
+    ],
+)
 def test_an_attribute_that_was_changed_makes_another_agent(walk, other, capsys):
     first = walk(Near(1.0))
     assert "another agent" not in capsys.readouterr().out
     assert walk(Near(1.0)).agents == first.agents != walk(other).agents
     assert "whose class, code, weights or attributes were others" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("one", "other"),
+    [
+        (re.compile("a"), re.compile("b")),
+        (np.random.default_rng(0), np.random.default_rng(1)),
+        (leaky(0.1), leaky(0.9)),
+        (Near, Holder),
+    ],
+)
+def test_what_an_agent_holds_tells_it_from_another_one(one, other):
+    made = [made_of(Near(1.0, held), attributes=True) for held in (one, one, other)]
+    assert made[0] == made[1] != made[2]
+    first, second = Near(1.0, [one], [one]), Near(1.0, [one], [one])
+    first.now, second.now = first.others[0], second.others[1]
+    assert made_of(first, attributes=True) != made_of(second, attributes=True)
+
+
+@dataclass(eq=True)
+class Counter:
+    """It cannot be a key, and counts its steps."""
+
+    steps: int = 0
+
+    def reset(self, instruction):
+        self.now = instruction
+
+    def act(self, observation):
+        self.steps += 1
+        return STOP
+
+
+def test_an_agent_that_only_walks_changed_is_the_same_in_front_of_whatever_it_walks(walk, capsys):
+    agent = Counter()
+    for _ in range(2):
+        for guard in ("none", "rules"):
+            walk(agent, safeguard=guard)
+        walk(agent, lambda: GymWorld(Corridor(), success="won"), out="other")
+    assert "another agent" not in capsys.readouterr().out
+    agent.steps = -5
+    walk(agent)
+    assert "another agent" in capsys.readouterr().out
+
+
+def test_a_call_that_is_stopped_before_its_walks_changes_no_agent(walk, monkeypatch, capsys):
+    agent, listed = Counter(), seeded_episodes(range(3))
+    walk(agent, listed=listed)
+
+    def stopped(*given):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr("mitigate.evaluation.leaderboard.benchmark.FolderLock", stopped)
+        with pytest.raises(KeyboardInterrupt):
+            walk(agent, listed=listed)
+    walk(agent, listed=listed)
+    assert "another agent" not in capsys.readouterr().out
 
 
 def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
