@@ -61,8 +61,8 @@ class SeededWorld:
         self.entries, self.success = dict(entries), success
         self.unit, self.limit = 1.0 if unit is None else unit, limit
         self.rule = rule or (f"{success} at the end" if success else "reward > 0 at the end")
-        entries = self.entries.items()
-        lacking = [repr(entry) if entry else name for name, entry in entries if entry not in found]
+        named = self.entries.items()
+        lacking = [repr(entry) if entry else name for name, entry in named if entry not in found]
         if lacking or not self.entries:
             raise ValueError(
                 f"The observation has no array {', '.join(lacking) or 'rgb or depth'}; it has "
