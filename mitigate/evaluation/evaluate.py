@@ -81,6 +81,12 @@ def times(cost: float, kind: float | None) -> float | None:
 
 OmegaConf.register_new_resolver("times", times, replace=True)
 
+UNTOLD = (
+    "checkpoint is not set, and no weights are shipped for this agent: name a run's agent folder "
+    "(checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose an agent that "
+    "walks episodes (agent=recurrent; docs/agents.md lists them)."
+)
+
 
 @dataclass
 class EvaluateConfig:
@@ -193,11 +199,7 @@ def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
     check_choice(cfg.safeguard)
     seeding.check(cfg.seed)
     if cfg.checkpoint is None and _is_network(cfg.agent):
-        raise ValueError(
-            "checkpoint is not set, and no weights are shipped for this agent: name a run's agent "
-            "folder (checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose "
-            "an agent that walks episodes (agent=recurrent; docs/agents.md lists them)."
-        )
+        raise ValueError(UNTOLD)
     if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(
             f"workers={cfg.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
@@ -240,7 +242,9 @@ def load(
     from mitigate.core import build
 
     if _is_network(node):
-        settings = node if weights is None else build.settings_of(node, weights, overrides)
+        if weights is None:
+            raise ValueError(UNTOLD)
+        settings = build.settings_of(node, weights, overrides)
         return build.build_agent(settings, weights=weights, seed=seed).eval()
     if weights is not None:
         raise ValueError(

@@ -10,6 +10,7 @@ from torch import nn
 from mitigate.core import conf
 from mitigate.evaluation import evaluate, rows
 from mitigate.evaluation.columns import default_folder
+from mitigate.evaluation.page import command
 from tests.evaluation.made_rows import cell
 
 
@@ -75,6 +76,15 @@ def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies):
     assert {row["name"] for row in found} == {"Straight+restorer-rgb"} and len(found) == 2
     with pytest.raises(ValueError, match=r"Straight is no torch.nn.Module.*leave out checkpoint="):
         evaluate.run(policies(straight, "checkpoint=w", settings=", steps: 2"))
+
+
+def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
+    made = evaluate.run(policies("tests.evaluation.straight.Straight", settings=", steps: 2"))
+    given = [str(made / "rows.jsonl"), "--config-dir", str(tmp_path / "mine"), "agent=own"]
+    given += ["env.size=16", "--walks", "1", "--out", str(tmp_path / "report.html"), "--walk"]
+    assert command.main([*given, "Straight="]) == 0
+    with pytest.raises(ValueError, match="checkpoint is not set"):
+        evaluate.load(conf.load_config("evaluate").agent, None)
 
 
 class Slots:

@@ -83,7 +83,7 @@ def _walks(
     world = maker(cfg.env.world)()
     own = [r for r in held if r["split"] == cfg.split and r["rule"] == world.rule]
     agents: dict[str, Any] = {
-        name: evaluate.load(cfg.agent, weights, overrides=options) for name, weights in walk
+        name: evaluate.load(cfg.agent, weights or None, overrides=options) for name, weights in walk
     }
     listed = evaluate.episodes(cfg.env, cfg.split, None)
     with Progress("walks", most, unit="episode") as progress:
@@ -93,11 +93,12 @@ def _walks(
 
 
 def named(text: str) -> tuple[str, str]:
-    """Return ("base", "checkpoints/base") of "base=checkpoints/base"."""
-    name, _, weights = text.partition("=")
-    if not name or not weights:
+    """Return ("base", "checkpoints/base") of "base=checkpoints/base"; no weights of "base="."""
+    name, equals, weights = text.partition("=")
+    if not name or not equals:
         raise argparse.ArgumentTypeError(
-            f"{text!r} must be NAME=WEIGHTS, such as base=checkpoints/base"
+            f"{text!r} must be NAME=WEIGHTS, such as base=checkpoints/base (NAME= of an agent that "
+            "has none)"
         )
     return name, weights
 
