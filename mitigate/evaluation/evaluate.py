@@ -198,7 +198,7 @@ def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
         raise ValueError(f"{idle[0]} is for trainings: an evaluation changes no weights.")
     check_choice(cfg.safeguard)
     seeding.check(cfg.seed)
-    if cfg.checkpoint is None and _is_network(cfg.agent):
+    if cfg.checkpoint is None and _is_network(cfg.agent) is True:
         raise ValueError(UNTOLD)
     if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(
@@ -207,15 +207,15 @@ def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
         )
 
 
-def _is_network(node: DictConfig) -> bool:
-    """Whether an agent may have weights to read, as a network has and what a function makes may
-    have; others, such as one behind an API, are made alone."""
+def _is_network(node: DictConfig) -> bool | None:
+    """Whether an agent has weights to read; others, such as one behind an API, are made alone. None
+    if a function makes it, which may make either."""
     from torch import nn
 
     from mitigate.core.build import located
 
     kind = located(node._target_)
-    return not isinstance(kind, type) or issubclass(kind, nn.Module)
+    return issubclass(kind, nn.Module) if isinstance(kind, type) else None
 
 
 def check_walks(agent: Any) -> None:
@@ -241,9 +241,7 @@ def load(
     is no network. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
     from mitigate.core import build
 
-    if _is_network(node):
-        if weights is None:
-            raise ValueError(UNTOLD)
+    if weights is not None and _is_network(node) is not False:
         settings = build.settings_of(node, weights, overrides)
         return build.build_agent(settings, weights=weights, seed=seed).eval()
     if weights is not None:
@@ -251,7 +249,10 @@ def load(
             f"{node._target_} is no torch.nn.Module, which weights could fill: leave out "
             f"checkpoint={weights}, and let it read them itself."
         )
-    return build.build_agent(node, weights=None, seed=seed)
+    agent = build.build_agent(node, weights=None, seed=seed)
+    if hasattr(agent, "state_dict"):  # a network, whose weights nobody named
+        raise ValueError(UNTOLD)
+    return agent
 
 
 def report_before_after(

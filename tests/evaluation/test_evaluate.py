@@ -12,6 +12,7 @@ from mitigate.evaluation import evaluate, rows
 from mitigate.evaluation.columns import default_folder
 from mitigate.evaluation.page import command
 from tests.evaluation.made_rows import cell
+from tests.evaluation.straight import Straight
 
 
 def test_the_table_printed_is_of_what_was_asked_for_and_the_file_of_all(tmp_path, capsys):
@@ -104,6 +105,10 @@ def test_an_agent_that_takes_no_settings_is_told_to_have_some(policies):
         evaluate.run(policies(f"{__name__}.Slots"))
 
 
+def remote() -> Straight:
+    return Straight(1)
+
+
 def made() -> nn.Module:
     """What a config may name in place of a class."""
     return Net()
@@ -134,6 +139,8 @@ def test_weights_that_were_trained_elsewhere_are_read_from_safetensors_alone(pol
     assert len(rows.read(evaluate.run(by_function) / "rows.jsonl")) == 2
     with pytest.raises(ValueError, match="checkpoint is not set"):
         evaluate.run(policies(f"{__name__}.made"))
+    remote = policies(f"{__name__}.remote", "conditions=[clean,flare]")  # a function of no network
+    assert len(rows.read(evaluate.run(remote) / "rows.jsonl")) == 2
     torch.save(net.state_dict(), tmp_path / "w.pt")
     with pytest.raises(FileNotFoundError, match="may run code.*safetensors.torch.save_file"):
         evaluate.run(policies(f"{__name__}.Net", f"checkpoint={tmp_path / 'w.pt'}"))
