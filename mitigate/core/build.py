@@ -196,6 +196,11 @@ def build_agent(
         hardened.check_own(plain(node))
     seeding.seed_everything(seed, "agent")
     agent = build(node)
+    if weights is not None and not hasattr(agent, "state_dict"):
+        raise ValueError(
+            f"A {type(agent).__name__} is no torch.nn.Module, which weights could fill: leave out "
+            f"{weights}, and let it read them itself."
+        )
     if not hasattr(agent, "settings"):  # those of its config are what is known of it
         known = {k: v for k, v in plain(node).items() if k != "_target_"}
         try:

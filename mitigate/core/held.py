@@ -53,9 +53,10 @@ class Held:
     """networks and arrays (also tensors) by where they are, such as "pol.nets.policy", the agent
     itself as ""; a number in braces is of a set, which has no order. functions: of the user's own
     code. constants: plain values that functions and partial calls hold. attributes: texts of those
-    that it, its objects, their classes, lists, mappings and the modules of networks hold, which may
-    change from step to step, and where one thing has two places. unknown: places of what nobody
-    could look into, such as a session of another library, or that are too deep or too many."""
+    that it, its objects, lists and mappings and the modules of networks hold, which may change from
+    step to step; of classes and generators among them; and where one thing has two places. unknown:
+    places of what nobody could look into, such as a session of another library, or that are too
+    deep or too many."""
 
     networks: dict[str, nn.Module] = field(default_factory=dict)
     arrays: dict[str, Any] = field(default_factory=dict)

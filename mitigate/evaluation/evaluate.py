@@ -10,7 +10,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import hydra
 from hydra.core.config_store import ConfigStore
@@ -20,17 +20,16 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 from mitigate.core import conf, seeding
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
-from mitigate.evaluation.columns import changed, column_of, default_folder, name_of
+from mitigate.evaluation.columns import changed, default_folder, name_of
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
 from mitigate.safeguard.addresses import check_arguments, check_choice
 from mitigate.scale import launcher  # registers the kinds of conf/launcher
 
-if TYPE_CHECKING:  # nothing slow is imported before run() has checked the options
-    from torch import nn
-
-REPORT = "mitigate.evaluation.evaluate.report_before_after"  # what a training of an agent ends with
+REPORT = (
+    "mitigate.evaluation.before_after.report_before_after"  # what a training of an agent ends with
+)
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 OF_TRAININGS = ("finetune.", "cost.")  # options that a kind of agent has for its trainings
 MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
@@ -81,12 +80,6 @@ def times(cost: float, kind: float | None) -> float | None:
 
 OmegaConf.register_new_resolver("times", times, replace=True)
 
-UNTOLD = (
-    "checkpoint is not set, and no weights are shipped for this agent: name a run's agent folder "
-    "(checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose an agent that "
-    "walks episodes (agent=recurrent; docs/agents.md lists them)."
-)
-
 
 @dataclass
 class EvaluateConfig:
@@ -131,6 +124,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     met = conditions(names, cfg.severity, cfg.severity_depth)
+    # nothing slow is imported before the options are checked
     from mitigate.core import build
     from mitigate.evaluation import making, walked
     from mitigate.evaluation.evaluator import evaluate
@@ -198,24 +192,11 @@ def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
         raise ValueError(f"{idle[0]} is for trainings: an evaluation changes no weights.")
     check_choice(cfg.safeguard)
     seeding.check(cfg.seed)
-    if cfg.checkpoint is None and _is_network(cfg.agent) is True:
-        raise ValueError(UNTOLD)
     if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
         raise ValueError(
             f"workers={cfg.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
             "null for one a core."
         )
-
-
-def _is_network(node: DictConfig) -> bool | None:
-    """Whether an agent has weights to read; others, such as one behind an API, are made alone. None
-    if a function makes it, which may make either."""
-    from torch import nn
-
-    from mitigate.core.build import located
-
-    kind = located(node._target_)
-    return issubclass(kind, nn.Module) if isinstance(kind, type) else None
 
 
 def check_walks(agent: Any) -> None:
@@ -241,56 +222,17 @@ def load(
     is no network. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
     from mitigate.core import build
 
-    if weights is not None and _is_network(node) is not False:
-        settings = build.settings_of(node, weights, overrides)
-        return build.build_agent(settings, weights=weights, seed=seed).eval()
-    if weights is not None:
+    settings = node if weights is None else build.settings_of(node, weights, overrides)
+    agent = build.build_agent(settings, weights=weights, seed=seed)
+    if not hasattr(agent, "state_dict"):
+        return agent
+    if weights is None:
         raise ValueError(
-            f"{node._target_} is no torch.nn.Module, which weights could fill: leave out "
-            f"checkpoint={weights}, and let it read them itself."
+            "checkpoint is not set, and no weights are shipped for this agent: name a run's agent "
+            "folder (checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose "
+            "an agent that walks episodes (agent=recurrent; docs/agents.md lists them)."
         )
-    agent = build.build_agent(node, weights=None, seed=seed)
-    if hasattr(agent, "state_dict"):  # a network, whose weights nobody named
-        raise ValueError(UNTOLD)
-    return agent
-
-
-def report_before_after(
-    cfg: DictConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
-) -> None:
-    """Evaluate both agents on the same quick subset; print one table, write it and pictures.
-
-    ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing. The
-    pictures in ``folder/pictures`` show episodes that the training won back.
-    """
-    from mitigate.core import build
-    from mitigate.evaluation import making, walked
-    from mitigate.evaluation.evaluator import evaluate
-    from mitigate.evaluation.trajectories import write_pictures
-
-    quick = cfg.evaluation
-    chosen = episodes(cfg.env, quick.split, quick.episodes)
-    suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
-    agents = {name: agent for name, agent in agents.items() if agent is not None}
-    world, rows = build.maker(cfg.env.world), []
-    first, made_by = making.first(world)
-    walked.keep(folder, first, made_by, quick.split, chosen, cfg.env.episodes[quick.split])
-    for name, agent in agents.items():
-        rows += evaluate(
-            agent,
-            world,
-            chosen,
-            suite,
-            name=name,
-            out=folder / ROWS,
-            split=quick.split,
-            seed=cfg.seed,
-            workers=quick.workers,
-        )
-    write_table([folder / ROWS], folder)
-    written = write_pictures(agents, first, chosen, rows, folder / "pictures", seed=cfg.seed)
-    print("\n".join(f"wrote {path}" for path in written), flush=True)
+    return agent.eval()
 
 
 def write_table(files: list[Path], out: Path, asked: list[dict[str, Any]] | None = None) -> None:

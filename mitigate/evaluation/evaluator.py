@@ -111,11 +111,9 @@ class EpisodeTask:
 
 def _together(agent: Any, world: Any) -> int:
     """How many episodes the agent walks at once in such worlds."""
-    if not isinstance(agent, SideBySide) or not hasattr(world, "beside"):
-        return 1
-    # that of a subclass, or of what stands around a world and passes it on, may make plain ones:
-    # then one episode is walked after the other
-    return agent.together if type(world.beside()) is type(world) else 1
+    # one that a class inherits, or that is passed on from a world inside, may make other worlds
+    own = "beside" in vars(type(world))
+    return agent.together if isinstance(agent, SideBySide) and own else 1
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:

@@ -75,7 +75,7 @@ def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies):
     cfg = policies(straight, "restore=checkpoints/restorer:rgb", settings=", steps: 2")
     found = rows.read(evaluate.run(cfg) / "rows.jsonl")
     assert {row["name"] for row in found} == {"Straight+restorer-rgb"} and len(found) == 2
-    with pytest.raises(ValueError, match=r"Straight is no torch.nn.Module.*leave out checkpoint="):
+    with pytest.raises(ValueError, match=r"Straight is no torch.nn.Module.*leave out w,"):
         evaluate.run(policies(straight, "checkpoint=w", settings=", steps: 2"))
 
 

@@ -115,16 +115,20 @@ class Walk:
         self.before = -1
 
     def see(self) -> dict[str, np.ndarray]:
-        """A copy of the frames here: a world may reuse its arrays."""
-        return {n: np.array(checked.frame(self.observation, n, 1)) for n in self.sensors}
+        """The frames here, in arrays that the world may use again."""
+        return self._frames(self.observation)
+
+    def _frames(self, observation: Observation) -> dict[str, np.ndarray]:
+        return {n: checked.frame(observation, n, 1) for n in self.sensors}
 
     def note(self, kept: dict[str, np.ndarray], clean: bool, frames: bool) -> None:
         """Write a step down, with the expert's answer to it."""
         action = int(self.expert.action())
-        seen = {**(self.see() if frames else {}), **kept}
+        seen = {n: np.array(f) for n, f in self.see().items()} if frames else {}
+        seen |= kept
         if clean:
-            before = self.observation.clean
-            seen |= {f"clean_{n}": np.array(checked.frame(before, n, 1)) for n in self.sensors}
+            before = self._frames(self.observation.clean)
+            seen |= {f"clean_{n}": np.array(f) for n, f in before.items()}
         truth: Mapping[str, np.ndarray] = getattr(self.world, "truth", dict)()
         labels = (*(agent_labels(self.sensors) if frames else ()), "goal")
         seen |= {name: np.array(truth[name]) for name in labels if name in truth}

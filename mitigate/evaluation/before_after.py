@@ -1,0 +1,52 @@
+"""What a training of an agent ends with: it and the one that it was, side by side."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from omegaconf import DictConfig
+from torch import nn
+
+from mitigate.core import build
+from mitigate.evaluation import making, walked
+from mitigate.evaluation.columns import column_of
+from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.episode_lists import episodes
+from mitigate.evaluation.evaluate import write_table
+from mitigate.evaluation.evaluator import evaluate
+from mitigate.evaluation.rows import ROWS
+from mitigate.evaluation.trajectories import write_pictures
+
+
+def report_before_after(
+    cfg: DictConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
+) -> None:
+    """Evaluate both agents on the same quick subset; print one table, write it and pictures.
+
+    ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing. The
+    pictures in ``folder/pictures`` show episodes that the training won back.
+    """
+    quick = cfg.evaluation
+    chosen = episodes(cfg.env, quick.split, quick.episodes)
+    suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+    agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
+    agents = {name: agent for name, agent in agents.items() if agent is not None}
+    world, rows = build.maker(cfg.env.world), []
+    first, made_by = making.first(world)
+    walked.keep(folder, first, made_by, quick.split, chosen, cfg.env.episodes[quick.split])
+    for name, agent in agents.items():
+        rows += evaluate(
+            agent,
+            world,
+            chosen,
+            suite,
+            name=name,
+            out=folder / ROWS,
+            split=quick.split,
+            seed=cfg.seed,
+            workers=quick.workers,
+        )
+    write_table([folder / ROWS], folder)
+    written = write_pictures(agents, first, chosen, rows, folder / "pictures", seed=cfg.seed)
+    print("\n".join(f"wrote {path}" for path in written), flush=True)
