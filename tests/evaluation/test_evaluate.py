@@ -70,13 +70,15 @@ def policies(tmp_path):
     return options
 
 
-def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies):
+def test_an_agent_without_weights_is_evaluated_also_behind_a_restorer(policies, tmp_path):
     straight = "tests.evaluation.straight.Straight"
     cfg = policies(straight, "restore=checkpoints/restorer:rgb", settings=", steps: 2")
     found = rows.read(evaluate.run(cfg) / "rows.jsonl")
     assert {row["name"] for row in found} == {"Straight+restorer-rgb"} and len(found) == 2
-    with pytest.raises(ValueError, match=r"Straight is no torch.nn.Module.*leave out w,"):
-        evaluate.run(policies(straight, "checkpoint=w", settings=", steps: 2"))
+    weights = tmp_path / "w.safetensors"
+    save_file({"w": torch.zeros(1)}, weights)
+    with pytest.raises(ValueError, match=r"Straight is no torch.nn.Module.*leave out .*w.safe"):
+        evaluate.run(policies(straight, f"checkpoint={weights}", settings=", steps: 2"))
 
 
 def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
