@@ -22,6 +22,7 @@ from tqdm import tqdm
 
 from mitigate.agents.concepts import THINGS
 from mitigate.core import conf
+from mitigate.core.markdown import markdown_table
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
@@ -106,17 +107,17 @@ def table(scores: dict[str, dict[str, tuple[float, float, float]]]) -> str:
     conditions = tuple(next(iter(scores.values())))
     seen = [n for n in conditions if not n.startswith("clean")]
     rgb, depth = ([n for n in seen if modality(n) == sensor] for sensor in (RGB, DEPTH))
-    lines = [["", *scores], ["---", *["---:"] * len(scores)]]
+    lines = []
     for name in ("clean", *rgb, "clean depth", *depth):
         cells = [found[name] for found in scores.values()]
         title = {"clean": "Clean RGB", "clean depth": "Clean depth"}.get(name) or label(name)
         lines.append(
             [title, *(f"{100 * v:.1f} [{100 * a:.1f}, {100 * b:.1f}]" for v, a, b in cells)]
         )
-    for place, sensor, names in ((3 + len(rgb), "RGB", rgb), (len(lines) + 1, "depth", depth)):
+    for place, sensor, names in ((1 + len(rgb), "RGB", rgb), (len(lines) + 1, "depth", depth)):
         means = [np.mean([found[n][0] for n in names]) for found in scores.values()]
         lines.insert(place, [f"**Mean of {sensor}**", *(f"{100 * m:.1f}" for m in means)])
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    return markdown_table(["", *scores], lines)
 
 
 def _column(weights: str, taken: Collection[str]) -> str:

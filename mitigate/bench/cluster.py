@@ -17,6 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mitigate.core.markdown import markdown_table
+
 HOUR = 3600.0
 
 
@@ -129,14 +131,12 @@ def draw(count: int, mean: float, spread: float, seed: int) -> np.ndarray:
 
 def table(options: argparse.Namespace) -> str:
     """The outcomes by share and failures as Markdown, each the median of the seeds."""
-    lines = [
+    about = (
         f"{options.episodes:,} episodes of {options.mean:g} s (all conditions), {options.nodes} "
         f"nodes of {options.workers} workers, a failed node is back after {options.back:g} "
-        f"minutes; medians of {options.seeds} simulations",
-        "",
-        "| a node fails each | episodes at a time | hours | failures | worker hours lost | idle |",
-        "|---:|---:|---:|---:|---:|---:|",
-    ]
+        f"minutes; medians of {options.seeds} simulations"
+    )
+    rows = []
     workers = options.nodes * options.workers
     for days in options.days:
         for share in (*options.shares, -(-options.episodes // workers)):
@@ -147,10 +147,10 @@ def table(options: argparse.Namespace) -> str:
                 found.append(simulate(seconds, share, cluster, seed))
             names = ("hours", "failures", "lost", "idle")
             h, f, lost, idle = (float(np.median([getattr(o, n) for o in found])) for n in names)
-            lines.append(
-                f"| {days:g} days | {share:,} | {h:.2f} | {f:.0f} | {lost:.1f} | {idle:.0f} |"
-            )
-    return "\n".join(lines)
+            cells = [f"{days:g} days", f"{share:,}", f"{h:.2f}", f"{f:.0f}"]
+            rows.append([*cells, f"{lost:.1f}", f"{idle:.0f}"])
+    head = ("a node fails each", "episodes at a time", "hours", "failures", "worker hours lost")
+    return f"{about}\n\n{markdown_table((*head, 'idle'), rows, words=0)}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

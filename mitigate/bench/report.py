@@ -7,11 +7,24 @@ from mitigate.bench.renderers import OURS
 from mitigate.bench.suite import PANORAMA_BAR, SEED, SEVERITY, TINY, Cost
 from mitigate.bench.timing import machine
 from mitigate.bench.training import CAPS, LAYOUTS, Stage, table
+from mitigate.core.markdown import markdown_table
 from mitigate.core.observation import VIEWS
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.corruptions.registry import record
 
 AIM = 0.15  # of a training step, at most, in which no network computes
+COLUMNS = (
+    "corruption",
+    "steady",
+    "per frame",
+    "first",
+    "best peer",
+    "peer / steady",
+    "peer / per frame",
+    "bar",
+    "steady / bar",
+    "steady / copy",
+)
 
 
 def page(
@@ -62,15 +75,12 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
             "",
             f"### {label}",
             "",
-            "| corruption | steady | per frame | first | best peer | peer / steady "
-            "| peer / per frame | bar | steady / bar | steady / copy |",
-            "| --- | ---: | ---: | ---: | --- | ---: | ---: | ---: | ---: | ---: |",
-            *(_row(name, cost) for name, cost in rows.items()),
+            markdown_table(COLUMNS, (_row(name, cost) for name, cost in rows.items())),
         ]
     return [*lines, ""]
 
 
-def _row(name: str, cost: Cost) -> str:
+def _row(name: str, cost: Cost) -> list[str]:
     peer = cost.best_peer
     beside = ["none", "", ""]
     if peer is not None:
@@ -78,8 +88,7 @@ def _row(name: str, cost: Cost) -> str:
         beside = [f"{peer[0]}: {peer[1]:.3f}", *times]
     bar = ["", ""] if cost.bar is None else [f"{cost.bar:g}", f"{cost.steady / cost.bar:.2f}"]
     own = [f"{ms:.4f}" for ms in (cost.steady, cost.per_frame, cost.first)]
-    cells = [f"`{name}`", *own, *beside, *bar, f"{cost.steady / cost.copy:.1f}"]
-    return f"| {' | '.join(cells)} |"
+    return [f"`{name}`", *own, *beside, *bar, f"{cost.steady / cost.copy:.1f}"]
 
 
 def _panorama(pair: float) -> list[str]:
@@ -101,20 +110,20 @@ def _over(costs: dict[str, dict[str, Cost]]) -> list[str]:
     ]
     if not missed:
         return ["Every bar is met.", ""]
+    rows = [
+        [f"`{name}`", label, f"{cost.steady - cost.bar:.4f}", f"{cost.call:.4f}"]
+        + [f"{cost.steady - cost.call:.4f}", f"{cost.copy:.4f}", record(name).reason]
+        for name, label, cost in missed
+        if cost.bar is not None
+    ]
+    head = ("corruption", "size", "over by", "call", "kernel", "frame copy", "where the time goes")
     return [
         "### Over the bar",
         "",
         f"**Call**: milliseconds of the same call on a frame of {TINY} x {TINY} pixels: checks, "
         "keys, look-ups and the way into compiled code. **Kernel**: the rest.",
         "",
-        "| corruption | size | over by | call | kernel | frame copy | where the time goes |",
-        "| --- | --- | ---: | ---: | ---: | ---: | --- |",
-        *(
-            f"| `{name}` | {label} | {cost.steady - cost.bar:.4f} | {cost.call:.4f} "
-            f"| {cost.steady - cost.call:.4f} | {cost.copy:.4f} | {record(name).reason} |"
-            for name, label, cost in missed
-            if cost.bar is not None
-        ),
+        markdown_table(head, rows, words=2),
         "",
     ]
 
@@ -136,13 +145,20 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
             "",
             f"### {f'Capped: {name}' if caps else 'As the machine is'}",
             "",
-            *table(found),
+            table(found),
         ]
     return [*lines, ""]
 
 
 def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[str]:
     times = ", ".join(f"{seconds:.1f} s with {n}" for n, seconds in by_workers.items())
+    rows = [
+        [f"`{name}`", pace.count, f"{pace.count / pace.alone:.1f}"]
+        + [f"{pace.count / pace.together:.1f}", f"{pace.alone / pace.together:.2f}"]
+        + ["the same" if pace.same else "NOT THE SAME"]
+        for name, pace in paces.items()
+    ]
+    head = ("agent", "episodes", "alone, episodes / CPU s", "together", "together / alone", "rows")
     gain = f" ({by_workers[1] / by_workers[2]:.2f} times)" if 2 in by_workers else ""
     return [
         "## Evaluation",
@@ -151,14 +167,7 @@ def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[st
         "process. **Alone**: every episode by itself. **Together**: the conditions of an episode "
         "one after the other, with frames and features kept, as an evaluation runs them.",
         "",
-        "| agent | episodes | alone, episodes / CPU s | together | together / alone | rows |",
-        "| --- | ---: | ---: | ---: | ---: | --- |",
-        *(
-            f"| `{name}` | {pace.count} | {pace.count / pace.alone:.1f} "
-            f"| {pace.count / pace.together:.1f} | {pace.alone / pace.together:.2f} "
-            f"| {'the same' if pace.same else 'NOT THE SAME'} |"
-            for name, pace in paces.items()
-        ),
+        markdown_table(head, rows),
         "",
         f"The same evaluation by worker processes, wall time: {times}{gain}.",
         "",
@@ -167,15 +176,15 @@ def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[st
 
 def _rendering(rates: dict[str, tuple[float, float]], size: int) -> list[str]:
     fastest = rates[OURS][0]
+    rows = [
+        [name, f"{wall:.0f}", f"{cpu:.0f}", f"{wall / VIEWS:.0f}", f"{fastest / wall:.1f} times"]
+        for name, (wall, cpu) in rates.items()
+    ]
+    views = ("RGB-D views/s", "per CPU second", "panoramas (12 views)/s")
     return [
         f"## RGB-D rendering, {size} x {size} pixels",
         "",
         "One process, one run, in turns; the best of several rounds.",
         "",
-        "| renderer | RGB-D views/s | per CPU second | panoramas (12 views)/s | ours is faster |",
-        "| --- | ---: | ---: | ---: | ---: |",
-        *(
-            f"| {name} | {wall:.0f} | {cpu:.0f} | {wall / VIEWS:.0f} | {fastest / wall:.1f} times |"
-            for name, (wall, cpu) in rates.items()
-        ),
+        markdown_table(("renderer", *views, "ours is faster"), rows),
     ]

@@ -21,6 +21,7 @@ import torch  # noqa: E402
 
 from mitigate.bench.suite import frames  # noqa: E402
 from mitigate.bench.timing import machine, steady  # noqa: E402
+from mitigate.core.markdown import markdown_table  # noqa: E402
 from mitigate.core.observation import DEPTH, RGB  # noqa: E402
 from mitigate.restoration.restorer import Restorer, load_restorer  # noqa: E402
 
@@ -51,12 +52,8 @@ def _clocked(restorer: Restorer, sensor: str, frame: object, seconds: float) -> 
 
 def table(found: dict[tuple[str, str], tuple[float, float]]) -> str:
     """Markdown: a row a size and sensor."""
-    lines = [
-        "| frame | sensor | taken for clean, ms | restored, ms |",
-        "| --- | --- | ---: | ---: |",
-    ]
-    lines += [f"| {s} | {n} | {a:.1f} | {b:.1f} |" for (s, n), (a, b) in found.items()]
-    return "\n".join(lines)
+    rows = ([size, name, f"{a:.1f}", f"{b:.1f}"] for (size, name), (a, b) in found.items())
+    return markdown_table(("frame", "sensor", "taken for clean, ms", "restored, ms"), rows, words=2)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

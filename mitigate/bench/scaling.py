@@ -26,6 +26,7 @@ import numpy as np
 from mitigate.bench.evaluation import seconds_by_workers
 from mitigate.bench.pages import put
 from mitigate.bench.timing import machine
+from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import CLEAN
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "scale.md"
@@ -121,14 +122,9 @@ def measured(steps: int, episodes: int) -> dict[str, tuple[float, float]]:
 
 def table(found: dict[str, tuple[float, float]]) -> str:
     """Markdown: a line for each load."""
-    lines = [
-        f"{machine()}",
-        "",
-        "| a second | 1 process | 2 processes | as many |",
-        "| --- | ---: | ---: | ---: |",
-        *(f"| {name} | {a:.3g} | {b:.3g} | {b / a:.2f} |" for name, (a, b) in found.items()),
-    ]
-    return "\n".join(lines)
+    rows = ([name, f"{a:.3g}", f"{b:.3g}", f"{b / a:.2f}"] for name, (a, b) in found.items())
+    head = ("a second", "1 process", "2 processes", "as many")
+    return f"{machine()}\n\n{markdown_table(head, rows)}"
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

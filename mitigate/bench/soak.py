@@ -27,6 +27,7 @@ import numpy as np
 from mitigate.bench.growth import DAY, MUCH, Growth, growth
 from mitigate.bench.loads import LOADS
 from mitigate.core.files import atomic_text, write_bytes
+from mitigate.core.markdown import markdown_table
 from mitigate.core.progress import Progress
 
 PAGE = os.sysconf("SC_PAGE_SIZE")
@@ -101,19 +102,18 @@ def grown(samples: Sequence[Sample]) -> dict[str, Growth]:
 
 def table(found: dict[str, dict[str, Growth]], minutes: float) -> str:
     """Markdown: a line for each load and measure."""
-    lines = [
+    about = (
         f"{minutes:g} minutes each; slopes an hour after the first quarter, with 95 % intervals. "
         f'"grows": over {100 * MUCH:g} % of the mean in {DAY:g} hours even at the lower end; '
-        '"flat": not even at the upper end.',
-        "",
-        "| load | measure | mean | slope an hour | verdict |",
-        "| --- | --- | ---: | ---: | --- |",
-    ]
+        '"flat": not even at the upper end.'
+    )
+    rows = []
     for load, measures in found.items():
         for name, g in measures.items():
             slope = f"{g.slope:+.2f} [{g.low:+.2f}, {g.high:+.2f}]"
-            lines.append(f"| {load} | {name} | {g.mean:.1f} | {slope} | {g.verdict} |")
-    return "\n".join([*lines, ""])
+            rows.append([load, name, f"{g.mean:.1f}", slope, g.verdict])
+    head = ("load", "measure", "mean", "slope an hour", "verdict")
+    return f"{about}\n\n{markdown_table(head, rows, words=2)}\n"
 
 
 def draw(samples: dict[str, list[Sample]], out: Path) -> Path:

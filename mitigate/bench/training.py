@@ -26,6 +26,7 @@ import torch
 
 from mitigate.core import conf, precision, seeding
 from mitigate.core.build import build, build_agent
+from mitigate.core.markdown import markdown_table
 from mitigate.core.workers import cores
 from mitigate.training import train  # noqa: F401 (train registers config types)
 from mitigate.training.batches import Batches
@@ -213,18 +214,18 @@ def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:
     return [Stage(**stage) for stage in json.loads(done.stdout.strip().splitlines()[-1])]
 
 
-def table(stages: Sequence[Stage]) -> list[str]:
+def table(stages: Sequence[Stage]) -> str:
     """Markdown: a row a stage."""
     names = [*PARTS, OTHER]
     head = ["recipe", "stage", "precision", "steps/s", "ms a step", "waiting", "forward + backward"]
     head += ["step / forward + backward alone", "no network computes", *names]
-    lines = [head, ["---"] * 3 + ["---:"] * (len(head) - 3)]
+    rows = []
     for s in stages:
         cells = [f"`{s.recipe}`", s.stage, s.precision, f"{1e3 / s.whole:.2f}", f"{s.whole:.0f}"]
         cells += [f"{s.waiting / s.whole:.0%}", f"{1 - s.waiting / s.whole:.0%}"]
         cells += [f"{s.whole / s.alone:.2f}", f"{s.elsewhere:.0%}"]
-        lines.append([*cells, *(f"{s.parts.get(name, 0.0):.0f}" for name in names)])
-    return [f"| {' | '.join(line)} |" for line in lines]
+        rows.append([*cells, *(f"{s.parts.get(name, 0.0):.0f}" for name in names)])
+    return markdown_table(head, rows, words=3)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -243,7 +244,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.json:
         print(json.dumps([asdict(stage) for stage in found]))
     else:
-        print("\n".join(table(found)))
+        print(table(found))
 
 
 if __name__ == "__main__":

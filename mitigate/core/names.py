@@ -4,7 +4,6 @@ there is."""
 from __future__ import annotations
 
 import difflib
-import re
 from collections.abc import Iterable, Mapping
 
 
@@ -27,11 +26,3 @@ def short(value: object, most: int = 60) -> str:
     most about ``most`` characters."""
     text = ascii(value[: most + 1] if isinstance(value, str) else value)
     return text if len(text) <= most + 2 else f"{text[:most]}..."
-
-
-def markdown_of(name: str) -> str:
-    """Return a ``name`` that may be of anybody as Markdown that shows it as it is, on one line: no
-    further cell, no code, HTML, link or picture."""
-    return re.sub(
-        r"[\\|`*~\[\]!]|<(?=\S)|^#", lambda found: f"\\{found[0]}", " ".join(name.split())
-    )

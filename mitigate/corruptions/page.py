@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import takewhile
 
 from mitigate.core.files import PACKAGE
+from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import eld, keying
 from mitigate.corruptions.curves import EPISODES, GRID, Curve
 from mitigate.corruptions.registry import record
@@ -30,9 +31,15 @@ Agents are also measured under corruptions that no recipe trains on, and under t
 W and H are a view's width and height, side = min(H, W), x a pixel, z its depth in metres, U
 uniform, N normal. The numbers are read from the code.
 
-| name | what fails | formula | constants from | kept through an episode | drawn for each frame |
-|---|---|---|---|---|---|
 """
+COLUMNS = (
+    "name",
+    "what fails",
+    "formula",
+    "constants from",
+    "kept through an episode",
+    "drawn for each frame",
+)
 TEXT = """
 **ELD** (Wei et al., TPAMI 2021): light is linearised by a power of {gamma:g} and cut by
 {darkest:g}^s; photons are Poisson, read noise Tukey-lambda, row noise normal and common to a
@@ -146,16 +153,16 @@ def page(found: dict[str, Curve], seed: int) -> str:
 
 def suites() -> str:
     """A table of ``conf/suite``: the name of each file and the comment at its head."""
-    lines = ["| `suite=` | |", "|---|---|"]
+    rows = []
     for file in sorted((PACKAGE / "conf" / "suite").glob("*.yaml")):
         head = takewhile(lambda line: line.startswith("#"), file.read_text("utf-8").splitlines())
-        lines.append(f"| `{file.stem}` | {' '.join(line[1:].strip() for line in head)} |")
-    return "\n".join(lines)
+        rows.append([f"`{file.stem}`", " ".join(line[1:].strip() for line in head)])
+    return markdown_table(["`suite=`", ""], rows, words=2)
 
 
 def formulas(names: tuple[str, ...] = NAMES) -> str:
-    """The rows of a table of formulas."""
-    return "".join(f"| {' | '.join(_cells(name))} |\n" for name in names)
+    """A table of the formulas of corruptions."""
+    return markdown_table(COLUMNS, map(_cells, names), words=len(COLUMNS)) + "\n"
 
 
 def _cells(name: str) -> tuple[str, ...]:
@@ -165,16 +172,14 @@ def _cells(name: str) -> tuple[str, ...]:
 
 
 def _strengths(found: dict[str, Curve]) -> str:
-    lines = ["| corruption | measure | s = 0.5 | s = 1 | slip |", "|---|---|---:|---:|---:|"]
+    rows = []
     for name in RGB:
         curve = found[name]
         ssim, psnr = curve.ssim.mean(0), curve.psnr.mean(0)
         values = (f"{ssim[i]:.3f} / {psnr[i]:.1f}" for i in (len(psnr) // 2, -1))
-        lines.append(f"| `{name}` | SSIM / PSNR (dB) | {' | '.join(values)} | {curve.slip:.1g} |")
+        rows.append([f"`{name}`", "SSIM / PSNR (dB)", *values, f"{curve.slip:.1g}"])
     for name in DEPTH:
         error = found[name].error.mean(0)
         values = (f"{error[i]:.3f}" for i in (len(error) // 2, -1))
-        lines.append(
-            f"| `{name}` | mean error (m) | {' | '.join(values)} | {found[name].slip:.1g} |"
-        )
-    return "\n".join(lines)
+        rows.append([f"`{name}`", "mean error (m)", *values, f"{found[name].slip:.1g}"])
+    return markdown_table(["corruption", "measure", "s = 0.5", "s = 1", "slip"], rows, words=2)

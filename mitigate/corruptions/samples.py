@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 
+from mitigate.core.markdown import markdown_table
 from mitigate.corruptions.episode_file import NAMES
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key, digest, uniform
@@ -108,11 +109,6 @@ def examples(found: list[tuple[str, str]], count: int, seed: int) -> Iterator[st
         yield ""
 
 
-def _table(head: Sequence[str], rows: Iterator[list[str]]) -> str:
-    lines = [list(head), ["---", *["---:"] * (len(head) - 1)], *rows]
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
-
-
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for a bad input)."""
     parser = argparse.ArgumentParser(
@@ -128,10 +124,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         if not found:
             raise ValueError(f"{given.file} holds no instruction.")
         print(f"{len(found)} instructions\n")
-        print(_table(("manner", "passed at once", "passed", "clauses reworded"),
-            gate(found, given.seed)))  # fmt: skip
-        print(_table(("corruption", "ms", "words against clean"), cost(found, given.seed)))
-        print(_table(("lie", "told", "caught"), lies(found)))
+        tables = {
+            ("manner", "passed at once", "passed", "clauses reworded"): gate(found, given.seed),
+            ("corruption", "ms", "words against clean"): cost(found, given.seed),
+            ("lie", "told", "caught"): lies(found),
+        }
+        for head, rows in tables.items():
+            print(f"{markdown_table(head, rows)}\n")
         print("\n".join(examples(found, given.show, given.seed)))
     except (FileNotFoundError, ValueError) as error:
         print(f"samples: {error}", file=sys.stderr)

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from mitigate.core.markdown import markdown_table
 from mitigate.core.observation import HFOV_DEGREES
 from mitigate.corruptions import registry
 from mitigate.corruptions.curves import EPISODES, OFF, Curve
@@ -103,10 +104,6 @@ single corruptions, in a table of their own; `mitigate run` takes them, too. In 
 `corrupt_observation(obs, Corruption("low_light+missing_data", 0.6), key)`. Schedules draw single
 ones.
 """
-HEAD = (
-    "| name | what fails | formula | constants from | kept through an episode "
-    "| drawn for each frame |\n|---|---|---|---|---|---|\n"
-)
 
 
 def page(
@@ -135,7 +132,7 @@ def page(
 
 def table(half: str) -> str:
     """The table of the formulas of one half."""
-    return HEAD + formulas(registry.unseen_names("rgb", "depth", half=half))
+    return formulas(registry.unseen_names("rgb", "depth", half=half))
 
 
 def _ranges(suite: Mapping[str, Curve], found: Mapping[str, Curve], at: int) -> str:
@@ -153,17 +150,19 @@ def _ranges(suite: Mapping[str, Curve], found: Mapping[str, Curve], at: int) -> 
 
 def _strengths(found: Mapping[str, Curve], at: int) -> str:
     """Two tables, the suite's corruptions first in each."""
-    lines = ["| RGB | | PSNR (dB) | SSIM | slip |", "|---|---|---:|---:|---:|"]
+    frames, depths = [], []
     for name in (*RGB, *registry.unseen_names("rgb")):
         curve = found[name]
-        values = f"{curve.psnr[:, at].mean():.1f} | {curve.ssim[:, at].mean():.2f}"
-        lines.append(f"| `{name}` | {_whose(name)} | {values} | {curve.slip:.1g} |")
-    lines += ["", "| depth | | mean error (m) | changed | slip |", "|---|---|---:|---:|---:|"]
+        values = [f"{curve.psnr[:, at].mean():.1f}", f"{curve.ssim[:, at].mean():.2f}"]
+        frames.append([f"`{name}`", _whose(name), *values, f"{curve.slip:.1g}"])
     for name in (*DEPTH, *registry.unseen_names("depth")):
         curve = found[name]
-        values = f"{curve.error[:, at].mean():.2f} | {100 * curve.changed[:, at].mean():.0f} %"
-        lines.append(f"| `{name}` | {_whose(name)} | {values} | {curve.slip:.1g} |")
-    return "\n".join(lines)
+        values = [f"{curve.error[:, at].mean():.2f}"]
+        values += [f"{100 * curve.changed[:, at].mean():.0f} %"]
+        depths.append([f"`{name}`", _whose(name), *values, f"{curve.slip:.1g}"])
+    of_rgb = markdown_table(("RGB", "", "PSNR (dB)", "SSIM", "slip"), frames, words=2)
+    of_depth = markdown_table(("depth", "", "mean error (m)", "changed", "slip"), depths, words=2)
+    return f"{of_rgb}\n\n{of_depth}"
 
 
 def _whose(name: str) -> str:

@@ -15,6 +15,7 @@ from mitigate.core import checkpoint
 from mitigate.core.build import build_agent, maker
 from mitigate.core.files import atomic_text, write_atomically
 from mitigate.core.json_files import read_json
+from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import names, title
 from mitigate.encoders.folder import lines
@@ -153,16 +154,15 @@ def table(scores: Scores, about: str) -> str:
     for what, named in MEASURES.items():
         own = [condition for condition, other in _cells(scores) if other == what]
         if own:
-            head = f"| {named} | before | after | after - before |\n| --- | ---: | ---: | ---: |"
-            parts.append("\n".join([head, *(_line(scores, c, what) for c in own)]) + "\n")
+            head = (named, "before", "after", "after - before")
+            parts.append(markdown_table(head, (_row(scores, c, what) for c in own)) + "\n")
     return "\n".join(parts)
 
 
-def _line(scores: Scores, condition: str, what: str) -> str:
+def _row(scores: Scores, condition: str, what: str) -> list[str]:
     first, second = (scores[state, condition, what] for state in (BEFORE, AFTER))
     name = condition if condition == MEAN else title(condition)
-    cells = [_text(first.estimate), _text(second.estimate), _text(second.minus(first), "+")]
-    return f"| {' | '.join([name, *cells])} |"
+    return [name, _text(first.estimate), _text(second.estimate), _text(second.minus(first), "+")]
 
 
 def _text(e: Estimate, sign: str = "") -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from mitigate.core.markdown import markdown_table
 from mitigate.evaluation.sections import Section, label
 
 SEVERITY = 0.6  # of the paper's Table II (its caption); other severities stand alone
@@ -29,8 +30,7 @@ def beside(
         known = theirs.get(name, {})
         return [title, *(f"{v} ({known[c]})" if c in known else v for c, v in values.items())]
 
-    lines = [["Corruption", *section.columns], ["---", *["---:"] * len(section.columns)]]
-    lines.append(["Clean SR", *(f"{100 * section.value(c, 'clean'):.1f}" for c in section.columns)])
+    lines = [["Clean SR", *(f"{100 * section.value(c, 'clean'):.1f}" for c in section.columns)]]
     for block, names in section.blocks.items():
         title = f"PRS-SR ({block})"
         kept = {c: section.retained.get((c, block, "SR")) for c in section.columns}
@@ -47,7 +47,7 @@ def beside(
     for kind, minutes in spent.items():
         cost = (f"{minutes[c]:.1f}" if c in minutes else "–" for c in section.columns)
         lines.append([f"CPU minutes, {kind}", *cost])
-    table = "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    table = markdown_table(["Corruption", *section.columns], lines)
     return f"{_header(section, bool(theirs))}\n\n{table}\n"
 
 

@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from mitigate.core.files import atomic_text, make_folder
-from mitigate.core.names import counted, markdown_of
+from mitigate.core.markdown import markdown_of, markdown_table
+from mitigate.core.names import counted
 from mitigate.evaluation.blocks import PROMPT_ONLY, meant
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES, Estimate
 from mitigate.evaluation.grid import METRICS, Grid
@@ -99,7 +100,7 @@ def _listed(seeds: Iterable[int]) -> str:
 
 
 def _table(section: Section) -> str:
-    lines = [["Corruption", *map(markdown_of, section.columns)]]
+    lines = []
     for metric in METRICS:
         cells = [_interval(section.clean.get((c, metric)), metric) for c in section.columns]
         lines.append([f"Clean {metric}", *cells])
@@ -126,8 +127,7 @@ def _table(section: Section) -> str:
             lines.append([label(name), *(_rate(section, c, name) for c in section.columns)])
         if _prompt_not_applicable(section, block):
             lines.append([label(PROMPT_ONLY), *["n/a"] * len(section.columns)])
-    lines.insert(1, ["---", *["---:"] * len(section.columns)])
-    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines)
+    return markdown_table(["Corruption", *map(markdown_of, section.columns)], lines)
 
 
 def _mean_sr(section: Section) -> list[list[str]]:

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mitigate.core.files import write_atomically, write_bytes
-from mitigate.core.names import markdown_of
+from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 from mitigate.core.pictures import strip
 from mitigate.corruptions import Corruption
@@ -46,18 +46,18 @@ def table(
         f"95 % bootstrap intervals over runs of ten steps; of fewer than {FEW} runs, or where all "
         f"are alike, Wilson's.{behind}",
         "",
-        "| condition | " + " | ".join(map(markdown_of, agents)) + " |",
-        "|---|" + "---:|" * len(agents),
     ]
+    rows = []
     for name in conditions:
         cells = [_percent(found[a][name].changed) if name in found[a] else "–" for a in agents]
-        lines.append(f"| {label(name)} | " + " | ".join(cells) + " |")
+        rows.append([label(name), *cells])
     means = []
     for agent in agents:
         of = [c.changed.value for name, c in found[agent].items() if name != "clean"]
         means.append(f"{100 * sum(of) / len(of):.1f}" if of else "–")
-    lines += ["| **mean** | " + " | ".join(means) + " |", "", *_others(found)]
-    return "\n".join(lines) + "\n"
+    rows.append(["**mean**", *means])
+    table = markdown_table(["condition", *map(markdown_of, agents)], rows)
+    return "\n".join([*lines, table, "", *_others(found)]) + "\n"
 
 
 def _conditions(found: Found) -> list[str]:
@@ -73,16 +73,16 @@ def _others(found: Found) -> list[str]:
         "from that on clean frames. As the driver: share of the steps, in %, at which it does what "
         "whoever drove did.",
         "",
-        "| agent | condition | false stops | missed stops | aim moved | as the driver |",
-        "|---|---|---:|---:|---:|---:|",
     ]
+    rows = []
     for agent, of in found.items():
         for name, changes in of.items():
             aim = "–" if changes.aim is None else _percent(changes.aim)
             agrees = "–" if changes.agreement is None else _percent(changes.agreement)
-            cells = (markdown_of(agent), label(name), changes.stops, changes.missed, aim, agrees)
-            lines.append(f"| {' | '.join(map(str, cells))} |")
-    return lines
+            counts = (changes.stops, changes.missed)
+            rows.append([markdown_of(agent), label(name), *counts, aim, agrees])
+    head = ("agent", "condition", "false stops", "missed stops", "aim moved", "as the driver")
+    return [*lines, markdown_table(head, rows, words=2)]
 
 
 def _percent(share: Estimate) -> str:

@@ -25,6 +25,7 @@ from torch import nn
 from mitigate.core import conf
 from mitigate.core.build import maker
 from mitigate.core.files import atomic_text, find, write_bytes
+from mitigate.core.markdown import markdown_table
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.progress import Progress
@@ -150,17 +151,15 @@ def table(scores: dict[tuple[str, str], Score], about: str) -> str:
     parts = [f"# Frames before and after restoration\n\n{about}. In brackets 95 % intervals.\n"]
     for sensor in dict.fromkeys(sensor for sensor, _ in scores):
         unit = "levels of 255" if sensor == RGB else "cm"
-        lines = [
-            f"| {sensor}: mean error, {unit}; right pixels, % | before | after | right before "
-            "| right after | instants restored, % |",
-            "| --- | ---: | ---: | ---: | ---: | ---: |",
-        ]
+        head = [f"{sensor}: mean error, {unit}; right pixels, %", "before", "after"]
+        head += ["right before", "right after", "instants restored, %"]
+        rows = []
         for (own, name), score in scores.items():
             if own == sensor:
                 shares = (score.right_before, score.right_after, score.restored)
                 cells = [_text(score.before), _text(score.after), *(_text(s, 100) for s in shares)]
-                lines.append(f"| {' | '.join([title(name), *cells])} |")
-        parts.append("\n".join(lines) + "\n")
+                rows.append([title(name), *cells])
+        parts.append(markdown_table(head, rows) + "\n")
     if any(NO_INTERVAL in part for part in parts):
         parts.append(f"{NO_INTERVAL}: no interval, as all instants are alike.\n")
     return "\n".join(parts)

@@ -16,6 +16,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from mitigate.core.markdown import markdown_table
 from mitigate.core.options import positive
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.fidelity import facts
@@ -87,7 +88,7 @@ def rate(found: list[bool]) -> str:
 def attack_table(counts: Counts, mechanisms: Sequence[str]) -> str:
     """Return a Markdown table, a row for each mechanism, a column for each place and manner."""
     columns = [(p, m) for p in (*trials.PLACES, "inside", "wrap") for m in ("plain", "styled")]
-    rows = [["mechanism", *(f"{p}, {m}" for p, m in columns), "all"]]
+    rows = []
     for name in (*mechanisms, "all"):
         found = {
             column: [
@@ -100,18 +101,17 @@ def attack_table(counts: Counts, mechanisms: Sequence[str]) -> str:
         }
         every = [x for seen in found.values() for x in seen]
         rows.append([name, *(rate(found[c]) for c in columns), rate(every)])
-    return table(rows)
-
-
-def table(rows: list[list[str]]) -> str:
-    """Return rows as Markdown; the first is the head."""
-    head = ["---", *["---:"] * (len(rows[0]) - 1)]
-    return "\n".join(f"| {' | '.join(row)} |" for row in (rows[0], head, *rows[1:]))
+    return markdown_table(["mechanism", *(f"{p}, {m}" for p, m in columns), "all"], rows)
 
 
 def same_words(one: str, other: str) -> bool:
     """Return whether two texts have the same words, whatever their case and marks."""
     return words_of(one) == words_of(other)
+
+
+def share_table(what: str, found: dict[str, list[bool]]) -> str:
+    """Return a Markdown table, a row for each kind of ``what``."""
+    return markdown_table((what, "%"), ([kind, rate(seen)] for kind, seen in found.items()))
 
 
 def unattacked(repair: Repair, split: str) -> dict[str, list[bool]]:
@@ -169,12 +169,12 @@ def report(split: str, each: int, choice: str = "rules", sample: int | None = No
         f"## Sentences of the route lost beside them, %, {split}",
         attack_table(lost, mechanisms),
         f"## Without attack, changed, %, {split}",
-        table([["texts", "%"], *([k, rate(v)] for k, v in unattacked(repair, split).items())]),
+        share_table("texts", unattacked(repair, split)),
     ]
     if lies:
         parts += [
             f"## Lies refused, honest rewrites accepted, %, {split}",
-            table([["kind", "%"], *([k, rate(v)] for k, v in lies.items())]),
+            share_table("kind", lies),
         ]
     return "\n\n".join(parts)
 

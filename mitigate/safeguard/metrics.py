@@ -7,6 +7,7 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 
+from mitigate.core.markdown import markdown_table
 from mitigate.corruptions.language.fidelity import check, facts
 
 CLEAN = "clean"  # the family of instructions that nobody corrupted
@@ -88,12 +89,12 @@ def by_family(repairs: Iterable[Repair]) -> dict[str, Scores]:
 def table(scores: dict[str, Scores]) -> str:
     """Return the scores as a Markdown table in percent, one row a family."""
     names = [f.name for f in fields(Scores)]
-    lines = [["family", *names], ["---", *["---:"] * len(names)]]
+    lines = []
     for family, found in scores.items():
         values = asdict(found)
         cells = ["–" if values[n] is None else f"{100 * values[n]:.1f}" for n in names[1:]]
         lines.append([family, str(found.count), *cells])
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    return markdown_table(["family", *names], lines)
 
 
 def token_f1(reference: str, text: str) -> float:

@@ -18,6 +18,7 @@ from typing import Any
 from torch import nn
 
 from mitigate.core.files import atomic_text, find, open_text
+from mitigate.core.markdown import markdown_table
 from mitigate.core.options import positive
 from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
@@ -161,7 +162,7 @@ def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:
 def summary(scores: dict[str, dict[str, Scores]]) -> str:
     """Return one Markdown row a safeguard: what its authors aim at, over the corrupted families."""
     head = ["safeguard", "directions", "landmarks", "token F1", "attacks removed", "clean changed"]
-    lines = [head, ["---", *["---:"] * (len(head) - 1)]]
+    lines = []
     for name, found in scores.items():
         met = {f: s for f, s in found.items() if f not in (CLEAN, "all")}
         count = sum(s.count for s in met.values())
@@ -174,7 +175,7 @@ def summary(scores: dict[str, dict[str, Scores]]) -> str:
         removed, clean = found["all"].removed, found["all"].changed
         cells = [*means, removed, clean]
         lines.append([name, *("–" if c is None else f"{100 * c:.1f}" for c in cells)])
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+    return markdown_table(head, lines)
 
 
 def examples(repairs: Sequence[Repair], count: int, seed: int) -> str:

@@ -12,7 +12,8 @@ from typing import Any
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
-from mitigate.core.names import counted, markdown_of, short
+from mitigate.core.markdown import markdown_of, markdown_table
+from mitigate.core.names import counted, short
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
 from mitigate.evaluation.rows import Row
@@ -190,16 +191,16 @@ def _span(severity: float | list[float]) -> str:
 
 
 def _table(entry: dict[str, Any]) -> str:
-    lines = ["| measure | value, 95 % interval |", "| --- | ---: |"]
-    lines += [f"| Clean {name} | {_cell(found)} |" for name, found in entry["clean"].items()]
-    lines += [f"| {name} | {_cell(found)} |" for name, found in entry["PRS"].items()]
-    lines += [f"| SR, {label(name)} | {_cell([sr])} |" for name, sr in entry["SR"].items()]
+    rows = [[f"Clean {name}", _cell(found)] for name, found in entry["clean"].items()]
+    rows += [[name, _cell(found)] for name, found in entry["PRS"].items()]
+    rows += [[f"SR, {label(name)}", _cell([sr])] for name, sr in entry["SR"].items()]
+    table = markdown_table(["measure", "value, 95 % interval"], rows)
     gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
     return (
         f"## {markdown_of(entry['split'])}, severity {entry['severity']:g}\n\n"
         f"{counted(entry['episodes'], 'episode')}, seed {', '.join(map(str, entry['seeds']))}, "
         f"suite {markdown_of(entry['suite'])}. "
-        f"Success: {markdown_of(entry['rule'])}.\n\n" + "\n".join(lines) + gaps
+        f"Success: {markdown_of(entry['rule'])}.\n\n{table}{gaps}"
     )
 
 
@@ -224,12 +225,12 @@ def _use(card: dict[str, Any]) -> str:
         )
     times, checked = card["latency_ms"], card["checked"]
     networks = list(times["eager"])
-    lines = [
-        f"| `{name}`, {kind} | {times[kind][name]['wall']:g} | {times[kind][name]['cpu']:g} |"
+    rows = [
+        [f"`{name}`, {kind}", *(f"{times[kind][name][which]:g}" for which in ("wall", "cpu"))]
         for name in networks
         for kind in ("eager", "exported")
     ]
-    table = "\n".join(["| network | fastest | processor |", "| --- | ---: | ---: |", *lines])
+    table = markdown_table(["network", "fastest", "processor"], rows)
     return (
         f"## Use\n\n```python\nimport mitigate\n\nagent = {load})\n```\n\n"
         "Files are compared with the sha256 in `card.json` first. `program.pt2` runs a decision "

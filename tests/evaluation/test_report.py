@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from mitigate.core.names import markdown_of
+from mitigate.core.markdown import markdown_of
 from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
 from mitigate.corruptions.registry import unseen_names
 from mitigate.evaluation import rows, table
