@@ -78,7 +78,7 @@ def see(
     encoder: CameraRGB | CameraDepth, sensor: str, frames: Tensor, truth: Tensor | None
 ) -> Output:
     """As ``agents/agent.py`` says of ``see``; the features are those of all columns with what the
-    encoder says shows there (RGB) or is free (depth, metres), so that these are distilled, too."""
+    encoder says shows there (RGB) or is free (depth, metres)."""
     features, logits = (x.unflatten(0, frames.shape[:2]) for x in encoder(frames.flatten(0, 1)))
     said = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)
     out = Output(features={"views": torch.cat([features.flatten(-2), said], -1)})

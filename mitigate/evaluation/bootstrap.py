@@ -2,7 +2,9 @@
 
 Values are ``[..., N]``, one column an episode. Every condition and agent sees the same resamples
 of the episodes, so what is easy or hard about an episode cancels. Several seeds of an episode must
-be averaged first: the unit drawn is the episode.
+be averaged first: the unit drawn is the episode. Episodes in one scene are alike, so intervals for
+scenes that nobody saw are wider: ``units`` [N] names what an episode is drawn with (a cluster
+bootstrap: Davison and Hinkley 1997, section 3.8).
 """
 
 from __future__ import annotations
@@ -10,6 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -54,10 +57,17 @@ class Estimate:
         return f"[{scale * self.low:{form}}, {scale * self.high:{form}}]"
 
 
-def resampled_means(values: ArrayLike, *, resamples: int = RESAMPLES, seed: int = 0) -> np.ndarray:
+def resampled_means(
+    values: ArrayLike,
+    *,
+    resamples: int = RESAMPLES,
+    seed: int = 0,
+    units: ArrayLike | None = None,
+) -> np.ndarray:
     """Return the means of ``values`` [C, N] over resampled episodes, float64 [resamples, C].
 
-    The draws depend on N and ``seed`` alone, so calls on the same episodes are paired.
+    units: numbers [N]; episodes of one number are drawn together. None: each alone. The draws
+    depend on how many are drawn and ``seed`` alone, so calls on the same episodes are paired.
     """
     table = np.atleast_2d(np.asarray(values, float))
     if table.ndim != 2 or not table.size or not np.isfinite(table).all():
@@ -65,44 +75,49 @@ def resampled_means(values: ArrayLike, *, resamples: int = RESAMPLES, seed: int 
             f"The bootstrap needs finite values [conditions, episodes], not {table.shape} with "
             f"{int(np.isnan(table).sum())} NaN: leave out the episodes that lack a result."
         )
-    times = _times_drawn(table.shape[1], resamples, seed)
+    own = np.arange(table.shape[1]) if units is None else np.unique(units, return_inverse=True)[1]
+    times = _times_drawn(int(own.max()) + 1, resamples, seed)
+    count = np.bincount(own).astype(float)
     parts = np.array_split(times, min(resamples, math.ceil(times.size / PART)))
-    return np.concatenate([part @ table.T for part in parts]) / table.shape[1]
+    sums = np.stack([np.bincount(own, row) for row in table], axis=1)
+    return np.concatenate([part @ sums / (part @ count)[:, None] for part in parts])
 
 
 @lru_cache(maxsize=4)
-def _times_drawn(episodes: int, resamples: int, seed: int) -> np.ndarray:
-    """Return how often each resample draws each episode, uint16 [resamples, episodes]."""
+def _times_drawn(units: int, resamples: int, seed: int) -> np.ndarray:
+    """Return how often each resample draws each unit, uint16 [resamples, units]."""
     generator = np.random.Generator(np.random.PCG64(seed))
-    times = np.empty((resamples, episodes), np.uint16)
+    times = np.empty((resamples, units), np.uint16)
     for part in np.array_split(times, math.ceil(times.size / CHUNK)):
-        draws = generator.integers(episodes, size=part.shape)
-        draws += np.arange(len(part))[:, None] * episodes
+        draws = generator.integers(units, size=part.shape)
+        draws += np.arange(len(part))[:, None] * units
         part[:] = np.bincount(draws.ravel(), minlength=part.size).reshape(part.shape)
     times.setflags(write=False)
     return times
 
 
-def mean(values: ArrayLike, **options: int) -> Estimate:
+def mean(values: ArrayLike, **options: Any) -> Estimate:
     """Return the mean of ``values`` [N] with its interval."""
     return _estimate(
         float(np.asarray(values, float).mean()), resampled_means(values, **options)[:, 0]
     )
 
 
-def share(values: ArrayLike, **options: int) -> Estimate:
+def share(values: ArrayLike, **options: Any) -> Estimate:
     """Return the mean of ``values`` [N] in 0..1 (successes, SPLs) with its interval.
 
     If all are 0 or all 1, no resample differs; the bound is then that of Wilson's score interval.
     """
     found, known = mean(values, **options), np.asarray(values, float)
-    reach = Z * Z / (len(known) + Z * Z)
+    units = options.get("units")
+    drawn = len(known) if units is None else len(np.unique(units))
+    reach = Z * Z / (drawn + Z * Z)
     if (known == 0).all():
         return Estimate(found.value, 0.0, reach)
     return Estimate(found.value, 1 - reach, 1.0) if (known == 1).all() else found
 
 
-def means(table: ArrayLike, *, shares: bool = False, **options: int) -> list[Estimate | None]:
+def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Estimate | None]:
     """Return the mean of each row of ``table`` [K, N] with its interval, None for a row of NaN.
 
     Each is over the episodes that the row holds, as :func:`mean`, or :func:`share` with ``shares``,
@@ -125,19 +140,19 @@ def means(table: ArrayLike, *, shares: bool = False, **options: int) -> list[Est
     return found
 
 
-def prs(clean: ArrayLike, corrupted: ArrayLike, **options: int) -> Estimate:
+def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
     """Return PRS with its interval; ``clean`` [N] and ``corrupted`` [K, N] share their episodes."""
     value, samples = _prs(clean, corrupted, options)
     return _estimate(value, samples)
 
 
-def ratio(parts: ArrayLike, wholes: ArrayLike, **options: int) -> Estimate:
+def ratio(parts: ArrayLike, wholes: ArrayLike, **options: Any) -> Estimate:
     """Return the sum of ``parts`` [N] over that of ``wholes`` [N], with its interval."""
     return prs(wholes, parts, **options)
 
 
 def prs_difference(
-    first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: int
+    first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: Any
 ) -> Estimate:
     """Return PRS(first) - PRS(second), paired; each is a (clean [N], corrupted [K, N]) of one N."""
     counts = {np.shape(part)[-1] for pair in (first, second) for part in pair}
@@ -147,7 +162,9 @@ def prs_difference(
     return _estimate(a - b, samples_a - samples_b)
 
 
-def _prs(clean: ArrayLike, corrupted: ArrayLike, options: dict) -> tuple[float, np.ndarray]:
+def _prs(
+    clean: ArrayLike, corrupted: ArrayLike, options: dict[str, Any]
+) -> tuple[float, np.ndarray]:
     """PRS as ``metrics.prs`` defines it, and that of each resample."""
     clean, corrupted = np.asarray(clean, float), np.atleast_2d(np.asarray(corrupted, float))
     means = resampled_means(np.stack([clean, corrupted.mean(axis=0)]), **options)

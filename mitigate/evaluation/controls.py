@@ -98,7 +98,7 @@ def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> l
             "suite": SUITE_VERSION,
             "rule": world.rule,
         }
-        jobs = [(episode, {**label, "episode_id": episode.episode_id}) for episode in chosen]
+        jobs = [(episode, {**label, **rows.of_episode(episode)}) for episode in chosen]
         todo = [job for job in jobs if rows.identity(job[1]) not in held]
         with Progress(name, len(jobs), unit="episode", start=len(jobs) - len(todo)) as progress:
             for episode, own in todo:

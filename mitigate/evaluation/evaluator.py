@@ -199,7 +199,7 @@ def _jobs(
                 **label,
                 "corruption": condition.name,
                 "severity": condition.severity,
-                "episode_id": episode.episode_id,
+                **rows.of_episode(episode),
                 **version(condition.name),
             },
         )

@@ -17,10 +17,11 @@ from mitigate.corruptions.registry import AND
 from mitigate.evaluation import metrics
 from mitigate.evaluation.blocks import BLOCKS
 from mitigate.evaluation.lists import by_list
-from mitigate.evaluation.rows import Row, upsert
+from mitigate.evaluation.rows import Row, scene_of, upsert
 
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}
+DRAWN = ("episode", "scene")  # what the bootstrap may draw
 _Run = dict[tuple[str, float, str], np.ndarray]  # (corruption, severity, metric): values [N]
 
 
@@ -37,11 +38,13 @@ class Gap:
 
 @dataclass(frozen=True, eq=False)
 class Retention:
-    """What a PRS is made of: ``clean`` [N] and ``corrupted`` [K, N] on the same N episodes."""
+    """What a PRS is made of: ``clean`` [N] and ``corrupted`` [K, N] on the same N episodes, and
+    with what the bootstrap draws each, ``units`` [N]."""
 
     corruptions: tuple[str, ...]
     clean: np.ndarray
     corrupted: np.ndarray
+    units: np.ndarray
 
     @property
     def prs(self) -> float:
@@ -59,8 +62,9 @@ class Grid:
     over ``seeds[label, severity]``, NaN where a row is missing; a clean cell is there once for each
     severity, over that one's seeds. ``unfinished[label, severity]`` holds the seeds that are left
     out, with the rows they have and the rows of a whole one. ``runs[label][seed]`` are the cells of
-    one seed, by (corruption, severity, metric). ``begins`` is the first episode's id where another
-    grid differs in its list alone, else empty.
+    one seed, by (corruption, severity, metric). ``units`` [N] are numbers: the bootstrap draws
+    episodes of one number together, and ``drawn`` says what that is. ``begins`` is the first
+    episode's id where another grid differs in its list alone, else empty.
     """
 
     split: str
@@ -73,6 +77,8 @@ class Grid:
     episodes: tuple[str, ...]
     cells: dict[tuple[str, str, float, str], np.ndarray]
     runs: dict[str, dict[int, _Run]]
+    drawn: str
+    units: np.ndarray
     begins: str = ""
 
     @property
@@ -161,6 +167,7 @@ class Grid:
                 kept,
                 self.cell(label, "clean", severity, metric)[common],
                 np.stack([self.cell(label, name, severity, metric)[common] for name in kept]),
+                self.units[common],
             )
             for label in labels
         ]
@@ -179,10 +186,11 @@ class Grid:
         return found
 
 
-def grids(rows: Iterable[Row]) -> list[Grid]:
+def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
     """Return the grids of ``rows``, ordered by split, suite and rule, then as their lists begin.
 
-    Raises ValueError if there are no rows.
+    ``drawn``: of :data:`DRAWN`, what the bootstrap draws. Raises ValueError if there are no rows,
+    or if scenes are to be drawn and rows do not say theirs.
     """
     groups: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in upsert(rows):
@@ -194,7 +202,7 @@ def grids(rows: Iterable[Row]) -> list[Grid]:
         )
     found = []
     for key in sorted(groups):
-        made = [_grid(key, held) for held in by_list(groups[key])]
+        made = [_grid(key, held, drawn) for held in by_list(groups[key])]
         several = len(made) > 1
         found += [replace(g, begins=g.episodes[0]) if several else g for g in made]
     return found
@@ -230,7 +238,7 @@ def _telling(agents: Iterable[str]) -> int:
     return digits
 
 
-def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
+def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str) -> Grid:
     columns = label_columns((row["name"], row["agent"], row["seed"]) for row in rows)
     labels = {(name, agent): x for x, (name, agents) in columns.items() for agent in agents}
     episodes = tuple(sorted({row["episode_id"] for row in rows}, key=_natural))
@@ -251,7 +259,11 @@ def _grid(key: tuple[str, str, str], rows: list[Row]) -> Grid:
             seeds[spot], unfinished[spot] = _whole(measured, severity)
             pooled = _pooled([measured[seed] for seed in seeds[spot]], severity)
             cells |= {(label, name, severity, metric): v for (name, metric), v in pooled.items()}
-    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs)
+    units = np.arange(len(episodes))
+    if drawn != DRAWN[0]:
+        scenes = {row["episode_id"]: scene_of(row) for row in rows}
+        units = np.unique([scenes[episode] for episode in episodes], return_inverse=True)[1]
+    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs, drawn, units)
 
 
 def _cells(rows: list[Row], place: dict[str, int]) -> _Run:

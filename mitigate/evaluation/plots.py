@@ -124,9 +124,10 @@ def _curve(grid: Grid, column: str, name: str) -> Curve:
     )
     for severity in (0.0, *grid.severities) if measured else ():
         cell = grid.cell(column, "clean" if severity == 0 else name, severity, "success")
-        known = cell[~np.isnan(cell)]
-        if len(known):
-            points.append((severity, bootstrap.share(known, resamples=1000)))
+        held = ~np.isnan(cell)
+        if held.any():
+            found = bootstrap.share(cell[held], units=grid.units[held], resamples=1000)
+            points.append((severity, found))
     return points
 
 

@@ -9,12 +9,14 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted
 from mitigate.evaluation.blocks import PROMPT_ONLY, meant
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES, Estimate
-from mitigate.evaluation.grid import METRICS, Grid
+from mitigate.evaluation.grid import DRAWN, METRICS, Grid
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
@@ -40,16 +42,18 @@ def write(
     first: str | None = None,
     least: int = 1,
     against: str | None = None,
+    drawn: str = DRAWN[0],
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
     Further sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. ``first``: the
     rule of success whose sections come first; ``least``: severities of which a curve is drawn.
-    ``against``: the column to compare with, as in :func:`sections`.
+    ``against``: the column to compare with, ``drawn``: what the bootstrap draws, as in
+    :func:`sections`.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
-    parts = sorted(sections(rows, against), key=lambda part: part.grid.rule != first)
+    parts = sorted(sections(rows, against, drawn), key=lambda part: part.grid.rule != first)
     folder = make_folder(folder)
     pictures: list[list[str]] = [[] for _ in parts]
     heatmaps = 0
@@ -84,9 +88,16 @@ def _heading(section: Section) -> str:
         f"N = {counted(len(grid.episodes), 'episode')}, {seeds}, corruption suite "
         f"{markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Agents: {agents}.\n"
         f"SR in %. PRS = mean over the block's corruptions of SR (SPL) / the same agent's clean "
-        f"SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over episodes, {RESAMPLES:,} "
-        f"resamples; where all or none succeed, Wilson's."
+        f"SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over {_drawn(grid)}, "
+        f"{RESAMPLES:,} resamples; where all or none succeed, Wilson's."
     )
+
+
+def _drawn(grid: Grid) -> str:
+    """What the bootstrap draws; how many, where that is not in the heading."""
+    if grid.drawn == DRAWN[0]:
+        return "episodes"
+    return f"{counted(len(np.unique(grid.units)), grid.drawn)} with their episodes"
 
 
 def _seeds_by_column(section: Section) -> str:

@@ -14,11 +14,14 @@ import warnings
 from collections.abc import Iterable
 from itertools import chain
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mitigate.core.files import atomic_text, make_folder, open_text, writing
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
+
+if TYPE_CHECKING:
+    from mitigate.worlds.episodes import Episode
 
 Row = dict[str, Any]
 ROWS = "rows.jsonl"  # in the folder of an evaluation
@@ -38,13 +41,15 @@ MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
     *("collisions", "decisions", "steps"),
 )
+SCENE = "scene"  # of a row that says in which scene its episode is
 SUFFIXES = (".jsonl", ".jsonl.gz")
 LONGEST_LINE = 1 << 16  # characters; a row has about 450 (ours)
 LONGEST_TEXT = 200  # characters of an entry (ours)
 GREATEST = 1e9  # of a measure: metres, steps (ours)
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + is between those of a pair
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
-_TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights")
+_TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
+_OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")  # ids of apartments; of the bridge
 _SHARES = ("severity", "success", "spl", "ndtw")  # numbers from 0 to 1
 _NUMBERS = ("severity", "seed", *MEASURES)
 _ROUNDING = 1e-9
@@ -55,6 +60,27 @@ def identity(row: Row) -> tuple:
     """Return what makes ``row`` itself: two rows with one identity are the same measurement."""
     own = tuple(float(row[key]) if key == "severity" else row[key] for key in IDENTITY)
     return (*own, row.get("version", ""))  # of a corruption that another package brings
+
+
+def of_episode(episode: Episode) -> Row:
+    """Return what a row says of which episode it is, and of its scene if the episode says that."""
+    scene = {SCENE: episode.scene_id} if episode.scene_id else {}
+    return {"episode_id": episode.episode_id, **scene}
+
+
+def scene_of(row: Row) -> str:
+    """Return the scene of a row's episode: what the row says, or the id's part that names it.
+
+    Raises ValueError if neither does.
+    """
+    found = _OF_A_SCENE.fullmatch(row["episode_id"])
+    scene = row.get(SCENE) or (found and (found[1] or found[2]))
+    if not scene:
+        raise ValueError(
+            f"The rows do not say in which scene episode {short(row['episode_id'])} is, so scenes "
+            "cannot be drawn: evaluate again (rows now say it), or draw episodes."
+        )
+    return str(scene)
 
 
 def read(path: Path | str) -> list[Row]:

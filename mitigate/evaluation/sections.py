@@ -14,7 +14,7 @@ from mitigate.corruptions.registry import title
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.blocks import SUITE, by_kind, halves, meant
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import METRICS, Gap, Grid, Retention, grids
+from mitigate.evaluation.grid import DRAWN, METRICS, Gap, Grid, Retention, grids
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 
@@ -102,12 +102,15 @@ def compare(section: Section, column: str, reference: str) -> Compared:
     return _compared(section.grid, section.severity, (column, reference), section.blocks)
 
 
-def sections(rows: Iterable[Row], against: str | None = None) -> list[Section]:
+def sections(
+    rows: Iterable[Row], against: str | None = None, drawn: str = DRAWN[0]
+) -> list[Section]:
     """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 
     Where a column was never corrupted (a control), a clean-only section comes first. ``against``:
     the column that comes first and that the others are compared with, where it is there; None:
-    :data:`REFERENCES`. Raises ValueError if it is nowhere.
+    :data:`REFERENCES`. ``drawn``: what the bootstrap draws, as in :func:`grids`. Raises ValueError
+    if a column to compare with is nowhere.
     """
     rows = list(rows)
     names = sorted({row["name"] for row in rows})
@@ -116,7 +119,7 @@ def sections(rows: Iterable[Row], against: str | None = None) -> list[Section]:
     first = REFERENCES if against is None else (against,)
     found = []
     for kind, held in (by_kind(rows) or {SUITE: []}).items():
-        for grid in grids(held):
+        for grid in grids(held, drawn):
             corrupted = {label for label, _, severity, _ in grid.cells if severity > 0}
             clean_only = [] if corrupted == grid.columns.keys() else [0.0]
             found += [
@@ -152,10 +155,10 @@ def _section(grid: Grid, kind: str, severity: float, first: Sequence[str]) -> Se
             moved |= {column: found.moved} if found.moved else {}
             raised |= {column: found.raised} if found.raised else {}
         for metric, key in METRICS.items():
-            values = grid.cell(column, "clean", severity, key)
-            values = values[grid.measured(column, severity, key)]
-            if len(values):
-                clean[column, metric] = bootstrap.share(values)
+            held = grid.measured(column, severity, key)
+            if held.any():
+                values = grid.cell(column, "clean", severity, key)[held]
+                clean[column, metric] = bootstrap.share(values, units=grid.units[held])
             for block, names in measured.items():
                 place = (column, block, metric)
                 if parts := grid.retention([column], names, severity, key):
@@ -195,17 +198,16 @@ def _compared(
     both = grid.paired(pair, severity)
     first, second = (both.cell(label, "clean", severity, METRICS["SR"]) for label in pair)
     change = first - second
-    known = change[~np.isnan(change)]
+    held = ~np.isnan(change)
     every = tuple(name for names in blocks.values() for name in names)
     parts = both.retention(pair, every, severity, METRICS["SR"])
     gained: dict[tuple[str, str], Retained] = {}
     for metric, key in METRICS.items():
         for block, names in _measured(blocks).items():
-            if held := both.retention(pair, names, severity, key):
-                gained[block, metric] = _retained(held)
-    return Compared(
-        bootstrap.mean(known) if len(known) else None, mean_sr(parts) if parts else None, gained
-    )
+            if found := both.retention(pair, names, severity, key):
+                gained[block, metric] = _retained(found)
+    moved = bootstrap.mean(change[held], units=grid.units[held]) if held.any() else None
+    return Compared(moved, mean_sr(parts) if parts else None, gained)
 
 
 def _by_seed(
@@ -226,17 +228,24 @@ def _by_seed(
 
 def _retained(parts: list[Retention]) -> Retained:
     """Return the PRS of one part, or the difference of the first's to the second's."""
-    pairs = [(part.clean, part.corrupted) for part in parts]
-    estimate = bootstrap.prs(*pairs[0]) if len(pairs) == 1 else bootstrap.prs_difference(*pairs)
+    pairs, units = [(part.clean, part.corrupted) for part in parts], parts[0].units
+    estimate = (
+        bootstrap.prs(*pairs[0], units=units)
+        if len(pairs) == 1
+        else bootstrap.prs_difference(*pairs, units=units)
+    )
     near_floor = min(part.clean.mean() for part in parts) < FLOOR
     return Retained(estimate, parts[0].corruptions, len(parts[0].clean), bool(near_floor))
 
 
 def mean_sr(parts: list[Retention]) -> Retained:
     """Return the mean SR under corruption of one part, or the first's minus the second's."""
-    means = [part.corrupted.mean(axis=0) for part in parts]
-    alone = len(means) == 1
-    estimate = bootstrap.share(means[0]) if alone else bootstrap.mean(means[0] - means[1])
+    means, units = [part.corrupted.mean(axis=0) for part in parts], parts[0].units
+    estimate = (
+        bootstrap.share(means[0], units=units)
+        if len(means) == 1
+        else bootstrap.mean(means[0] - means[1], units=units)
+    )
     return Retained(estimate, parts[0].corruptions, len(parts[0].clean), False)
 
 

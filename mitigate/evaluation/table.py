@@ -1,5 +1,7 @@
 """Join result rows into one table: ``mitigate table RUNS... [--seed N] [--against NAME]``.
 
+``--draw scene`` makes intervals for scenes that nobody saw, in place of further episodes in these.
+
 Takes row files and run or sweep folders, partial ones too. Prints the table and writes
 ``table.md``, ``heatmap.png`` and ``severity.png``.
 """
@@ -21,11 +23,13 @@ def run(
     out: Path | str = OUT,
     seeds: Sequence[int] | None = None,
     against: str | None = None,
+    drawn: str = "episode",
 ) -> list[Path]:
     """Join the rows of ``paths``, write the report to ``out``; return its files, the table first.
 
     ``seeds``: those to take, None: all. ``against``: the column that the others are compared with,
-    None: "base" or "before", or else the first.
+    None: "base" or "before", or else the first. ``drawn``: what the bootstrap draws, "episode" or
+    "scene".
     Raises FileNotFoundError for a path without rows, ValueError for rows that are damaged, seeds
     that no row is of and a column that is not there.
     """
@@ -37,7 +41,7 @@ def run(
         if seed not in held:
             raise ValueError(f"No row is of seed {seed}; there are {', '.join(map(str, held))}.")
     taken = [row for row in found if seeds is None or row["seed"] in seeds]
-    return report.write(taken, out, against=against)
+    return report.write(taken, out, against=against, drawn=drawn)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -54,11 +58,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--against", metavar="NAME", help="the column that the others are compared with"
     )
+    parser.add_argument(
+        "--draw",
+        choices=("episode", "scene"),
+        default="episode",
+        help="what the bootstrap of the intervals draws (default episode)",
+    )
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)
     try:
         check_paths(options.rows, "--out DIR")
-        written = run(options.rows, options.out, options.seed, options.against)
+        written = run(options.rows, options.out, options.seed, options.against, options.draw)
     except (OSError, ValueError) as error:
         from mitigate.core.errors import said
 

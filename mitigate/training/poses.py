@@ -145,6 +145,9 @@ class Poses:
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
         clean, truth = self.world.put(xy, heading, views=views, rgb=self.sensor == RGB)
+        # a corruption may show another view's picture: a view not rendered has that of one that was
+        shown = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
+        clean = {**clean, self.sensor: clean[self.sensor][shown]}
         drawn = self.schedule.draw(self.seed, name, 0)
         frames = corrupt_observation(clean, *drawn, depth_sensor(self.world.sensors))
         target = self._target(truth)

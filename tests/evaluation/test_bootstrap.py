@@ -48,6 +48,23 @@ def test_resamples_do_not_depend_on_the_size_of_the_chunks(results, monkeypatch)
     bootstrap._times_drawn.cache_clear()
 
 
+def test_episodes_of_a_scene_are_drawn_together(results):
+    scenes, (clean, corrupted) = np.repeat(np.arange(30), 10), results
+    together = resampled_means(np.repeat(clean[:30], 10), resamples=50, units=scenes)
+    assert np.allclose(together, resampled_means(clean[:30], resamples=50))
+    alike = prs(np.repeat(clean[:30], 10), np.repeat(corrupted[:, :30], 10, axis=1), units=scenes)
+    assert alike == prs(clean[:30], corrupted[:, :30])
+    assert share(np.ones(300), units=scenes) == share(np.ones(30))
+
+
+def test_scenes_with_few_episodes_weigh_less():
+    values, scenes = np.array([0.0, 0, 0, 1]), np.array([7, 7, 7, 2])
+    draws = np.random.Generator(np.random.PCG64(0)).integers(2, size=(20, 2))
+    drawn = [np.concatenate([[1.0] if unit == 0 else [0.0] * 3 for unit in row]) for row in draws]
+    expected = [row.mean() for row in drawn]
+    assert np.allclose(resampled_means(values, resamples=20, units=scenes)[:, 0], expected)
+
+
 def test_the_interval_of_a_rate_is_the_binomial_one():
     wins = np.repeat([1.0, 0.0], [240, 160])
     found, half = mean(wins), 1.96 * math.sqrt(0.6 * 0.4 / 400)

@@ -57,6 +57,25 @@ def test_the_conditions_of_the_result_are_printed():
     assert "N = 1 episode, seed 0" in markdown(sections(column(8, ALL)[:1]))
 
 
+@pytest.mark.parametrize("says", [True, False])
+def test_intervals_may_be_of_scenes(says):
+    """Two scenes of five episodes, which the rows or the apartments' ids name."""
+
+    def placed(made: dict) -> dict:
+        scene, number = divmod(int(made["episode_id"]), 5)
+        return made | ({"scene": f"{scene}"} if says else {"episode_id": f"{scene}-vln2-{number}"})
+
+    made = [placed(row) for row in column(5, ALL)]
+    text, plain = markdown(sections(made, drawn="scene")), markdown(sections(made))
+    assert "bootstrap over 2 scenes with their episodes" in text and "over episodes" in plain
+    assert "| 50.0 [0.0, 100.0] |" in text and "| 50.0 [20.0, 80.0] |" in plain
+
+
+def test_scenes_that_the_rows_do_not_say_are_not_drawn():
+    with pytest.raises(ValueError, match="do not say in which scene episode '0' is"):
+        sections(column(8, ALL), drawn="scene")
+
+
 def test_prs_differences_are_paired_and_against_base():
     made = column(5, ALL, **HARD) + column(8, ALL)
     (section,) = sections(made)

@@ -44,7 +44,9 @@ class FreeSpace:
 
     @property
     def graph(self) -> csr_matrix:
-        """8-connected graph of the free cells; edge weights in metres; no cutting of corners."""
+        """8-connected graph of the free cells; edge weights in metres. Ways may cut the corner of a
+        cell that is not free, by at most 0.06 m, and are 5 % longer than straight ones on average
+        (docs/agents.md)."""
         return _graph_of(self)
 
     def cell_of(self, xy: np.ndarray | tuple[float, float]) -> int:

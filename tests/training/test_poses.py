@@ -1,0 +1,35 @@
+"""Views of random poses: what is learned, and what a corruption is shown."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from mitigate.corruptions import Schedule
+from mitigate.training import poses
+from mitigate.worlds.apartments.world import ApartmentsWorld
+
+
+def test_a_corruption_is_shown_a_picture_in_every_view(monkeypatch):
+    """It may put another view's picture in the place of one."""
+    shown = []
+
+    def look(frames, *_):
+        shown.append(frames["rgb"])
+        return frames
+
+    monkeypatch.setattr(poses, "corrupt_observation", look)
+    world, schedule = partial(ApartmentsWorld, 32), Schedule("per_frame", 0.6)
+    options = {"sensor": "rgb", "label": None, "panoramas": 2, "seed": 0}
+    half, whole = (
+        poses.Poses(None, world, None, schedule, every=every, **options).work(
+            (3, 0, 1, 2, schedule.state_dict())
+        )
+        for every in (2, 1)
+    )
+    assert len(half) == len(whole) == 2 and len(shown) == 4
+    assert half[0][0].shape == (6, 32, 32, 3) and whole[0][0].shape == (12, 32, 32, 3)
+    assert all(view.std() > 0 for frames in shown for view in frames)
+    learned, panorama = half[0][1], shown[0]
+    assert all(any(np.array_equal(view, seen) for seen in learned) for view in panorama)
