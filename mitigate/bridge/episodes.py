@@ -11,7 +11,7 @@ import numpy as np
 from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER, RESET
 from mitigate.core.names import short
 from mitigate.evaluation.metrics import path_length
-from mitigate.evaluation.rows import GREATEST, allowed
+from mitigate.evaluation.rows import GREATEST, allowed, stem_of
 
 COUNTS = ("steps", "calls")
 METRES = ("start_distance", "distance")  # infinite where a goal is out of reach
@@ -25,11 +25,6 @@ def name_of(scene: str, episode: str) -> str:
     """The name of an episode in rows: ids repeat from scene to scene in ObjectNav's files."""
     stem = stem_of(scene)
     return f"{stem}/{episode}" if stem else str(episode)
-
-
-def stem_of(scene: str) -> str:
-    """The name of a scene: of its file, without its folder and what a GLB file ends in."""
-    return scene.rpartition("/")[2].removesuffix(".glb").removesuffix(".basis")
 
 
 def begun(message: Mapping[str, Any]) -> tuple[str, str]:

@@ -22,11 +22,11 @@ import cv2
 import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
-from mitigate.bridge.episodes import stem_of
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.locks import is_alive
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.frame_files import counts
+from mitigate.evaluation.rows import stem_of
 
 CAMERAS = "cameras.json"
 LONGEST = 150  # characters of a name that are kept in a path (ours; a file name has 255 bytes)

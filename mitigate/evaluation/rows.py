@@ -41,7 +41,7 @@ MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
     *("collisions", "decisions", "steps"),
 )
-SCENE = "scene"  # of a row that says in which scene its episode is
+SCENE = "scene"  # the entry of a row that says in which scene its episode is
 SUFFIXES = (".jsonl", ".jsonl.gz")
 LONGEST_LINE = 1 << 16  # characters; a row has about 450 (ours)
 LONGEST_TEXT = 200  # characters of an entry (ours)
@@ -63,13 +63,20 @@ def identity(row: Row) -> tuple:
 
 
 def of_episode(episode: Episode) -> Row:
-    """Return what a row says of which episode it is, and of its scene if the episode says that."""
-    scene = {SCENE: episode.scene_id} if episode.scene_id else {}
-    return {"episode_id": episode.episode_id, **scene}
+    """Return what a row says of which episode it is, and of its scene if that has a name."""
+    scene = stem_of(episode.scene_id)
+    named = scene and not allowed(SCENE, scene)
+    return {"episode_id": episode.episode_id, **({SCENE: scene} if named else {})}
+
+
+def stem_of(scene: str) -> str:
+    """The name of a scene: of its file, without its folder and what a GLB file ends in."""
+    return scene.rpartition("/")[2].removesuffix(".glb").removesuffix(".basis")
 
 
 def scene_of(row: Row) -> str:
-    """Return the scene of a row's episode: what the row says, or the id's part that names it.
+    """Return the scene of a row's episode: what the row says, or the id's part that names it, as in
+    rows of older versions and of the bridge.
 
     Raises ValueError if neither does.
     """

@@ -66,6 +66,7 @@ def test_intervals_may_be_of_scenes(says):
         return made | ({"scene": f"{scene}"} if says else {"episode_id": f"{scene}-vln2-{number}"})
 
     made = [placed(row) for row in column(5, ALL)]
+    assert {rows.scene_of(row) for row in made} == {"0", "1"}
     text, plain = markdown(sections(made, drawn="scene")), markdown(sections(made))
     assert "bootstrap over 2 scenes with their episodes" in text and "over episodes" in plain
     assert "| 50.0 [0.0, 100.0] |" in text and "| 50.0 [20.0, 80.0] |" in plain
