@@ -16,6 +16,7 @@ import numpy as np
 from mitigate.corruptions.registry import AND
 from mitigate.evaluation import metrics
 from mitigate.evaluation.blocks import BLOCKS
+from mitigate.evaluation.labels import label_columns
 from mitigate.evaluation.lists import by_list
 from mitigate.evaluation.rows import Row, scene_of, upsert
 
@@ -206,36 +207,6 @@ def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
         several = len(made) > 1
         found += [replace(g, begins=g.episodes[0]) if several else g for g in made]
     return found
-
-
-def label_columns(
-    measured: Iterable[tuple[str, str, int]],
-) -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Return label -> (name, agents) of all (name, agent sha, seed).
-
-    Agents of one name that ran with a seed each of their own are the training seeds of one column.
-    Otherwise each is a column, with its sha in the label.
-    """
-    seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
-    for name, agent, seed in measured:
-        seeds[name][agent].add(seed)
-    columns = {}
-    for name, agents in seeds.items():
-        apart = sum(len(s) for s in agents.values()) == len(set().union(*agents.values()))
-        if apart:
-            columns[name] = (name, tuple(agents))
-        else:
-            digits = _telling(agents)
-            columns |= {f"{name} ({agent[:digits]})": (name, (agent,)) for agent in agents}
-    return columns
-
-
-def _telling(agents: Iterable[str]) -> int:
-    """How many digits, 6 or more, tell ``agents`` apart."""
-    digits, agents = 6, set(agents)
-    while len({agent[:digits] for agent in agents}) < len(agents):
-        digits += 1
-    return digits
 
 
 def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str) -> Grid:
