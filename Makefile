@@ -71,7 +71,7 @@ lint: $(VENV)/.stamp ## check style, formatting and types
 	$(BIN)/mypy
 
 bench: $(VENV)/.stamp-bench ## time corruptions beside their peers, training, evaluation and the renderer (minutes)
-	$(BIN)/python -m mitigate.bench $(ARGS)
+	$(BIN)/python -m tools.bench $(ARGS)
 
 doctor: ## say what this machine has and what is missing
 	@$(if $(wildcard $(VENV)/.stamp),$(BIN)/python,$(PYTHON)) -m mitigate.doctor

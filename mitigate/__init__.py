@@ -7,10 +7,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from mitigate.agents.hardened import load_hardened
+    from mitigate.agents.loading import load
     from mitigate.evaluation.leaderboard.benchmark import benchmark
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
-    from mitigate.shipping.hardened import load_hardened
-    from mitigate.shipping.loading import load
 
 # OpenMP reads this when torch is imported. By default a thread that waits for another one spins: as
 # soon as anything else runs beside torch, such as workers that make the next batch, it spins on the
@@ -25,8 +25,8 @@ __all__ = ["LeaderboardEntry", "benchmark", "load", "load_hardened"]
 _HOMES = {
     "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
     "benchmark": "mitigate.evaluation.leaderboard.benchmark",
-    "load": "mitigate.shipping.loading",
-    "load_hardened": "mitigate.shipping.hardened",
+    "load": "mitigate.agents.loading",
+    "load_hardened": "mitigate.agents.hardened",
 }
 
 

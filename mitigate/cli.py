@@ -89,7 +89,7 @@ COMMANDS = {
         "files",
     ),
     "corrupt_episodes": Command(
-        "mitigate.corruptions.episodes_command",
+        "mitigate.worlds.corrupt_episodes_command",
         "corrupt the instructions of an R2R-CE or RxR-CE file",
         "val_unseen.json.gz out.json.gz corruption=mask severity=0.5",
         "files",

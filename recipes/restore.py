@@ -24,11 +24,11 @@ from torch import Tensor
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.restoration.frames import TOLERANCE, SensorRestorer
-from mitigate.restoration.pairs import pairs_of
-from mitigate.restoration.restorer import Restorer
+from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
 from mitigate.training import limits, success
 from mitigate.training.recipe import Recipe
+from mitigate.training.restoration_pairs import pairs_of
 from mitigate.worlds.world import TrainingEpisodes
 
 SCALES = (1, 4)  # pixels: errors of edges, and of surfaces (ours)

@@ -22,13 +22,13 @@ from torch import Tensor
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
+from mitigate.guards.frames.network import texture
+from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
 from mitigate.recipes.restore import RESTORER
-from mitigate.restoration.frames import TOLERANCE, SensorRestorer
-from mitigate.restoration.network import texture
-from mitigate.restoration.pairs import Pairs, pairs_of
-from mitigate.restoration.restorer import Restorer
 from mitigate.training import success
 from mitigate.training.recipe import Recipe
+from mitigate.training.restoration_pairs import Pairs, pairs_of
 from mitigate.worlds.world import TrainingEpisodes
 
 CLEAN_SHARE = 0.35  # of the instants that are learned from (ours)

@@ -14,9 +14,9 @@ from torch import Tensor
 from mitigate.core.files import sha256
 from mitigate.core.precision import to_device
 from mitigate.core.seeding import generator
-from mitigate.safeguard.language_models.model import LanguageModel
-from mitigate.safeguard.language_models.tokens import collate, encode_pair
-from mitigate.safeguard.learning.data import Pair, draw_pair, read_chats, read_texts
+from mitigate.guards.text.language_models.model import LanguageModel
+from mitigate.guards.text.language_models.tokens import collate, encode_pair
+from mitigate.guards.text.learning.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.training.recipe import Recipe
 
 Encoded = tuple[int, list[int], list[int]]  # of a pair: its number, prompt and completion

@@ -15,15 +15,15 @@ from torch.nn.functional import binary_cross_entropy_with_logits, cross_entropy
 
 from mitigate.core.names import unknown
 from mitigate.core.seeding import generator
-from mitigate.safeguard.learning import trials
-from mitigate.safeguard.learning.attacked import draw_attacked
-from mitigate.safeguard.learning.lessons import draw_lesson
-from mitigate.safeguard.metrics import token_f1
-from mitigate.safeguard.reader import Reader
-from mitigate.safeguard.report import voices
-from mitigate.safeguard.tagger import Encoded, Tagger
+from mitigate.guards.text.learning import trials
+from mitigate.guards.text.learning.attacked import draw_attacked
+from mitigate.guards.text.learning.lessons import draw_lesson
+from mitigate.guards.text.metrics import token_f1
+from mitigate.guards.text.reader import Reader
+from mitigate.guards.text.tagger import Encoded, Tagger
 from mitigate.training import limits
 from mitigate.training.recipe import Recipe
+from mitigate.training.reports.safeguard import voices
 
 IGNORED = -100
 NAMES = ("acts", "before", "attack")  # what is taught of each word

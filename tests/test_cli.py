@@ -102,7 +102,7 @@ def test_a_module_of_ones_own_that_is_missing_is_no_such_package(monkeypatch):
 
 def test_what_the_package_offers_says_what_it_needs(monkeypatch):
     monkeypatch.setitem(sys.modules, "torch", None)
-    monkeypatch.delitem(sys.modules, "mitigate.shipping.loading", raising=False)
+    monkeypatch.delitem(sys.modules, "mitigate.agents.loading", raising=False)
     with pytest.raises(ImportError, match=r"mitigate.load needs torch, which is not installed"):
         mitigate.load  # noqa: B018
 

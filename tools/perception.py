@@ -23,15 +23,15 @@ from tqdm import tqdm
 from mitigate.agents.concepts import THINGS
 from mitigate.core import conf
 from mitigate.core.markdown import markdown_table
+from mitigate.core.names import name_of
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key, corrupt_observation
 from mitigate.corruptions.registry import HALVES, modality, unseen_names
 from mitigate.evaluation.bootstrap import resampled_means
-from mitigate.evaluation.columns import name_of
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.sections import label
-from mitigate.restoration.restorer import Restorer, restorer_of
+from mitigate.guards.frames.restorer import Restorer, restorer_of
 from mitigate.worlds.apartments.labels import free_directions, view_labels
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.simulator import apartment_of

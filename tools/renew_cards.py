@@ -15,10 +15,10 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from mitigate.agents import hardened
 from mitigate.core.errors import said
 from mitigate.core.files import put_folder, sha256
 from mitigate.evaluation.rows import Row, gather
-from mitigate.shipping import hardened
 from mitigate.shipping.card import readme, rows_agent
 
 

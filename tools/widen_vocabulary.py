@@ -15,8 +15,9 @@ import torch
 from omegaconf import OmegaConf
 from torch import Tensor, nn
 
+from mitigate.agents import loading
 from mitigate.agents.text import SPECIAL, WORDS
-from mitigate.core import build, checkpoint, conf
+from mitigate.core import checkpoint, conf
 from mitigate.core.files import atomic_text
 from mitigate.evaluation.evaluate import load
 from mitigate.training.train import written
@@ -51,7 +52,7 @@ def main() -> None:
     node = conf.load_config("train", [f"agent={kind}"]).agent
     old = load(node, source)
     known = list(old.vocabulary.words)
-    new = build.build_agent(node, weights=None, seed=0)
+    new = loading.build_agent(node, weights=None, seed=0)
     state, wanted = old.state_dict(), new.state_dict()
     for name, module in old.named_modules():
         if isinstance(module, nn.Embedding) and len(module.weight) == len(old.vocabulary):

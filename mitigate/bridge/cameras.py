@@ -19,7 +19,7 @@ from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observati
 from mitigate.corruptions.normalised import corrupt_normalised
 
 if TYPE_CHECKING:  # it needs torch, which a run without one does not wait for
-    from mitigate.restoration.restorer import Restorer
+    from mitigate.guards.frames.restorer import Restorer
 
 LARGEST = 1 << 30  # bytes of all frames of a call (ours): 24 cameras of 1080 x 1920 have 5e8
 MOST = 256  # cameras of a call (ours)

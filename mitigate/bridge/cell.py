@@ -21,12 +21,12 @@ from mitigate.bridge.results import Told
 from mitigate.bridge.server import Listener
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.verdict import lacking
+from mitigate.cluster import tied
 from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.json_files import read_json
 from mitigate.core.signals import unbroken
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
-from mitigate.scale import tied
 
 DONE, LOG = "done.json", "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats

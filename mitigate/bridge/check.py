@@ -24,7 +24,7 @@ from mitigate.core.files import write_atomically
 from mitigate.core.observation import DEPTH, RGB
 
 if TYPE_CHECKING:  # it needs torch, which a check without one does not wait for
-    from mitigate.restoration.restorer import Restorer
+    from mitigate.guards.frames.restorer import Restorer
 
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
 

@@ -10,7 +10,7 @@ from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption, Key
 
 if TYPE_CHECKING:
-    from mitigate.restoration.restorer import Restorer
+    from mitigate.guards.frames.restorer import Restorer
 
 
 @dataclass

@@ -22,7 +22,7 @@ from mitigate.corruptions import Corruption
 from mitigate.corruptions.language.text import is_english
 
 if TYPE_CHECKING:
-    from mitigate.restoration.restorer import Restorer
+    from mitigate.guards.frames.restorer import Restorer
 
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
@@ -77,14 +77,14 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
 def _restorer(cfg: DictConfig) -> Restorer | None:
     if cfg.restore is None:
         return None  # without a wait for torch
-    from mitigate.restoration.restorer import restorer_of
+    from mitigate.guards.frames.restorer import restorer_of
 
     return restorer_of(cfg.restore)
 
 
 def _words(cfg: DictConfig, out: Path) -> Words:
     from mitigate.bridge.words import tokenizer_of
-    from mitigate.safeguard.guard import open_safeguard
+    from mitigate.guards.text.guard import open_safeguard
 
     guard = open_safeguard(cfg.safeguard, log=out / "safeguard.jsonl")
     return Words(

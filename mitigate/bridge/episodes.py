@@ -10,8 +10,8 @@ import numpy as np
 
 from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER, RESET
 from mitigate.core.names import short
-from mitigate.evaluation.metrics import path_length
 from mitigate.evaluation.rows import GREATEST, allowed, stem_of
+from mitigate.worlds.measures import path_length
 
 COUNTS = ("steps", "calls")
 METRES = ("start_distance", "distance")  # infinite where a goal is out of reach

@@ -19,7 +19,7 @@ from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 
 if TYPE_CHECKING:
-    from mitigate.restoration.restorer import Restorer
+    from mitigate.guards.frames.restorer import Restorer
 
 SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length")  # as they are
 LARGEST = 1 << 30  # bytes of a file of the command that is hashed; of a larger one its size counts
@@ -137,11 +137,11 @@ def _named(command: Sequence[str]) -> Iterator[Path]:
 
 def _column(cfg: DictConfig, name: str) -> str:
     """The column of the table: the command's name, and what stands in front of the agent."""
-    from mitigate.restoration.choices import label as restoring
+    from mitigate.guards.frames.choices import label as restoring
 
     parts = [name]
     if cfg.safeguard != "none":
-        from mitigate.safeguard.choices import label
+        from mitigate.guards.text.choices import label
 
         parts.append(label(cfg.safeguard))
     parts += [restoring(cfg.restore)] if cfg.restore is not None else []
@@ -152,7 +152,7 @@ def _column(cfg: DictConfig, name: str) -> str:
 def _guard(cfg: DictConfig) -> str:
     if cfg.safeguard == "none":
         return "none"  # without a wait for torch
-    from mitigate.safeguard.choices import identity
+    from mitigate.guards.text.choices import identity
 
     return identity(cfg.safeguard)
 

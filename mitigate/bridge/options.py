@@ -14,9 +14,9 @@ from omegaconf import DictConfig
 from mitigate.bridge.subset import SETTLED
 from mitigate.core.files import make_folder
 from mitigate.core.names import short, unknown
-from mitigate.evaluation.metrics import RULES
 from mitigate.evaluation.rows import allowed
-from mitigate.safeguard.addresses import check_choice
+from mitigate.guards.text.addresses import check_choice
+from mitigate.worlds.measures import RULES
 
 
 def check_options(cfg: DictConfig, command: Sequence[str]) -> None:

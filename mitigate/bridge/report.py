@@ -15,8 +15,8 @@ from mitigate.bridge.results import OWN
 from mitigate.bridge.verdict import lacks
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import report, rows
-from mitigate.evaluation.metrics import RULES
 from mitigate.evaluation.rows import ROWS
+from mitigate.worlds.measures import RULES
 
 
 def write_report(made: Sequence[Cell], out: Path) -> None:

@@ -17,8 +17,8 @@ from mitigate.bridge.events import EVENTS
 from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
-from mitigate.evaluation.metrics import RULES, Rule, path_length, spl
 from mitigate.evaluation.rows import Row
+from mitigate.worlds.measures import RULES, Rule, path_length, spl
 
 OWN = "own: the agent's Success measure"
 NEAR = 1.01  # metres: depth that reads no more may be normalised (ours)

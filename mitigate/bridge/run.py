@@ -23,10 +23,10 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.bridge import verdict
 from mitigate.bridge.options import check_options, name_of
+from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
 from mitigate.core import conf
 from mitigate.core.signals import raise_ended
-from mitigate.safeguard.addresses import check_arguments
-from mitigate.scale import launcher  # noqa: F401 - registers the kinds of conf/launcher
+from mitigate.guards.text.addresses import check_arguments
 
 if TYPE_CHECKING:  # torch and the corruptions are slow to import
     from mitigate.bridge.cell import Cell

@@ -10,8 +10,8 @@ import numpy as np
 
 from mitigate.bridge.cameras import Group, Rig, corrupted
 from mitigate.core.observation import DEPTH
+from mitigate.core.pictures import depth_picture
 from mitigate.corruptions import Corruption, Key
-from mitigate.corruptions.gallery import depth_picture
 
 SHOWN = 4  # cameras of a panorama in a row of the sheet
 SIDE, LABEL, LINE = 160, 190, 20  # pixels: height of a picture, width of the names, of their lines

@@ -18,8 +18,8 @@ from omegaconf import DictConfig, OmegaConf
 from mitigate.bridge import verdict
 from mitigate.bridge.cell import Cell
 from mitigate.bridge.conditions import cells
+from mitigate.cluster.launcher import chosen, results
 from mitigate.core.progress import Progress
-from mitigate.scale.launcher import chosen, results
 
 PAUSE = 0.2  # seconds between two looks at a command that runs
 

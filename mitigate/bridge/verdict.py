@@ -9,7 +9,7 @@ from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, unjudged, without_path
 from mitigate.bridge.subset import SETTLED
 from mitigate.core.names import counted
-from mitigate.evaluation.metrics import RULES
+from mitigate.worlds.measures import RULES
 
 if TYPE_CHECKING:
     from mitigate.bridge.cell import Cell

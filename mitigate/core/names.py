@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 
 
 def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
@@ -26,3 +27,16 @@ def short(value: object, most: int = 60) -> str:
     most about ``most`` characters."""
     text = ascii(value[: most + 1] if isinstance(value, str) else value)
     return text if len(text) <= most + 2 else f"{text[:most]}..."
+
+
+def name_of(weights: str) -> str:
+    """Return the name of weights by their path: of the run, for a run's ``agent`` folder; of the
+    kind of agent, for its shipped weights (``checkpoints/frontier/base``: frontier, and
+    ``.../teacher``: frontier_teacher)."""
+    path = Path(weights.removesuffix(".safetensors"))
+    while path.name in ("model", "agent", "run"):
+        path = path.parent
+    if path.parent.parent.name == "checkpoints" and path.parent.name != "hardened":
+        kind = path.parent.name
+        return kind if path.name == "base" else f"{kind}_{path.name}"
+    return path.name or "agent"

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import cv2
 import numpy as np
 
-from mitigate.core.observation import DEPTH, RGB, VIEWS
+from mitigate.core.observation import DEPTH, RGB, VIEWS, Z_MAX
 
 AHEAD_IN_THE_MIDDLE = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
+NO_READING = (255, 255, 255)  # the colour of invalid depth
 
 
 def side_by_side(views: np.ndarray) -> np.ndarray:
@@ -50,3 +52,13 @@ def draw_path(
     axes.plot(points[:, 0], points[:, 1], style, color=colour, lw=2, label=label, zorder=6)
     axes.plot(*points[0], "o", color=colour, ms=6, zorder=7)
     axes.plot(*points[-1], "X", color=colour, ms=8, zorder=7)
+
+
+def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
+    """uint8 RGB [H, W, 3] of depth [H, W]: near is bright, ``far`` metres dark, no value white."""
+    valid = np.isfinite(depth) & (depth > 0)
+    near = 1.0 - np.where(valid, np.clip(depth / far, 0.0, 1.0), 0.0)
+    picture = cv2.applyColorMap(np.rint(255.0 * near).astype(np.uint8), cv2.COLORMAP_VIRIDIS)
+    picture = np.ascontiguousarray(picture[..., ::-1])
+    picture[~valid] = NO_READING
+    return picture

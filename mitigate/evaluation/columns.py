@@ -11,19 +11,6 @@ from omegaconf import DictConfig
 from mitigate.core.conf import CONF
 
 
-def name_of(weights: str) -> str:
-    """Return the name of weights by their path: of the run, for a run's ``agent`` folder; of the
-    kind of agent, for its shipped weights (``checkpoints/frontier/base``: frontier, and
-    ``.../teacher``: frontier_teacher)."""
-    path = Path(weights.removesuffix(".safetensors"))
-    while path.name in ("model", "agent", "run"):
-        path = path.parent
-    if path.parent.parent.name == "checkpoints" and path.parent.name != "hardened":
-        kind = path.parent.name
-        return kind if path.name == "base" else f"{kind}_{path.name}"
-    return path.name or "agent"
-
-
 def changed(overrides: Sequence[str]) -> list[str]:
     """Return the options of a command line that change the agent or what it sees, as parts of a
     column's name."""

@@ -20,8 +20,8 @@ from mitigate.corruptions import (
 from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.registry import parts
 from mitigate.evaluation.rows import MEASURES
-from mitigate.restoration.restorer import Restorer
-from mitigate.restoration.world import Restored
+from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.frames.world import Restored
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import Corrupted, World
 

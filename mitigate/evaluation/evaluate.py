@@ -17,19 +17,18 @@ from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import MISSING, DictConfig, OmegaConf
 
+from mitigate.cluster import launcher  # registers the kinds of conf/launcher
 from mitigate.core import conf, seeding
 from mitigate.core.locks import FolderLock
-from mitigate.core.names import counted
-from mitigate.evaluation.columns import changed, default_folder, name_of
+from mitigate.core.names import counted, name_of
+from mitigate.evaluation.columns import changed, default_folder
 from mitigate.evaluation.conditions import check_sensors, conditions
 from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
-from mitigate.safeguard.addresses import check_arguments, check_choice
-from mitigate.scale import launcher  # registers the kinds of conf/launcher
+from mitigate.guards.text.addresses import check_arguments, check_choice
 
-REPORT = (
-    "mitigate.evaluation.before_after.report_before_after"  # what a training of an agent ends with
-)
+# what a training of an agent ends with
+REPORT = "mitigate.training.reports.before_after.report_before_after"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
 OF_TRAININGS = ("finetune.", "cost.")  # options that a kind of agent has for its trainings
 MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
@@ -128,9 +127,9 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     from mitigate.core import build
     from mitigate.evaluation import making, walked
     from mitigate.evaluation.evaluator import evaluate
-    from mitigate.restoration.restorer import restorer_of
-    from mitigate.safeguard import choices
-    from mitigate.safeguard.guard import open_safeguard
+    from mitigate.guards.frames.restorer import restorer_of
+    from mitigate.guards.text import choices
+    from mitigate.guards.text.guard import open_safeguard
 
     agent = load(cfg.agent, cfg.checkpoint, cfg.seed, overrides)
     check_walks(agent)
@@ -178,8 +177,8 @@ def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
 
 def fronts(safeguard: str | None, restore: str | None) -> list[str]:
     """Return the short names of what stands in front of an agent, as parts of a column's name."""
-    from mitigate.restoration import choices as restorers
-    from mitigate.safeguard import choices as safeguards
+    from mitigate.guards.frames import choices as restorers
+    from mitigate.guards.text import choices as safeguards
 
     found = [safeguards.label(safeguard or "none"), restorers.label(restore or "none")]
     return [name for name in found if name != "none"]
@@ -220,10 +219,11 @@ def load(
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
     by ``node``; what ``overrides`` say of the agent counts more. None: the agent of ``node``, which
     is no network. Raises FileNotFoundError if they are missing, ValueError if they do not fit."""
-    from mitigate.core import build
 
-    settings = node if weights is None else build.settings_of(node, weights, overrides)
-    agent = build.build_agent(settings, weights=weights, seed=seed)
+    from mitigate.agents import loading
+
+    settings = node if weights is None else loading.settings_of(node, weights, overrides)
+    agent = loading.build_agent(settings, weights=weights, seed=seed)
     if not hasattr(agent, "state_dict"):
         return agent
     if weights is None:
@@ -262,7 +262,7 @@ def _add_kind_of_agent() -> None:
     """Check the command line, and add the kind of agent that its weights are of."""
     check_arguments(sys.argv)
     if any("checkpoint=" in option for option in sys.argv[1:]):
-        from mitigate.core.build import with_kind
+        from mitigate.agents.loading import with_kind
 
         sys.argv[1:] = with_kind(sys.argv[1:])
 

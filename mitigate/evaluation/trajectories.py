@@ -17,14 +17,13 @@ from matplotlib.figure import Figure
 from mitigate.agents.agent import Agent
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
-from mitigate.core.pictures import draw_path, strip
+from mitigate.core.pictures import depth_picture, draw_path, strip
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
-from mitigate.corruptions.gallery import depth_picture
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
-from mitigate.restoration.restorer import Restorer
-from mitigate.safeguard.guard import Safeguard
+from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.text.guard import Safeguard
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World, depth_sensor
 

@@ -12,8 +12,8 @@ from omegaconf import DictConfig
 
 def load_agents(weights: Sequence[str]) -> dict[str, Any]:
     """The agents of folders of weights, by names that differ."""
-    from mitigate.evaluation.columns import name_of
-    from mitigate.shipping.loading import load
+    from mitigate.agents.loading import load
+    from mitigate.core.names import name_of
 
     if len(set(weights)) < len(weights):
         raise ValueError(f"agents=[{','.join(weights)}] names one folder twice.")

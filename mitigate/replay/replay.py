@@ -97,7 +97,7 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
     if not others or cfg.severity == 0:
         raise ValueError("Clean walks alone have nothing to compare: name a corruption.")
     met = conditions(["clean", *others], cfg.severity, cfg.severity_depth)
-    from mitigate.restoration.restorer import restorer_of
+    from mitigate.guards.frames.restorer import restorer_of
 
     restorer = restorer_of(cfg.restore)
     agents = load_agents(list(cfg.agents))

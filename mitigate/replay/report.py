@@ -12,15 +12,14 @@ from matplotlib.figure import Figure
 from mitigate.core.files import write_atomically, write_bytes
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.observation import DEPTH, RGB, VIEWS
-from mitigate.core.pictures import strip
+from mitigate.core.pictures import depth_picture, strip
 from mitigate.corruptions import Corruption
-from mitigate.corruptions.gallery import depth_picture
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.plots import COLOURS, DPI, plain
 from mitigate.evaluation.sections import label
+from mitigate.guards.frames.restorer import Restorer
 from mitigate.replay.changes import FEW, Changes
 from mitigate.replay.walk import ACTIONS, Answers
-from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.recorded import Recording
 
 Found = Mapping[str, Mapping[str, Changes]]  # agent -> condition -> changes

@@ -12,8 +12,8 @@ from mitigate.agents.agent import Agent
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import action_of, instructed
-from mitigate.restoration.restorer import Restorer
-from mitigate.restoration.world import Restored
+from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.frames.world import Restored
 from mitigate.worlds.recorded import RecordedWorld, Recording
 from mitigate.worlds.recorded.steps import answered
 from mitigate.worlds.world import Corrupted, World

@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from mitigate.agents import adapters
+from mitigate.agents import adapters, hardened
 from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
 from mitigate.core.markdown import markdown_of, markdown_table
@@ -18,7 +18,6 @@ from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
-from mitigate.shipping import hardened
 from mitigate.shipping.front_matter import front_matter
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")

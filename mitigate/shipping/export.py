@@ -22,13 +22,13 @@ import yaml
 from safetensors.torch import load_file, save_file
 from torch import Tensor
 
-from mitigate.agents import adapters
+from mitigate.agents import adapters, hardened
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint
 from mitigate.core.files import find, make_folder, put_folder, sha256
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.rows import Row
-from mitigate.shipping import hardened, others, programs
+from mitigate.shipping import others, programs
 from mitigate.shipping.card import facts, metrics, readme, rows_agent, weights_of
 from mitigate.shipping.finished import finished
 from mitigate.shipping.others import Walks

@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mitigate.agents import loading
 from mitigate.core import build, conf, settings
 from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation.episode_lists import episodes
@@ -48,7 +49,7 @@ def main() -> None:
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
     given = vars(parser.parse_intermixed_args())
-    from mitigate.shipping import hardened
+    from mitigate.agents import hardened
     from mitigate.shipping.export import export
 
     overrides, configs = given.pop("overrides"), given.pop("config_dir")
@@ -70,7 +71,7 @@ def main() -> None:
 
 def _own_kind(run: Path) -> list[str]:
     """The option that names the agent of ``run`` where it is one of ours that has no programs."""
-    from mitigate.shipping import hardened
+    from mitigate.agents import hardened
 
     config = run / hardened.CONFIG
     kind = hardened.kind_of(config) if config.is_file() else hardened.TARGET
@@ -84,6 +85,6 @@ def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     from mitigate.shipping import others
 
     cfg = conf.composed("evaluate", overrides, configs)
-    node = build.settings_of(cfg.agent, str(run / "agent"), overrides)
+    node = loading.settings_of(cfg.agent, str(run / "agent"), overrides)
     listed = episodes(cfg.env, cfg.split, others.WALKS)
     return others.Walks(build.maker(node), build.maker(cfg.env.world), listed)

@@ -7,16 +7,11 @@ from typing import Any
 
 import torch
 
+from mitigate.agents import hardened
+from mitigate.agents.loading import refuse_what_ships_as_it_is
 from mitigate.core import checkpoint, settings
-from mitigate.shipping import hardened
 from mitigate.shipping.others import Walks
 
-# By package, the page on what is trained there: its folder `agent` is used as it is.
-PAGES = {
-    "mitigate.encoders": "docs/encoder.md",
-    "mitigate.restoration": "docs/restoration.md",
-    "mitigate.safeguard": "docs/safeguard.md",
-}
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
 
@@ -48,17 +43,3 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     ):
         raise ValueError(f"{weights} holds numbers that are not finite in float16.")
     return settings.read(config), agent.eval()
-
-
-def refuse_what_ships_as_it_is(run: Path) -> None:
-    """Raise ValueError for the run, or its folder ``agent``, of what is no navigation agent."""
-    config = run / hardened.CONFIG
-    held = settings.read(config).get("agent") if config.is_file() else None
-    target = str(held.get("_target_")) if isinstance(held, dict) else ""
-    page = PAGES.get(".".join(target.split(".")[:2]))
-    if page:
-        made = run / "agent" if (run / "agent").is_dir() else run
-        raise ValueError(
-            f"{run} holds no agent that walks but a {target.rpartition('.')[2]}, which needs no "
-            f"export: {made} ships as it is. {page} says how it is used."
-        )

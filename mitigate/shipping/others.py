@@ -17,11 +17,10 @@ from typing import Any
 
 from torch import nn
 
-from mitigate.agents import adapters
+from mitigate.agents import adapters, hardened
 from mitigate.core import checkpoint, checksums
 from mitigate.corruptions import CLEAN
 from mitigate.evaluation.episode import run_episode
-from mitigate.shipping import hardened
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 

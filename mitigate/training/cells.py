@@ -9,14 +9,14 @@ from pathlib import Path
 
 from omegaconf import DictConfig, ListConfig
 
+from mitigate.cluster import programs
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.rows import ROWS
-from mitigate.safeguard import choices
-from mitigate.scale import programs
+from mitigate.guards.text import choices
 from mitigate.training import train
 
 LOG, OPTIONS = "log.txt", "options.json"
@@ -183,6 +183,8 @@ def measured(cfg: DictConfig) -> list[str]:
 def check(made: Sequence[Cell], cfg: DictConfig) -> None:
     """Raise ValueError for seeds that come twice, for options of a column or a further evaluation,
     a split and conditions that there are not, and for a cell that holds another agent's rows."""
+    from mitigate.agents import loading  # brings torch
+
     if len({*cfg.seeds}) < len(cfg.seeds):
         raise ValueError(f"seeds={list(cfg.seeds)} names one twice: two cells would be one folder.")
     own = "which gives each cell a seed, a folder and one core, and evaluates it itself."
@@ -196,7 +198,7 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
                 _check_own(cell.options, taken, "for all columns alike.")
                 if cell.trains:
                     train.check(conf.composed("train", cell.training))
-                node = conf.composed("evaluate", build.with_kind(cell.agent))
+                node = conf.composed("evaluate", loading.with_kind(cell.agent))
                 episodes(node.env, cfg.split, cfg.episodes)
                 _check_fronts(node)
             except (ValueError, FileNotFoundError) as error:
@@ -211,7 +213,7 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
                 "restore and entries of env and agent.",
             )
             node = conf.composed(
-                "evaluate", build.with_kind(made[0].measurement(cfg, name, options))
+                "evaluate", loading.with_kind(made[0].measurement(cfg, name, options))
             )
             chosen = node.suite.conditions if node.conditions is None else node.conditions
             conditions(list(chosen), node.severity, node.severity_depth)
@@ -235,6 +237,6 @@ def _check_fronts(node: DictConfig) -> None:
     """Raise ValueError or FileNotFoundError for a safeguard or a restorer that there is not."""
     choices.check(node.safeguard)
     if node.restore is not None:
-        from mitigate.restoration.restorer import restorer_of
+        from mitigate.guards.frames.restorer import restorer_of
 
         restorer_of(node.restore, build.maker(node.env.world)().sensors)

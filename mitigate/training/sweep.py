@@ -20,14 +20,14 @@ from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import MISSING, DictConfig
 
+from mitigate.cluster import launcher, programs
 from mitigate.core import conf, seeding
 from mitigate.core.names import unknown
 from mitigate.core.options import without_config_folder
 from mitigate.core.progress import Progress
 from mitigate.core.workers import cores
 from mitigate.evaluation.evaluate import write_table
-from mitigate.safeguard.addresses import check_arguments
-from mitigate.scale import launcher, programs
+from mitigate.guards.text.addresses import check_arguments
 
 COMMANDS = ("train", "evaluate")
 LOGS = "logs"
@@ -61,7 +61,7 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
     configs, options = without_config_folder(options)
     made = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)
-    from mitigate.core.build import with_kind  # brings torch
+    from mitigate.agents.loading import with_kind  # brings torch
 
     for chosen in made:
         conf.composed(cfg.command, with_kind(chosen) if cfg.command == "evaluate" else chosen)

@@ -18,13 +18,13 @@ from typing import Any
 from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING, DictConfig
 
+from mitigate.cluster import launcher, programs
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.progress import Progress, say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.rows import ROWS, Row, read
-from mitigate.scale import launcher, programs
 from mitigate.training.cells import Cell, cells, check, listed
 
 COST, REPORT = "cost.json", "overview.md"
@@ -163,10 +163,11 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     """Write pictures of episodes that the last of ``cfg.walks`` wins back for the first, by the
     agents of the first seed, behind what their cells put in front of them; nothing if one of them
     has no cell."""
+    from mitigate.agents import loading
     from mitigate.evaluation import rows
     from mitigate.evaluation.trajectories import Front, write_pictures
-    from mitigate.restoration.restorer import restorer_of
-    from mitigate.safeguard.guard import open_safeguard
+    from mitigate.guards.frames.restorer import restorer_of
+    from mitigate.guards.text.guard import open_safeguard
 
     held = {cell.column: cell for cell in cells(cfg) if cell.seed == cfg.seeds[0]}
     missing = [column for column in cfg.walks if column not in held]
@@ -176,7 +177,7 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
         return []
     made = {_named(held[column].folder): held[column] for column in cfg.walks}
     nodes = {
-        name: conf.load_config("evaluate", build.with_kind(cell.agent))
+        name: conf.load_config("evaluate", loading.with_kind(cell.agent))
         for name, cell in made.items()
     }
     agents: dict[str, Any] = {

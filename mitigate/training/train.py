@@ -22,8 +22,9 @@ from hydra.types import RunMode
 from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
 
+from mitigate.agents.loading import OWN_CONFIG_ONLY, begun_from, build_agent
 from mitigate.core import conf, seeding
-from mitigate.core.build import OWN_CONFIG_ONLY, begun_from, build_agent, maker
+from mitigate.core.build import maker
 from mitigate.core.files import atomic_text
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import unknown

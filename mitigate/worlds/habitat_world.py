@@ -36,7 +36,7 @@ from mitigate.core.observation import (
     Sensor,
     cameras,
 )
-from mitigate.evaluation import metrics
+from mitigate.worlds import measures
 from mitigate.worlds.episodes import Episode, from_vlnce
 
 EYE = 1.25  # metres, the height of VLN-CE's cameras
@@ -52,7 +52,7 @@ class HabitatWorld:
     Args:
         scenes: the folder that scene ids are paths in. size: pixels of a square view. views: 12, a
         panorama, or 1, a camera that looks ahead. rule: what counts as success, of
-        ``metrics.RULES``, or "apartments" (STOP within 2 m). navmesh: settings of
+        ``measures.RULES``, or "apartments" (STOP within 2 m). navmesh: settings of
         ``habitat_sim.NavMeshSettings`` for scenes without a navmesh; a file or a mapping; None:
         those in ``scenes/../navmesh.json``, if it is there. gpu: number of the device to render
         on, -1 for none.
@@ -69,7 +69,7 @@ class HabitatWorld:
         navmesh: str | dict[str, Any] | None = None,
         gpu: int = -1,
     ) -> None:
-        rules = {"apartments": metrics.Rule("vln", 2.0), **metrics.RULES}
+        rules = {"apartments": measures.Rule("vln", 2.0), **measures.RULES}
         allowed = [name for name, known in rules.items() if not known.view_points]
         if rule in rules and rule not in allowed:
             raise ValueError(
@@ -138,12 +138,12 @@ class HabitatWorld:
         collisions and steps; success and spl as habitat-lab's Success and SPL. ndtw is to the
         reference path, by the rule's metres."""
         walked, left = np.array(self.path), self.distance_to_goal()
-        length = metrics.path_length(walked)
+        length = measures.path_length(walked)
         won = self._rule.met(left, self.stopped)
         start = self.start_distance
         found = {
             "success": int(won),
-            "spl": round(metrics.spl(won, start, length), 6) if math.isfinite(start) else 0.0,
+            "spl": round(measures.spl(won, start, length), 6) if math.isfinite(start) else 0.0,
             "path_length": round(length, 4),
             "collisions": self.collisions,
             "steps": self.steps,
@@ -153,7 +153,7 @@ class HabitatWorld:
         if self.episode.reference_path:
             reference = np.array(self.episode.reference_path)
             by = self._rule.path_metres
-            found["ndtw"] = round(metrics.ndtw(walked, reference, threshold=by), 6)
+            found["ndtw"] = round(measures.ndtw(walked, reference, threshold=by), 6)
         return found
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:

@@ -20,8 +20,8 @@ from mitigate.agents.adapters import (
     save_adapters,
     scale_adapters,
 )
+from mitigate.agents.loading import build_agent
 from mitigate.core import conf
-from mitigate.core.build import build_agent
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.observation import VIEWS
 from mitigate.encoders import plain_adapters

@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 
 from mitigate import cli
 from mitigate.core import conf
-from mitigate.corruptions import episodes_command, frames_command
+from mitigate.corruptions import frames_command
 from mitigate.evaluation import evaluate, table
 from mitigate.shipping import export, export_command
 from mitigate.training import train
+from mitigate.worlds import corrupt_episodes_command as episodes_command
 from tests.bad_input.named import LONGEST
 from tests.bad_input.test_episode_files import GOOD
 

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from mitigate.corruptions import episodes_command
-from mitigate.safeguard.learning.data import read_chats
+from mitigate.guards.text.learning.data import read_chats
+from mitigate.worlds import corrupt_episodes_command as episodes_command
 from mitigate.worlds.episodes import read_episodes, read_extras, read_ground_truth
 from tests.bad_input.named import refused
 

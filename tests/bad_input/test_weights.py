@@ -18,12 +18,11 @@ from hypothesis import strategies as st
 from safetensors.torch import save_file
 from torch import nn
 
-from mitigate.agents import adapters
+from mitigate.agents import adapters, hardened
 from mitigate.core import checkpoint
 from mitigate.encoders import folder as encoder_folder
 from mitigate.encoders import loading, plain_adapters
-from mitigate.safeguard.language_models import adapter_folder
-from mitigate.shipping import hardened
+from mitigate.guards.text.language_models import adapter_folder
 from mitigate.training import states
 from tests.bad_input.named import refused
 

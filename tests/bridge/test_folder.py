@@ -12,7 +12,7 @@ from mitigate.bridge.identity import default_folder, files_of
 from mitigate.core.conf import load_config
 from mitigate.core.files import sha256
 from mitigate.evaluation import rows
-from mitigate.evaluation.metrics import RULES
+from mitigate.worlds.measures import RULES
 
 PROGRAM = """
 import os, sys, numpy, mitigate_hook

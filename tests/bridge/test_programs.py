@@ -16,7 +16,7 @@ from mitigate.bridge.server import Listener
 from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption, Key, corrupt
 from mitigate.encoders.loading import Wrapped
-from mitigate.evaluation.metrics import RULES
+from mitigate.worlds.measures import RULES
 from tests.encoders.test_token_adapters import shaken
 
 from .conftest import condition, python

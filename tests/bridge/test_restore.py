@@ -13,7 +13,7 @@ from mitigate.bridge.check import described
 from mitigate.bridge.results import Told
 from mitigate.bridge.sheet import of
 from mitigate.core.observation import DEPTH, RGB
-from mitigate.restoration.restorer import Restorer
+from mitigate.guards.frames.restorer import Restorer
 
 from .conftest import condition
 

@@ -8,7 +8,7 @@ import pytest
 from mitigate.bridge.results import COMMON, OWN, near, read, rows, unjudged, without_path
 from mitigate.bridge.server import Listener
 from mitigate.corruptions import CLEAN
-from mitigate.evaluation.metrics import RULES
+from mitigate.worlds.measures import RULES
 
 from .conftest import condition, python
 

@@ -15,10 +15,10 @@ from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.cluster import programs
 from mitigate.core import conf
 from mitigate.corruptions import NAMES
 from mitigate.evaluation import evaluate
-from mitigate.scale import programs
 from mitigate.training import train
 from mitigate.worlds.episodes import Instruction, read_episodes, write_episodes
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from mitigate.corruptions.curves import psnr, ssim
+from tools.pages.curves import psnr, ssim
 
 
 def draw(height: int, width: int, view: int = 0) -> tuple[np.ndarray, np.ndarray]:

@@ -2,7 +2,7 @@
 
 To accept new pixels: raise ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py`` (of an unseen
 or a broad one: ``version`` in its record), look at the
-contact sheet (``python -m mitigate.corruptions.gallery --out sheet.png``), then run
+contact sheet (``python -m tools.pages.gallery --out sheet.png``), then run
 
     python tests/corruptions/test_golden.py --write
 

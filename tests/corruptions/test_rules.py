@@ -14,8 +14,8 @@ from mitigate.corruptions import (
     corrupt_normalised,
     corrupt_observation,
 )
-from mitigate.corruptions.curves import curves
 from mitigate.corruptions.registry import record
+from tools.pages.curves import curves
 
 KEY = Key(3, "episode-7", 4)
 STRENGTHS = np.linspace(0.0, 1.0, 11)

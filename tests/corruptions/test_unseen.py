@@ -9,9 +9,9 @@ from omegaconf import OmegaConf
 
 from mitigate.core import build, conf
 from mitigate.corruptions import NAMES, Corruption, DepthSensor, Key, Record, Schedule, corrupt
-from mitigate.corruptions.curves import curves
 from mitigate.corruptions.record import TEST, VALIDATION
 from mitigate.corruptions.registry import record, table, unseen_names, version
+from tools.pages.curves import curves
 
 KEY = Key(3, "episode-7", 4)
 RGB, DEPTH = unseen_names("rgb"), unseen_names("depth")

@@ -6,7 +6,6 @@ import json
 
 import numpy as np
 
-from mitigate.encoders import report
 from mitigate.encoders.probe import (
     LinearProbe,
     Resamples,
@@ -16,6 +15,7 @@ from mitigate.encoders.probe import (
     cosine,
     retrieval,
 )
+from mitigate.training.reports import encoder as report
 
 
 def test_average_precision_of_a_list_worked_by_hand():

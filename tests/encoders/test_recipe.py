@@ -12,17 +12,18 @@ from omegaconf import OmegaConf
 from PIL import Image
 
 from mitigate.agents.adapters import adapter_parameters
+from mitigate.agents.loading import carried
 from mitigate.core import conf
-from mitigate.core.build import build, carried
+from mitigate.core.build import build
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.encoders import folder as folders
 from mitigate.encoders import plain_adapters
 from mitigate.encoders.model import Encoder
-from mitigate.encoders.report import before_after
 from mitigate.encoders.sources import FolderFrames
 from mitigate.recipes.encoder import HardenEncoder, variance
 from mitigate.training import train
+from mitigate.training.reports.encoder import before_after
 from mitigate.training.trainer import Trainer
 from tests.encoders.shapes import TinyNet, tiny
 

@@ -22,7 +22,7 @@ from mitigate.corruptions import (
 from mitigate.evaluation import evaluator
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.evaluator import EpisodeTask, _together, evaluate
-from mitigate.restoration.restorer import Restorer
+from mitigate.guards.frames.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer

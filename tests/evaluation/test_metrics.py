@@ -11,8 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from mitigate.evaluation.metrics import Rule, dtw, ndtw, path_length, prs, spl, success
+from mitigate.evaluation.metrics import prs
 from mitigate.worlds.episodes import read_episodes, read_ground_truth
+from mitigate.worlds.measures import Rule, dtw, ndtw, path_length, spl, success
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
 LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]

@@ -9,9 +9,9 @@ import pytest
 
 from mitigate.agents.topological.rollout import STOP_BEST, STOP_WITHIN
 from mitigate.core.observation import FORWARD, STOP
-from mitigate.evaluation.metrics import RULES
 from mitigate.worlds.apartments.tasks import load_episodes, view_field
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from mitigate.worlds.measures import RULES
 
 
 def test_etpnav_counts_the_edge_and_asks_for_no_stop():

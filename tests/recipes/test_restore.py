@@ -13,9 +13,9 @@ from PIL import Image
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import Schedule
 from mitigate.encoders.sources import FolderFrames
+from mitigate.guards.frames.restorer import Restorer
 from mitigate.recipes.restore import Restore
 from mitigate.recipes.restore_gate import Judged, RestoreGate
-from mitigate.restoration.restorer import Restorer
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld

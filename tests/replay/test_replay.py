@@ -19,11 +19,11 @@ from mitigate.core.locks import FolderLock
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import episode_lists
+from mitigate.guards.frames.restorer import Restorer
 from mitigate.replay import export_drive, replay, report
 from mitigate.replay.changes import _share, compare
 from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
-from mitigate.restoration.restorer import Restorer
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.recorded import Recording, open_recording
 from mitigate.worlds.recorded.steps import NONE, answered

@@ -22,14 +22,14 @@ from safetensors.torch import save_file
 from torch.export.pt2_archive._package import load_pt2
 
 import mitigate
-from mitigate.agents import adapters
+from mitigate.agents import adapters, hardened, loading
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import build, checkpoint
 from mitigate.core.files import sha256
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
 from mitigate.evaluation import rows
 from mitigate.shipping import card as cards
-from mitigate.shipping import export, export_command, hardened, programs
+from mitigate.shipping import export, export_command, programs
 from mitigate.shipping.card import metrics
 
 # one worker of pytest exports, not each its own
@@ -219,11 +219,11 @@ def test_a_folder_of_adapters_holds_no_backbone_and_needs_its_base(place, tmp_pa
 
 def test_evaluation_and_training_take_a_folder_of_adapters(place):
     folder = str(place / "hardened/adapted")
-    node = build.settings_of(node_of({}), folder)
-    agent = build.build_agent(node, weights=folder, seed=0)
+    node = loading.settings_of(node_of({}), folder)
+    agent = loading.build_agent(node, weights=folder, seed=0)
     assert checkpoint.weights_sha(agent) == hardened.check(Path(folder))["run_agent"]
     with pytest.raises(ValueError, match="other modules"):
-        build.build_agent(node_of(TINY), weights=folder, seed=0)
+        loading.build_agent(node_of(TINY), weights=folder, seed=0)
 
 
 def test_loading_needs_neither_hydra_nor_the_simulator_and_import_stays_light(place, tmp_path):
@@ -377,14 +377,14 @@ def test_adapters_that_the_card_does_not_list_take_no_part(place, copied):
     assert not hardened.adapters_only(copied)
     assert cards.reference(str(copied))["sha256"] == sha256(copied / checkpoint.WEIGHTS)
     with pytest.raises(ValueError, match="not listed"):
-        build.build_agent(node_of(TINY), weights=str(copied), seed=0)
+        loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
 
 
 def test_evaluation_and_training_refuse_a_changed_folder(copied):
-    assert build.build_agent(node_of(TINY), weights=str(copied), seed=0)
+    assert loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
     checkpoint.save_weights(TopologicalAgent(**TINY), copied)
     with pytest.raises(ValueError, match="does not have the sha256"):
-        build.build_agent(node_of(TINY), weights=str(copied), seed=0)
+        loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
 
 
 def test_a_folder_of_another_agent_than_its_card_says_is_refused(copied):
@@ -429,8 +429,8 @@ def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
     ("target", "page"),
     [
         ("mitigate.encoders.model.Encoder", "docs/encoder.md"),
-        ("mitigate.restoration.restorer.Restorer", "docs/restoration.md"),
-        ("mitigate.safeguard.reader.Reader", "docs/safeguard.md"),
+        ("mitigate.guards.frames.restorer.Restorer", "docs/restoration.md"),
+        ("mitigate.guards.text.reader.Reader", "docs/safeguard.md"),
     ],
 )
 @pytest.mark.parametrize("named", ["run", "run/agent"])

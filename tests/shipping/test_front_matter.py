@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from huggingface_hub import ModelCard
 
+from mitigate.agents import hardened
 from mitigate.evaluation.rows import gather
-from mitigate.shipping import hardened
 from mitigate.shipping.card import readme
 from mitigate.shipping.front_matter import front_matter
 from tools.renew_cards import renew

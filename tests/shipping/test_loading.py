@@ -10,8 +10,8 @@ import torch
 import yaml
 
 import mitigate
+from mitigate.agents.loading import agent_option
 from mitigate.core import checkpoint, conf
-from mitigate.core.build import agent_option
 from mitigate.evaluation import evaluate
 
 ROOT = Path(__file__).parents[2]

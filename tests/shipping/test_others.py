@@ -7,11 +7,11 @@ import warnings
 import pytest
 import yaml
 
+from mitigate.agents.given import check_same, give_settings
+from mitigate.agents.hardened import load_hardened
+from mitigate.agents.loading import load
 from mitigate.shipping.card import rows_agent
 from mitigate.shipping.export import _of_one_agent
-from mitigate.shipping.given import check_same, give_settings
-from mitigate.shipping.hardened import load_hardened
-from mitigate.shipping.loading import load
 from tests.evaluation.made_rows import row
 
 

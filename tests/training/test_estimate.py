@@ -7,8 +7,8 @@ import math
 import pytest
 from omegaconf import OmegaConf
 
+from mitigate.agents.loading import build_agent
 from mitigate.core import conf, precision
-from mitigate.core.build import build_agent
 from mitigate.evaluation.evaluate import CostConfig
 from mitigate.training import estimate, fitting
 

@@ -7,6 +7,7 @@ from functools import partial
 
 import pytest
 import torch
+from tests.safeguard.conftest import write_tiny_model
 
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
@@ -16,7 +17,6 @@ from mitigate.evaluation.evaluator import evaluate
 from mitigate.training import train
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
-from tests.safeguard.conftest import write_tiny_model
 
 pytestmark = [
     pytest.mark.gpu,

@@ -6,9 +6,9 @@ import sys
 
 import pytest
 
+from mitigate.cluster import programs
 from mitigate.core import conf
 from mitigate.evaluation import rows
-from mitigate.scale import programs
 from mitigate.training import sweep
 from tests.evaluation.made_rows import column
 

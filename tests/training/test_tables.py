@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 from omegaconf import OmegaConf
 
+from mitigate.cluster import programs
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import plots, rows, trajectories
-from mitigate.scale import programs
 from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 

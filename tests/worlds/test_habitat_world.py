@@ -12,8 +12,7 @@ import pytest
 from mitigate.core.build import maker
 from mitigate.core.conf import load_config
 from mitigate.core.observation import DEPTH, FORWARD, RGB, STOP
-from mitigate.evaluation import metrics
-from mitigate.worlds import habitat_world
+from mitigate.worlds import habitat_world, measures
 from mitigate.worlds.habitat_world import NAVMESH, HabitatWorld
 
 
@@ -114,6 +113,6 @@ def test_after_stop_nothing_can_be_done(monkeypatch):
 
 
 def test_an_oracle_stops_where_the_rule_counts_it():
-    assert metrics.RULES["habitat_vln"].stop_within <= 0.2
-    assert metrics.RULES["vln_ce"].stop_within == metrics.RULES["wmnav"].stop_within == 1.0
-    assert metrics.RULES["objectnav"].stop_within == 0.1
+    assert measures.RULES["habitat_vln"].stop_within <= 0.2
+    assert measures.RULES["vln_ce"].stop_within == measures.RULES["wmnav"].stop_within == 1.0
+    assert measures.RULES["objectnav"].stop_within == 0.1

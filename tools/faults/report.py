@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from mitigate.bench.pages import put
 from mitigate.core.progress import duration
+from tools.bench.pages import put
 
 BEGIN = "<!-- table: make test-faults ARGS=--write -->"
 END = "<!-- end of the table -->"

@@ -13,9 +13,11 @@ from typing import Any
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.agents.loading import agent_option
 from mitigate.agents.observation import check_fits
+from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
-from mitigate.core.build import agent_option, located, maker
+from mitigate.core.build import located, maker
 from mitigate.core.held import in_eval_mode
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
@@ -33,9 +35,8 @@ from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.evaluation.leaderboard.known import Known
 from mitigate.evaluation.rows import ROWS
-from mitigate.restoration.restorer import restorer_of
-from mitigate.safeguard.guard import open_safeguard
-from mitigate.scale.launcher import count
+from mitigate.guards.frames.restorer import restorer_of
+from mitigate.guards.text.guard import open_safeguard
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.world import Corrupted, World
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
-from mitigate.evaluation.metrics import Rule
 from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.measures import Rule
 
 
 class GeodesicExpert:

@@ -21,7 +21,7 @@ from mitigate.core.observation import (
     Sensor,
     cameras,
 )
-from mitigate.evaluation import metrics
+from mitigate.worlds import measures
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
 from mitigate.worlds.apartments.expert import GeodesicExpert
@@ -40,7 +40,7 @@ from mitigate.worlds.episodes import Episode, from_vlnce
 KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
 LARGEST = 2048  # pixels of a view (ours)
 APART = 0.5  # metres between the way that a file says and the measured, to warn of (ours)
-RULES = {"apartments": metrics.Rule("vln", SUCCESS_METRES), **metrics.RULES}
+RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 
 
 class ApartmentsWorld:
@@ -120,15 +120,15 @@ class ApartmentsWorld:
         ``path_metres``."""
         simulator, rule = self.simulator, RULES[self._rule]
         walked, left = np.array(simulator.path), self._left()
-        length, won = metrics.path_length(walked), rule.met(left, simulator.stopped)
+        length, won = measures.path_length(walked), rule.met(left, simulator.stopped)
         reference = np.stack([from_vlnce(p) for p in simulator.episode.reference_path])
         return {
             "success": int(won),
-            "spl": round(metrics.spl(won, self._shortest, length), 6),
+            "spl": round(measures.spl(won, self._shortest, length), 6),
             "path_length": round(length, 4),
             "geodesic_distance": self._shortest,
             "distance_to_goal": round(left, 4),
-            "ndtw": round(metrics.ndtw(walked, reference, threshold=rule.path_metres), 6),
+            "ndtw": round(measures.ndtw(walked, reference, threshold=rule.path_metres), 6),
             "collisions": int(simulator.collisions),
             "steps": simulator.steps,
         }

@@ -1,0 +1,206 @@
+"""Workers as actors of a Ray cluster.
+
+The task, with the agent's weights, lies in Ray's object store: it is sent to each node once.
+Results stream back one by one. When an actor or its node dies, what it had not finished goes to
+another.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections import deque
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+from mitigate.cluster.launcher import lost
+from mitigate.core.names import short
+from mitigate.core.progress import Progress
+from mitigate.core.workers import SECOND, STUCK, Task, numbered
+
+if TYPE_CHECKING:
+    from mitigate.cluster.launcher import RayConfig
+
+GIGABYTE = 1 << 30
+
+
+class Worker:
+    """What an actor does: the jobs of a group, one after the other."""
+
+    def __init__(self, task: Task) -> None:
+        self.task, self.around = task, ExitStack()
+
+    def started(self) -> None:
+        """Answered once the actor runs and is ready: one that waits for room in the cluster gets no
+        jobs, and what the task raises is told as its own error."""
+        self.around.enter_context(self.task.ready())
+
+    def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
+        """The result of each job, in order."""
+        yield from self.task.work(jobs)
+
+
+def check(launcher: RayConfig) -> None:
+    """Raise ValueError if ray is not installed, or for an address of no form that it knows."""
+    if find_spec("ray") is None:
+        raise ValueError("launcher=ray needs ray: pip install -e '.[cluster]'.")
+    address = launcher.address
+    if address is not None and not re.fullmatch(r"auto|local|ray://\S+|\S+:\d+", address):
+        raise ValueError(
+            f"launcher.address={short(address)} must be auto, ray://host:10001, host:6379, or null "
+            "for a cluster on this machine."
+        )
+
+
+def connect(launcher: RayConfig) -> Any:
+    """Ray, connected to the cluster of ``launcher``, or to one on this machine that ends with the
+    process. Raises ValueError as :func:`check`, and if there is no cluster."""
+    check(launcher)
+    import ray
+
+    if not ray.is_initialized():
+        try:
+            ray.init(launcher.address, log_to_driver=False, include_dashboard=False)
+        except (ConnectionError, ValueError) as error:
+            raise ValueError(
+                f"There is no Ray cluster at launcher.address={launcher.address} "
+                f"({str(error).splitlines()[0]}). Start one (ray start --head), or leave it out "
+                "for one on this machine."
+            ) from error
+    return ray
+
+
+def room(launcher: RayConfig) -> int:
+    """How many workers the cluster has room for."""
+    held = connect(launcher).cluster_resources()
+    found = int(held.get("CPU", 1) // launcher.cpus)
+    if launcher.memory:
+        found = min(found, int(held.get("memory", 0) // (launcher.memory * GIGABYTE)))
+    return max(1, found)
+
+
+def results(
+    task: Task,
+    groups: Sequence[Sequence[Any]],
+    workers: int,
+    progress: Progress,
+    launcher: RayConfig,
+) -> Iterator[tuple[int, Any] | None]:
+    """As ``launcher.results``."""
+    crew = _Crew(connect(launcher), task, groups, workers, progress, launcher)
+    try:
+        yield from crew.results()
+    finally:
+        crew.end()
+
+
+class _Crew:
+    """The actors, what each has to do, and the groups that none has yet."""
+
+    def __init__(
+        self,
+        ray: Any,
+        task: Task,
+        groups: Sequence[Sequence[Any]],
+        workers: int,
+        progress: Progress,
+        launcher: RayConfig,
+    ) -> None:
+        self.ray, self.launcher, self.progress = ray, launcher, progress
+        self.waiting = deque((group, 1) for group in numbered(groups))
+        self.total, self.done = sum(len(group) for group, _ in self.waiting), 0
+        self.size = min(workers, len(self.waiting))
+        self.task = ray.put(task)
+        reserved = {"num_cpus": launcher.cpus, "max_restarts": 0}
+        if launcher.memory:
+            reserved["memory"] = int(launcher.memory * GIGABYTE)
+        self._reserved, self.failures = reserved, 0
+        self.make = ray.remote(Worker).options(**reserved).remote
+        self.name = task.name
+        self.idle: list[Any] = []
+        self.starting: dict[Any, Any] = {}  # what they answer when they run: actor
+        # stream of results: (actor, jobs left, which attempt it is)
+        self.busy: dict[Any, tuple[Any, deque, int]] = {}
+
+    def results(self) -> Iterator[tuple[int, Any] | None]:
+        for _ in range(self.size):
+            self._start()
+        heard = time.monotonic()
+        while self.done < self.total:
+            while self.idle and self.waiting:
+                self._give(self.idle.pop(), *self.waiting.popleft())
+            ready, _ = self.ray.wait([*self.busy, *self.starting], timeout=SECOND)
+            for answer in ready:
+                heard = time.monotonic()
+                if answer in self.starting:
+                    self._welcome(answer)
+                else:
+                    yield from self._hear(answer)
+            if not self.busy and time.monotonic() - heard > STUCK:
+                heard = time.monotonic()
+                self.progress.say(f"No worker runs: the cluster has no room for {self._reserved}.")
+            yield None
+
+    def _start(self) -> None:
+        actor = self.make(self.task)
+        self.starting[actor.started.remote()] = actor
+
+    def _welcome(self, answer: Any) -> None:
+        """An actor runs, or died before it did."""
+        actor = self.starting.pop(answer)
+        try:
+            self.ray.get(answer)
+        except self.ray.exceptions.RayTaskError as error:
+            raise error.cause from None
+        except self.ray.exceptions.RayError as error:
+            self.failures += 1
+            if self.failures > self.launcher.attempts * self.size:
+                what = f"A worker, before its first job ({error}),"
+                raise lost(what, self.failures, self.done, self.total) from None
+            self._start()
+        else:
+            self.idle.append(actor)
+
+    def _give(self, actor: Any, group: Sequence[tuple[int, Any]], attempt: int) -> None:
+        """Let ``actor`` begin a group."""
+        work = actor.work.options(num_returns="streaming")
+        stream = work.remote([job for _, job in group])
+        self.busy[stream] = (actor, deque(group), attempt)
+
+    def _hear(self, stream: Any) -> Iterator[tuple[int, Any]]:
+        """The next result of a stream, or the end of its group, or of its actor."""
+        actor, left, attempt = self.busy[stream]
+        try:
+            result = self.ray.get(next(stream))
+        except StopIteration:
+            del self.busy[stream]
+            self.idle.append(actor)
+        except self.ray.exceptions.RayTaskError as error:
+            raise error.cause from None
+        except self.ray.exceptions.RayError as error:
+            del self.busy[stream]
+            self._replace(left, attempt, error)
+        else:
+            self.done += 1
+            yield left.popleft()[0], result
+
+    def _replace(self, left: deque, attempt: int, error: Exception) -> None:
+        """Another actor in the place of one that is lost; it may run anywhere in the cluster."""
+        self._start()
+        if not left:
+            return
+        if attempt >= self.launcher.attempts:
+            raise lost(self.name(left[0][1]), attempt, self.done, self.total) from None
+        self.progress.say(
+            f"A worker was lost ({type(error).__name__}). What it had not finished "
+            f"({len(left)} jobs) starts again on another."
+        )
+        self.waiting.appendleft((list(left), attempt + 1))
+
+    def end(self) -> None:
+        """Let go of all actors."""
+        busy = [actor for actor, _, _ in self.busy.values()]
+        for actor in [*self.idle, *self.starting.values(), *busy]:
+            self.ray.kill(actor)

@@ -1,0 +1,107 @@
+"""A restorer on disk: ``model.safetensors``, its sha256 beside it, and ``card.json``, plain data.
+
+Reading one builds our own class with the card's numbers, which are bounded, and runs nothing else.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from mitigate.core import checkpoint, checksums
+from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_json
+from mitigate.core.observation import DEPTH, RGB
+
+if TYPE_CHECKING:
+    from mitigate.guards.frames.restorer import Restorer
+
+FORMAT, CARD = 4, "card.json"
+LIMITS = {"width": (4, 128), "depth_width": (4, 128), "size": (32, 512)}  # (ours)
+FARTHEST = 1000.0  # metres (ours)
+_AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=restore`."
+
+
+def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
+    """Write ``restorer`` into ``folder``; return it. The card says what the weights add up to, as
+    they are read again."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    checkpoint.save_weights(restorer, folder, half=half)
+    if half:
+        checkpoint.load_weights(restorer, folder)
+    held = {"format": FORMAT, "hash": restorer.hash, "settings": restorer.settings()}
+    with atomic_text(folder / CARD) as file:
+        json.dump(held, file, indent=1)
+    return folder
+
+
+def card(folder: str | Path) -> dict[str, Any]:
+    """What ``card.json`` says. Raises FileNotFoundError if a file is missing, ValueError if the
+    card is damaged or of another form."""
+    folder = Path(folder)
+    missing = [n for n in (CARD, checkpoint.WEIGHTS) if not (folder / n).is_file()]
+    if missing:
+        raise FileNotFoundError(
+            f"There is no restorer at {folder}: {', '.join(missing)} missing. Train one with `make "
+            "train RECIPE=restore` (its folder is runs/.../agent), or name checkpoints/restorer."
+        )
+    found = read_json(folder / CARD, _AGAIN)
+    wrong = _wrong(found)
+    if wrong:
+        raise ValueError(f"{folder / CARD}: {wrong}. {_AGAIN}")
+    return found
+
+
+def _wrong(found: Any) -> str:
+    """What is wrong with a card; empty if nothing is."""
+    if not isinstance(found, dict) or found.get("format") != FORMAT:
+        return f"it must be an object of format {FORMAT}"
+    settings = found.get("settings")
+    if not isinstance(settings, dict) or not isinstance(found.get("hash"), str):
+        return "it must have settings and a hash"
+    if set(settings) != {"sensors", "far", *LIMITS}:
+        return f"settings must be sensors, far, {', '.join(LIMITS)}"
+    sensors, far = settings["sensors"], settings["far"]
+    if sensors not in ([RGB], [DEPTH], [RGB, DEPTH], [DEPTH, RGB]):
+        return "sensors must be a list of rgb, depth or both"
+    if type(far) not in (int, float) or not 0 < far <= FARTHEST:
+        return f"far must be metres above 0, {FARTHEST:g} at most"
+    return problem({name: settings[name] for name in LIMITS})
+
+
+def problem(sizes: dict[str, Any]) -> str:
+    """What is wrong with the sizes of a network; empty if nothing is."""
+    for name, (least, most) in LIMITS.items():
+        value = sizes[name]
+        if type(value) is not int or not least <= value <= most:
+            return f"{name}={value!r:.40} must be a whole number from {least} to {most}"
+    return ""
+
+
+def fill(restorer: Restorer, folder: str | Path) -> None:
+    """Read the weights in ``folder`` into ``restorer``, whose settings must be the card's.
+
+    Raises as :func:`card`; ValueError for other settings, a missing or another checksum, and
+    weights that are not what the card says.
+    """
+    held, own = card(folder), restorer.settings()
+    other = [name for name, value in own.items() if held["settings"][name] != value]
+    if other:
+        raise ValueError(
+            f"{folder} is of a restorer with {other[0]}={held['settings'][other[0]]!r:.60}, not "
+            f"{own[other[0]]!r:.60}: set agent.{other[0]} to that, or start anew (init=null)."
+        )
+    file = Path(folder) / checkpoint.WEIGHTS
+    if not checksums.sidecar(file).is_file():
+        raise ValueError(f"{file} has no {checksums.sidecar(file).name} beside it. {_AGAIN}")
+    wrong = checksums.problem(file)
+    if wrong:  # said here: load_weights would advise to delete the checksum, which must be there
+        raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
+    checkpoint.load_weights(restorer, folder)
+    if restorer.hash != held["hash"]:
+        raise ValueError(
+            f"The weights in {folder} are not those of its {CARD} ({restorer.hash}, not "
+            f"{held['hash'][:20]}). {_AGAIN}"
+        )

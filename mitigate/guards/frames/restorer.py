@@ -1,0 +1,191 @@
+"""A restorer: observations in, observations out, whatever agent or program stands behind it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from torch import nn
+
+from mitigate.core.checkpoint import weights_sha
+from mitigate.core.files import find
+from mitigate.core.identity import DIGITS
+from mitigate.core.names import unknown
+from mitigate.core.observation import DEPTH, RGB, Z_MAX
+from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
+from mitigate.corruptions.views import MOST_VIEWS
+from mitigate.guards.frames import folder as folders
+from mitigate.guards.frames.choices import SENSORS, parted
+from mitigate.guards.frames.sensor import CHANNELS, SensorRestorer
+
+
+class Restorer(nn.Module):
+    """Restores the frames of each of ``sensors`` with a network of its own.
+
+    Args: sensors: of "rgb" and "depth". width, depth_width: of their networks. size: pixels of the
+    shorter side that they work at. far: metres of the farthest reading of depth.
+    Raises ValueError for other sensors and sizes.
+    """
+
+    def __init__(
+        self,
+        sensors: Sequence[str] = SENSORS,
+        width: int = 16,
+        depth_width: int = 16,
+        size: int = 64,
+        far: float = Z_MAX,
+    ) -> None:
+        super().__init__()
+        for sensor in sensors:
+            if sensor not in SENSORS:
+                raise ValueError(unknown("sensor", sensor, SENSORS))
+        if not sensors or len(set(sensors)) < len(sensors):
+            raise ValueError(f"agent.sensors={list(sensors)} must name rgb, depth or both.")
+        problem = folders.problem({"width": width, "depth_width": depth_width, "size": size})
+        if problem:
+            raise ValueError(f"agent.{problem}.")
+        self._settings = {
+            "sensors": list(sensors),
+            "width": width,
+            "depth_width": depth_width,
+            "size": size,
+            "far": float(far),
+        }
+        widths = {RGB: width, DEPTH: depth_width}
+        self.nets = nn.ModuleDict({s: SensorRestorer(s, widths[s], size, far) for s in sensors})
+
+    @property
+    def encoders(self) -> dict[str, tuple[str, ...]]:
+        """By sensor, the part that is for it (``training/stages.py``)."""
+        return {sensor: (sensor,) for sensor in self.nets}
+
+    def parts(self) -> dict[str, SensorRestorer]:
+        """The networks by sensor."""
+        return {sensor: self._net(sensor) for sensor in self.nets}
+
+    def settings(self) -> dict[str, Any]:
+        """All that makes it besides weights."""
+        return dict(self._settings)
+
+    def only(self, sensor: str) -> Restorer:
+        """Itself, for one of its sensors alone. ValueError for another sensor."""
+        if sensor not in self.nets:
+            raise ValueError(
+                f"This restorer is for {', '.join(self.nets)}, not for {sensor}: leave the "
+                f":{sensor} of restore= out."
+            )
+        self.nets = nn.ModuleDict({sensor: self.nets[sensor]})
+        self._settings["sensors"] = [sensor]
+        return self
+
+    @property
+    def hash(self) -> str:
+        """12 hex digits over weights, thresholds and settings: equal hash, equal frames."""
+        text = json.dumps([weights_sha(self), self.settings()], sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
+
+    def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
+        """As ``observation`` (``core/observation.py``), with those of its frames restored that the
+        gate takes for corrupted; every other entry, and a frame taken for clean, is the same
+        object. Raises TypeError or ValueError for frames of another dtype or shape."""
+        made = dict(observation)
+        for sensor in self.nets:
+            if sensor in made:
+                made[sensor] = self.restore(sensor, made[sensor])
+        return made
+
+    def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
+        """A frame of one instant: uint8 [H, W, 3] or [V, H, W, 3], or float32 metres [H, W],
+        [H, W, 1] or [V, H, W, 1]. What the gate takes for clean is returned as it came, and so is
+        depth that the network does not know (``frames.py``), else a new array of the same shape and
+        dtype. Raises KeyError for another sensor, TypeError and
+        ValueError for what is no array, another dtype or shape, and depth that is no metres."""
+        net, views = self._net(sensor), self._views(sensor, frame)
+        changed, made = net.judged(torch.from_numpy(views))
+        return made.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
+
+    def check_shown(self, sensors: Iterable[str], where: str) -> None:
+        """Raise ValueError if it restores none of ``sensors``, which are what ``where`` shows."""
+        shown = [*sensors]
+        if not any(sensor in self.nets for sensor in shown):
+            raise ValueError(
+                f"The restorer of restore= is for {', '.join(self.nets)}, but {where} shows "
+                f"{', '.join(shown) or 'no frames'}: leave restore= out, or train one for these."
+            )
+
+    def doubt(self, sensor: str, frame: np.ndarray) -> float:
+        """How far the gate's logit lies above its threshold; above 0 the frame is restored, unless
+        that would move most of its depth far. -inf where nothing reads anything, or most too far.
+        """
+        net, views = self._net(sensor), self._views(sensor, frame)
+        return net.doubt(torch.from_numpy(views))
+
+    def _net(self, sensor: str) -> SensorRestorer:
+        if sensor not in self.nets:
+            raise KeyError(f"This restorer is for {', '.join(self.nets)}, not for {sensor}.")
+        return self.nets[sensor]  # type: ignore[return-value]
+
+    def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
+        """``frame`` as [V, H, W, c] that torch takes as it is."""
+        channels, kind = CHANNELS[sensor], np.uint8 if sensor == RGB else np.float32
+        if not isinstance(frame, np.ndarray):
+            raise TypeError(
+                f"A {sensor} frame must be a numpy array, not {type(frame).__name__}: give a torch "
+                "tensor as frame.numpy()."
+            )
+        if sensor == RGB and frame.dtype != kind:
+            raise TypeError(f"rgb must be uint8 with values 0 to 255, not {frame.dtype}.")
+        if sensor == DEPTH and not np.issubdtype(frame.dtype, np.floating):
+            raise TypeError(f"depth must be float32 metres, not {frame.dtype}.")
+        shape = frame.shape
+        if sensor == DEPTH and frame.ndim == 2:
+            shape = (*shape, 1)
+        if len(shape) == 3:
+            shape = (1, *shape)
+        if len(shape) != 4 or shape[-1] != channels or 0 in shape or shape[0] > MOST_VIEWS:
+            raise ValueError(
+                f"A {sensor} frame is [H, W, {channels}], or up to {MOST_VIEWS} views of one "
+                f"instant [V, H, W, {channels}], but the shape is {list(frame.shape)}."
+            )
+        views = np.require(frame.reshape(shape), kind, ["C", "W"])
+        if sensor == DEPTH:
+            check_unit(views[..., 0], DepthSensor(z_max=self._net(sensor).far))
+        return views
+
+    def save(self, folder: str | Path, *, half: bool = False) -> None:
+        """Write a folder that :func:`load_restorer` reads; ``half``: weights in float16."""
+        folders.write(self, folder, half=half)
+
+    def load(self, folder: str | Path) -> None:
+        """Fill it from such a folder; ValueError if that is of one with other settings."""
+        folders.fill(self, folder)
+
+
+def restorer_of(choice: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
+    """The restorer of an option ``restore=`` (``choices.py``): none for None and "none"; else as
+    :func:`load_restorer`. ValueError if it restores none of ``sensors``, which are what a world
+    shows, and for a sensor that it is not for."""
+    if choice in (None, "none"):
+        return None
+    folder, only = parted(choice)
+    made = load_restorer(folder)
+    if only is not None:
+        made = made.only(only)
+    made.check_shown(sensors, "the world")
+    return made
+
+
+def load_restorer(folder: str | Path) -> Restorer:
+    """The restorer in ``folder``, in eval mode: ``restorer(observation)`` restores.
+
+    Raises FileNotFoundError if there is none, ValueError if it is damaged, or not as its card says.
+    """
+    found = find(str(folder))
+    made = Restorer(**folders.card(found)["settings"])
+    made.load(found)
+    return made.eval()

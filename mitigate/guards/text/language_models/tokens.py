@@ -1,0 +1,47 @@
+"""Prompts and answers of a language model as token ids, one and many."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import torch
+from torch import Tensor
+
+from mitigate.guards.text.language_models.prompts import prompt_messages
+
+if TYPE_CHECKING:
+    from mitigate.guards.text.learning.data import Pair
+
+
+def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
+    """Token ids of the chat that asks for ``text`` to be rewritten, up to the answer."""
+    ids = tokenizer.apply_chat_template(
+        prompt_messages(text, prompt), add_generation_prompt=True, return_dict=False
+    )
+    return list(ids)
+
+
+def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], list[int]]:
+    """Token ids of the prompt, and of the completion with its end mark."""
+    answer = tokenizer(pair.target, add_special_tokens=False)["input_ids"]
+    return encode(tokenizer, prompt, pair.source), [*answer, tokenizer.eos_token_id]
+
+
+def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str, Tensor]:
+    """Pad on the left, so that completions end together.
+
+    Returns ``input_ids, attention_mask, position_ids`` int64 [B, T] and ``completion`` bool [B, C]:
+    which of the last C tokens are completion, by position (pad and end mark may be one token).
+    """
+    rows = [[*prompt, *answer] for prompt, answer in pairs]
+    width, longest = max(map(len, rows)), max(len(answer) for _, answer in pairs)
+    lengths = torch.tensor([len(row) for row in rows])
+    mask = (torch.arange(width) >= width - lengths[:, None]).long()
+    answers = torch.tensor([len(answer) for _, answer in pairs])
+    return {
+        "input_ids": torch.tensor([[pad] * (width - len(row)) + row for row in rows]),
+        "attention_mask": mask,
+        "position_ids": (mask.cumsum(-1) - 1).clamp(min=0),
+        "completion": torch.arange(longest) >= longest - answers[:, None],
+    }

@@ -1,0 +1,109 @@
+"""Clean instructions to learn from: many manners of describing a walk through a building.
+
+All text is ours. No sentence holds a phrase of the apartments' validation templates, so that a
+safeguard trained on it meets those for the first time in evaluation.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+
+import numpy as np
+
+from mitigate.guards.text.texts.route_words import (
+    ASIDES,
+    CLOSE,
+    DOORS,
+    LOOKS,
+    MIDDLE,
+    OPEN,
+    PLACES,
+    ROOMS,
+    STAIRS,
+    THINGS,
+)
+from mitigate.worlds.apartments.instructions import TEMPLATES
+
+JOINS = (". ", ". ", ". ", ", ", " and ", " then ", ", then ", " and then ", ". Then ", ", and ")
+_FIELDS = {"open": OPEN.split("|"), "middle": MIDDLE.split("|"), "close": CLOSE.split("|")}
+
+
+def draw_route(rng: np.random.Generator, longest: int = 7) -> str:
+    """Return one instruction of at most ``longest`` clauses, a few of them verbose or careless."""
+    while True:
+        text = _careless(_joined(_clauses(rng, longest), rng), rng)
+        if not overlaps_validation(text):
+            return text
+
+
+@lru_cache(maxsize=1)
+def _validation() -> re.Pattern[str]:
+    phrases = [p for s in ("val_seen", "val_unseen") for k, group in TEMPLATES[s].items()
+        if k != "join" for p in group]  # fmt: skip
+    bodies = [re.sub(r"\\\{\w+\\\}", r"(?:[a-z]+ ?){1,3}?", re.escape(p)) for p in set(phrases)]
+    return re.compile(r"\b(?:" + "|".join(sorted(bodies, key=len, reverse=True)) + r")\b")
+
+
+def overlaps_validation(text: str) -> bool:
+    """Return whether ``text`` holds a filled phrase of the apartments' validation templates."""
+    return _validation().search(re.sub(r"[^a-z]+", " ", text.lower())) is not None
+
+
+def _clauses(rng: np.random.Generator, longest: int) -> list[str]:
+    count = int(rng.integers(1, longest + 1))
+    kinds = ["middle"] * count
+    if rng.random() < 0.7:
+        kinds[0] = "open"
+    if count > 1 and rng.random() < 0.85:
+        kinds[-1] = "close"
+    verbose = rng.random() < 0.2
+    found: list[str] = []
+    for kind in kinds:
+        found.append(_fill(_pick(_FIELDS[kind], rng), rng))
+        if verbose and rng.random() < 0.4:
+            found.append(_fill(_pick(ASIDES, rng), rng))
+    return found
+
+
+def _fill(template: str, rng: np.random.Generator) -> str:
+    template = template.replace("{place}", _pick(PLACES, rng))
+    thing, other = _thing(rng), _thing(rng)
+    text = template.format(
+        a=thing.removeprefix("set of ") if "{look} {a}" in template else thing,
+        aa=other, room=_pick(ROOMS, rng), aroom=_pick(ROOMS, rng), door=_pick(DOORS, rng),
+        stairs=_pick(STAIRS, rng), side=_pick(("left", "right"), rng), look=_pick(LOOKS, rng),
+        n=_pick(("two", "three", "four", "five", "2", "3"), rng),
+        ordinal=_pick(("first", "second", "third", "next", "last"), rng),
+    )  # fmt: skip
+    return re.sub(r"\ba (?=[aeiou])", "an ", text)
+
+
+def _thing(rng: np.random.Generator) -> str:
+    thing, look = _pick(THINGS, rng), _pick(LOOKS, rng)
+    return f"{look} {thing}" if rng.random() < 0.25 and " " not in thing else thing
+
+
+def _joined(clauses: list[str], rng: np.random.Generator) -> str:
+    few = [_pick(JOINS, rng) for _ in range(2)]  # a writer keeps to one or two ways
+    text = clauses[0]
+    for clause in clauses[1:]:
+        aside = clause.startswith(("you ", "the ", "there ", "on the ", "it is "))
+        text += ". " + clause if aside else _pick(few, rng) + clause
+    return ". ".join(part[0].upper() + part[1:] for part in text.split(". ")) + "."
+
+
+def _careless(text: str, rng: np.random.Generator) -> str:
+    """Leave marks of real writers: no capitals, no full stop, double spaces."""
+    draw = rng.random(4)
+    if draw[0] < 0.12:
+        text = text.lower()
+    if draw[1] < 0.12:
+        text = text.rstrip(".")
+    if draw[2] < 0.08:
+        text = text.replace(". ", ".  ")
+    return text.replace(", ", " , ") if draw[3] < 0.03 else text
+
+
+def _pick(options, rng: np.random.Generator) -> str:
+    return options[int(rng.integers(len(options)))]

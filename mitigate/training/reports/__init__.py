@@ -1,0 +1,1 @@
+"""What a training ends with: the trained model, measured before and after."""

@@ -1,0 +1,199 @@
+"""What a training of an encoder changed: a table, rows and a picture, before and after."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from torch import nn
+
+from mitigate.agents.loading import build_agent
+from mitigate.core import checkpoint
+from mitigate.core.build import maker
+from mitigate.core.files import atomic_text, write_atomically
+from mitigate.core.json_files import read_json
+from mitigate.core.markdown import markdown_table
+from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
+from mitigate.corruptions.registry import names, title
+from mitigate.encoders.folder import lines
+from mitigate.encoders.frames import Frames, collect
+from mitigate.encoders.model import Encoder
+from mitigate.encoders.probe import Score, average, measure
+from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
+from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
+from mitigate.evaluation.conditions import conditions
+from mitigate.training.parts import without_adapters
+from mitigate.training.stages import IDENTITY
+
+BEFORE, AFTER = "before", "after"
+MEAN = "mean over corruptions"
+EACH = 12  # frames for each of evaluation.episodes: as many as an episode's panorama has views
+MOST_TRAIN = 2400  # frames that the probe is fitted to (ours)
+MEASURES = {
+    "cosine": "centred cosine to the clean features",
+    "probe": "linear probe, mean average precision",
+    "retrieval": "own clean frame retrieved first",
+}
+Scores = dict[tuple[str, str, str], Score]
+
+
+def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
+    """Print and write how well features survive each corruption, before and after a training.
+
+    ``cfg`` is a training's config: 12 frames for each of ``evaluation.episodes``, as many as were
+    trained with at most, from the scenes of ``evaluation.split``, under the conditions of the suite
+    that the encoder's sensor meets.
+    The encoder before is the one as it came, or, with ``tune=all``, as the training began: ``base``
+    where that was with ``init``.
+    """
+    assert isinstance(trained, Encoder)
+    train, unseen = _frames(cfg, trained.sensor)
+    whole = trained.tune == "all"
+    before: Any = _begun(cfg, base, folder) if whole else without_adapters(trained)
+    encoders: dict[str, Encoder] = {BEFORE: before.eval(), AFTER: trained.eval()}
+    met = _conditions(cfg, trained.sensor)
+    scores = with_mean(measure(encoders, met, train, unseen, cfg.seed))
+    if ("before", "clean", "probe") in scores:
+        scores = {at: score for at, score in scores.items() if at[2] != "retrieval"}
+    about = (
+        f"{len(unseen)} frames of {len(np.unique(unseen.scene))} unseen scenes, "
+        f"severity {cfg.severity:g}, seed {cfg.seed}, suite {SUITE_VERSION}"
+    )
+    write(scores, folder, about)
+    print(f"To load it in plain PyTorch:\n\n{lines(trained, folder / 'agent')}", flush=True)
+
+
+def _begun(cfg: Any, base: Any, folder: Path) -> nn.Module:
+    """The encoder as the training found it. Raises ValueError if it cannot be made again."""
+    made = build_agent(cfg.agent, weights=None, seed=cfg.seed) if base is None else base
+    stage = next(name for name, stage in cfg.stages.items() if stage is not None)
+    noted = read_json(folder / stage / IDENTITY, "Train again in another folder.")
+    if checkpoint.weights_sha(made) != noted["encoder_sha256"]:
+        raise ValueError(
+            f"agent.model={cfg.agent.model} has other weights than when the training began, so "
+            "there is no before to compare with: its file was changed, or it draws them anew each "
+            "time. Name its weights (agent.weights=FILE) and train again in another folder. What "
+            f"was trained is in {folder / 'agent'}."
+        )
+    return made
+
+
+def _frames(cfg: Any, sensor: str) -> tuple[Frames, Frames]:
+    """Training frames for the probe and its centre, and unseen ones."""
+    recipe = next(stage for stage in cfg.stages.values() if stage is not None).recipe
+    quick = cfg.evaluation
+    source = source_of(
+        maker(cfg.env.world), sensor, cfg.env.episodes, quick.split, recipe.get("label")
+    )
+    count = min(recipe.frames, EACH * quick.episodes) if quick.episodes else recipe.frames
+    train = collect(source, TRAIN, min(recipe.frames, MOST_TRAIN), cfg.seed)
+    return train, collect(source, UNSEEN, count, cfg.seed)
+
+
+def _conditions(cfg: Any, sensor: str) -> list[Corruption]:
+    """Clean, and the suite's corruptions of ``sensor`` (all there are, if it has none)."""
+    met = conditions(list(cfg.suite.conditions), cfg.severity, None)
+    chosen = [corruption.name for corruption in met if corruption.modality == sensor]
+    return [CLEAN, *conditions(chosen or list(names(sensor)), cfg.severity, cfg.severity_depth)]
+
+
+def with_mean(scores: Scores) -> Scores:
+    """With the mean over the corruptions as one more condition, behind them."""
+    states = dict.fromkeys((state, what) for state, _, what in scores)
+    means = {
+        (state, MEAN, what): average(
+            s for (a, name, b), s in scores.items() if (a, b) == (state, what) and name != "clean"
+        )
+        for state, what in states
+    }
+    return {**scores, **means}
+
+
+def write(scores: Scores, folder: Path, about: str) -> list[Path]:
+    """Write ``features.md``, ``features.jsonl`` and ``features.png``; print the table."""
+    text = table(scores, about)
+    with atomic_text(folder / "features.md") as file:
+        file.write(text)
+    with atomic_text(folder / "features.jsonl") as file:
+        file.writelines(json.dumps(row) + "\n" for row in rows(scores, about))
+    drawn = picture(scores, about)
+    write_atomically(
+        folder / "features.png",
+        lambda path: drawn.savefig(path, format="png", dpi=120, facecolor="white"),
+    )
+    written = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
+    print(text, flush=True)
+    print("\n".join(f"wrote {path}" for path in written), flush=True)
+    return written
+
+
+def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
+    """One a measure and condition: before, after and the difference, each [value, low, high]; null
+    for an interval that there is not."""
+    made = []
+    for condition, what in _cells(scores):
+        first, second = (scores[state, condition, what] for state in (BEFORE, AFTER))
+        found = {BEFORE: first.estimate, AFTER: second.estimate, "gain": second.minus(first)}
+        values = {
+            name: [None if math.isnan(v) else round(v, 4) for v in (e.value, e.low, e.high)]
+            for name, e in found.items()
+        }
+        made.append({"measure": what, "condition": condition, **values, "of": about})
+    return made
+
+
+def table(scores: Scores, about: str) -> str:
+    """Markdown: a block for each measure."""
+    parts = [
+        f"# Features before and after\n\n{about}. In brackets 95 % intervals over scenes "
+        f"({NO_INTERVAL}: of one scene alone there is none).\n"
+    ]
+    for what, named in MEASURES.items():
+        own = [condition for condition, other in _cells(scores) if other == what]
+        if own:
+            head = (named, "before", "after", "after - before")
+            parts.append(markdown_table(head, (_row(scores, c, what) for c in own)) + "\n")
+    return "\n".join(parts)
+
+
+def _row(scores: Scores, condition: str, what: str) -> list[str]:
+    first, second = (scores[state, condition, what] for state in (BEFORE, AFTER))
+    name = condition if condition == MEAN else title(condition)
+    return [name, _text(first.estimate), _text(second.estimate), _text(second.minus(first), "+")]
+
+
+def _text(e: Estimate, sign: str = "") -> str:
+    return f"{e.value:{sign}.2f} {e.interval(f'{sign}.2f')}"
+
+
+def _cells(scores: Scores) -> list[tuple[str, str]]:
+    return [(condition, what) for state, condition, what in scores if state == BEFORE]
+
+
+def picture(scores: Scores, about: str) -> Figure:
+    """Bars: one panel a measure, before and after by condition."""
+    measures = [what for what in MEASURES if any(other == what for _, other in _cells(scores))]
+    figure = Figure(figsize=(9, 3.1 * len(measures)), layout="constrained")
+    for axis, what in zip(
+        figure.subplots(len(measures), squeeze=False)[:, 0], measures, strict=True
+    ):
+        own = [condition for condition, other in _cells(scores) if other == what]
+        for place, (state, colour) in enumerate(((BEFORE, "#b9b9b9"), (AFTER, "#2a7f62"))):
+            found = [scores[state, condition, what].estimate for condition in own]
+            x = np.arange(len(own)) + 0.4 * (place - 0.5)
+            ends = [[e.value - e.low for e in found], [e.high - e.value for e in found]]
+            axis.bar(
+                x, [e.value for e in found], 0.38, yerr=np.maximum(ends, 0), color=colour,
+                label=state, error_kw={"lw": 0.8},
+            )  # fmt: skip
+        shown = [name if name == MEAN else title(name) for name in own]
+        axis.set_xticks(range(len(own)), shown, rotation=20, ha="right", fontsize=8)
+        axis.set_ylabel(MEASURES[what], fontsize=8)
+        axis.grid(axis="y", alpha=0.3)
+        axis.legend(fontsize=8, loc="lower left")
+    figure.suptitle(about, fontsize=8)
+    return figure

@@ -1,0 +1,281 @@
+"""What a restorer does to frames of unseen scenes: errors before and after, what the gate lets by.
+
+    python -m mitigate.training.reports.restorer checkpoints/restorer --suite unseen_val
+
+Errors are means over pixels: RGB in levels of 255, depth in centimetres. A pixel is right if it is
+off by less than ``TOLERANCE`` of the range. How much of an agent's success comes back is for
+`python -m mitigate.evaluate restore=FOLDER` to say.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import cv2
+import numpy as np
+from hydra.errors import HydraException
+from omegaconf.errors import OmegaConfBaseException
+from torch import nn
+
+from mitigate.core import conf
+from mitigate.core.build import maker
+from mitigate.core.files import atomic_text, find, write_bytes
+from mitigate.core.markdown import markdown_table
+from mitigate.core.names import unknown
+from mitigate.core.observation import DEPTH, POSE, RGB
+from mitigate.core.pictures import depth_picture
+from mitigate.core.progress import Progress
+from mitigate.core.seeding import generator
+from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
+from mitigate.corruptions.registry import title
+from mitigate.corruptions.suite import SENSOR
+from mitigate.encoders.frames import collect
+from mitigate.encoders.sources import UNSEEN
+from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate, mean, share
+from mitigate.evaluation.conditions import conditions
+from mitigate.guards.frames.restorer import Restorer, load_restorer
+from mitigate.guards.frames.sensor import TOLERANCE
+from mitigate.worlds.episodes import read_episodes
+from mitigate.worlds.world import depth_sensor
+
+UNITS = {RGB: 1.0, DEPTH: 100.0}  # of the range: levels; metres as centimetres
+SHOWN = (0, 1, 2)  # views of an instant in the picture
+SIDE, LABEL = 96, 130  # pixels of a view in the picture, and of the names beside it
+GAP, HEAD = 6, 20  # pixels between its blocks, and of their headings
+
+
+class Score(NamedTuple):
+    """Mean error before and after, shares of right pixels before and after, and the share of
+    instants that the gate had restored."""
+
+    before: Estimate
+    after: Estimate
+    right_before: Estimate
+    right_after: Estimate
+    restored: Estimate
+
+
+class Instants(NamedTuple):
+    """Clean observations, and what depth is where they were seen."""
+
+    clean: list[dict[str, np.ndarray]]
+    depth: DepthSensor = SENSOR
+
+    def corrupted(self, number: int, corruption: Corruption, seed: int) -> dict[str, np.ndarray]:
+        """The frames of an observation under a corruption."""
+        seen = self.clean[number]
+        frames = {name: seen[name] for name in seen if name in (RGB, DEPTH, POSE)}
+        key = Key(seed, f"instant {number}", 0)
+        return corrupt_observation(frames, corruption, key, self.depth)
+
+
+def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
+    """Print and write ``restoration.md`` and ``restoration.jpg``: what a training's restorer does
+    to ``evaluation.episodes`` random instants of unseen scenes, under the conditions of the suite.
+
+    ``cfg`` is a training's config. ``base`` is not used: before is without a restorer.
+    """
+    assert isinstance(trained, Restorer)
+    quick = cfg.evaluation
+    met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
+    seen = instants(cfg.env, quick.split, quick.episodes or 300, cfg.seed, trained)
+    write(trained, seen, met, cfg.seed, folder, f"{quick.split}, severity {cfg.severity:g}")
+
+
+def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) -> Instants:
+    """Clean observations of ``count`` random poses in the scenes of a list of ``env``, or frames of
+    the unseen part of a folder. Raises ValueError for an unknown split."""
+    made = maker(env.world)()
+    if hasattr(made, "shots"):
+        sensor, part = next(iter(restorer.parts().items()))
+        found = collect(made, UNSEEN, count, seed).frames
+        clean = [{sensor: frame[None]} for frame in found]
+        return Instants(clean, replace(SENSOR, z_max=part.far))
+    if split not in env.episodes:
+        raise ValueError(unknown("split", split, env.episodes))
+    scenes = sorted({e.scene_id for e in read_episodes(find(env.episodes[split]))})
+    observations = []
+    for number in range(count):
+        rng = generator(seed, "restoration report", number)
+        made.enter(scenes[number * len(scenes) // count])
+        looked, _ = made.put(
+            made.point(rng), float(rng.uniform(-np.pi, np.pi)), views=None, rgb=True
+        )
+        observations.append({name: np.copy(value) for name, value in looked.items()})
+    return Instants(observations, depth_sensor(made.sensors))
+
+
+def measure(
+    restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
+) -> dict[tuple[str, str], Score]:
+    """Scores by sensor and condition; a corruption counts for the sensor that it changes."""
+    scores: dict[tuple[str, str], Score] = {}
+    wanted = [(s, c) for c in met for s in restorer.nets if c is CLEAN or s in c.modalities]
+    wanted = [(s, c) for s, c in wanted if s in seen.clean[0]]
+    with Progress("restoration", len(wanted), unit="condition") as progress:
+        for sensor, corruption in wanted:
+            rows = []
+            for number, clean in enumerate(seen.clean):
+                frames = seen.corrupted(number, corruption, seed)[sensor]
+                made = restorer.restore(sensor, frames)
+                far = restorer.parts()[sensor].range
+                off = [_off(part, clean[sensor], far) for part in (frames, made)]
+                errors = [float(part.mean()) * far * UNITS[sensor] for part in off]
+                right = [float((part < TOLERANCE).mean()) for part in off]
+                rows.append((*errors, *right, made is not frames))
+            before, after, right, kept, hit = np.array(rows, float).T
+            scores[sensor, corruption.name] = Score(
+                mean(before), mean(after), mean(right), mean(kept), share(hit)
+            )
+            progress.advance(note=corruption.name)
+    return scores
+
+
+def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
+    """How far each pixel is off, as a share of the range ``far``, mean over its colours, where the
+    clean frame reads something; [0] where it reads nothing at all."""
+    valid = np.isfinite(clean) & (clean > 0) if clean.dtype != np.uint8 else True
+    made = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
+    off = np.abs(made - np.where(valid, clean, 0)).mean(-1) / far
+    found = off[np.broadcast_to(valid, clean.shape)[..., 0]]
+    return found if found.size else np.zeros(1)
+
+
+def table(scores: dict[tuple[str, str], Score], about: str) -> str:
+    """Markdown: a row a condition, a block a sensor."""
+    parts = [f"# Frames before and after restoration\n\n{about}. In brackets 95 % intervals.\n"]
+    for sensor in dict.fromkeys(sensor for sensor, _ in scores):
+        unit = "levels of 255" if sensor == RGB else "cm"
+        head = [f"{sensor}: mean error, {unit}; right pixels, %", "before", "after"]
+        head += ["right before", "right after", "instants restored, %"]
+        rows = []
+        for (own, name), score in scores.items():
+            if own == sensor:
+                shares = (score.right_before, score.right_after, score.restored)
+                cells = [_text(score.before), _text(score.after), *(_text(s, 100) for s in shares)]
+                rows.append([title(name), *cells])
+        parts.append(markdown_table(head, rows) + "\n")
+    if any(NO_INTERVAL in part for part in parts):
+        parts.append(f"{NO_INTERVAL}: no interval, as all instants are alike.\n")
+    return "\n".join(parts)
+
+
+def _text(e: Estimate, scale: float = 1.0) -> str:
+    return f"{scale * e.value:.1f} {e.interval('.1f', scale)}"
+
+
+def sheet(
+    restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
+) -> np.ndarray | None:
+    """uint8 RGB: a row a corruption; three views of the instant that sees farthest corrupted,
+    restored, clean, under these headings. None if no corruption is of a sensor that there is."""
+    number = max(range(len(seen.clean)), key=lambda n: _far(seen.clean[n]))
+    clean = seen.clean[number]
+    rows: list[np.ndarray] = []
+    for corruption in met:
+        sensor = next((s for s in corruption.modalities if s in restorer.nets and s in clean), None)
+        if sensor is None:
+            continue
+        frames = seen.corrupted(number, corruption, seed)[sensor]
+        shown = [
+            _views(sensor, f) for f in (frames, restorer.restore(sensor, frames), clean[sensor])
+        ]
+        if not rows:
+            heads = [
+                _said(head, shown[0].shape[1], HEAD) for head in ("corrupted", "restored", "clean")
+            ]
+            rows.append(_beside(_said("", LABEL, HEAD), heads))
+        rows.append(_beside(_said(title(corruption.name)[:18], LABEL, SIDE), shown))
+    return np.vstack(rows) if rows else None
+
+
+def _far(frames: dict[str, np.ndarray]) -> float:
+    """How far the views of a picture see: walls from near by show little."""
+    depth = frames.get(DEPTH)
+    return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
+
+
+def _beside(name: np.ndarray, parts: Sequence[np.ndarray]) -> np.ndarray:
+    gap = np.full((len(name), GAP, 3), 255, np.uint8)
+    return np.hstack([name, *(piece for part in parts for piece in (gap, part))])
+
+
+def _said(text: str, width: int, height: int) -> np.ndarray:
+    """A white field with a text in it."""
+    field = np.full((height, width, 3), 255, np.uint8)
+    place, font = (4, height // 2 + 4), cv2.FONT_HERSHEY_SIMPLEX
+    return cv2.putText(field, text, place, font, 0.42, (0, 0, 0), 1, cv2.LINE_AA)
+
+
+def _views(sensor: str, frames: np.ndarray) -> np.ndarray:
+    views = frames if frames.ndim == 4 else frames[None]
+    shown = [views[k] for k in SHOWN if k < len(views)]
+    drawn = shown if sensor == RGB else [depth_picture(view[..., 0]) for view in shown]
+    nearest = cv2.INTER_NEAREST
+    return np.hstack([cv2.resize(view, (SIDE, SIDE), interpolation=nearest) for view in drawn])
+
+
+def write(
+    restorer: Restorer,
+    seen: Instants,
+    met: Sequence[Corruption],
+    seed: int,
+    folder: Path,
+    about: str,
+) -> None:
+    """Measure, print, and write the table and the picture into ``folder``; no picture where
+    nothing is corrupted."""
+    scores = measure(restorer.eval(), seen, met, seed)
+    about = f"{len(seen.clean)} instants of {about}, seed {seed}, restorer {restorer.hash}"
+    text = table(scores, about)
+    with atomic_text(folder / "restoration.md") as file:
+        file.write(text)
+    print(f"{text}\nwrote {folder / 'restoration.md'}")
+    drawn = sheet(restorer, seen, [c for c in met if c is not CLEAN], seed)
+    if drawn is not None:
+        encoded = cv2.imencode(".jpg", drawn[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])[1]
+        write_bytes(folder / "restoration.jpg", encoded.tobytes())
+        print(f"wrote {folder / 'restoration.jpg'}")
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run from the command line."""
+    parser = argparse.ArgumentParser(prog="mitigate.training.reports.restorer", description=__doc__)
+    parser.add_argument("folder", help="of the restorer")
+    parser.add_argument("--split", default="val_seen")
+    parser.add_argument("--suite", default="full")
+    parser.add_argument("--count", type=int, default=40, help="random instants (default 40)")
+    parser.add_argument("--severity", type=float, default=0.6)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", default="runs/restoration", help="folder of table and picture")
+    options = parser.parse_args(arguments)
+    if options.count < 1:
+        raise ValueError(f"--count {options.count}: give 1 instant or more.")
+    chosen = [f"suite={options.suite}"]
+    try:
+        cfg = conf.load_config("evaluate", chosen)
+    except (HydraException, OmegaConfBaseException) as error:
+        raise ValueError(conf.explain(error, "evaluate", chosen)) from None
+    met = conditions(list(cfg.suite.conditions), options.severity, None)
+    restorer = load_restorer(options.folder)
+    seed = options.seed
+    if not any({*corruption.modalities} & {*restorer.nets} for corruption in met):
+        raise ValueError(
+            f"suite={options.suite} corrupts no frames of {', '.join(restorer.nets)}: choose "
+            "another, such as full or unseen_val."
+        )
+    seen = instants(cfg.env, options.split, options.count, seed, restorer)
+    about = f"{options.split}, suite {options.suite}, severity {options.severity:g}"
+    write(restorer, seen, met, seed, Path(options.out), about)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, OSError) as error:
+        sys.exit(f"error: {conf.said(error)}")

@@ -1,0 +1,257 @@
+"""How well safeguards repair text.
+
+    python -m mitigate.training.reports.safeguard rules lora --out report
+
+Every instruction is corrupted by every family, repaired, and compared with what was meant. A name
+with ``-alone`` behind it is the language model without rules and guard.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Callable, Iterable, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from torch import nn
+
+from mitigate.core.files import atomic_text, find, open_text
+from mitigate.core.markdown import markdown_table
+from mitigate.core.options import positive
+from mitigate.core.seeding import generator
+from mitigate.corruptions.instruction import corrupt_instruction
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.language.style import MANNERS
+from mitigate.guards.text.addresses import check_choice
+from mitigate.guards.text.draft import PASSAGE
+from mitigate.guards.text.guard import Rewriter, Safeguard, open_safeguard
+from mitigate.guards.text.learning.data import read_texts
+from mitigate.guards.text.learning.spoken import SPLITS, VALIDATION, spoken
+from mitigate.guards.text.metrics import CLEAN, Repair, Scores, by_family, table
+from mitigate.guards.text.texts.text import passages, sentences
+from mitigate.worlds.episodes import read_episodes
+
+FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")
+ALONE = "-alone"
+GOLDEN = (5**0.5 - 1) / 2  # spreads any number of texts
+Repairer = Callable[[list[str]], list[str]]
+
+
+def corrupted(
+    texts: Sequence[str], families: Iterable[str], severity: float, split: str, seed: int = 0
+) -> list[Repair]:
+    """Return every text under every family, not yet repaired (``repaired`` is what is heard)."""
+    made = []
+    for family in families:
+        for index, clean in enumerate(texts):
+            heard = clean
+            if family != CLEAN:
+                key = Key(seed, f"text {index}")
+                heard = corrupt_instruction(clean, family, severity, key, split=split)
+            attack = heard[: -len(clean)] if family == "black_box" else ""
+            made.append(Repair(family, clean, heard, heard, tuple(sentences(attack))))
+    return made
+
+
+def repaired(repairs: Sequence[Repair], repairer: Repairer) -> list[Repair]:
+    """Return ``repairs`` with what ``repairer`` makes of each."""
+    heard = list(dict.fromkeys(r.heard for r in repairs))
+    answers = dict(zip(heard, repairer(heard), strict=True))
+    return [Repair(r.family, r.clean, r.heard, answers[r.heard], r.injected) for r in repairs]
+
+
+def alone(rewriter: Rewriter) -> Repairer:
+    """Return a language model as a repairer, without rules and guard."""
+
+    def repair(texts: list[str]) -> list[str]:
+        parts = [passages(text, PASSAGE) for text in texts]
+        wanted = list(dict.fromkeys(part for found in parts for part in found))
+        said = dict(zip(wanted, rewriter.rewrite(wanted), strict=True))
+        return [" ".join(said[part] or "" for part in found).strip() for found in parts]
+
+    return repair
+
+
+def guarded(safeguard: Safeguard) -> Repairer:
+    """Return a safeguard as a repairer."""
+    return lambda texts: [decision.text for decision in safeguard.canonicalise_all(texts)]
+
+
+def choose(name: str) -> Repairer:
+    """Return the repairer of a name on the command line."""
+    if name == "none":
+        return list
+    check_choice(name)
+    safeguard = open_safeguard(name.removesuffix(ALONE))
+    if safeguard is None or (
+        name.endswith(ALONE) and safeguard.rewriter is None and safeguard.tagger is None
+    ):
+        raise ValueError(f"{name} has no language model that could work alone: write lora{ALONE}.")
+    if name.endswith(ALONE) and safeguard.tagger is not None:
+        return tagged_alone(safeguard.tagger)
+    if name.endswith(ALONE):
+        assert safeguard.rewriter is not None
+        return alone(safeguard.rewriter)
+    return guarded(safeguard)
+
+
+def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
+    """Print and write the text metrics of a training: no safeguard, rules, before, after.
+
+    ``cfg`` is a training's config: each of the first ``evaluation.episodes`` instructions of
+    ``evaluation.split`` meets one family, attacks are of the test split. ``before`` is not used:
+    the model before fine-tuning is the trained one without its adapter, and prompted.
+    """
+    quick = cfg.evaluation
+    listed = islice(read_episodes(find(cfg.env.episodes[quick.split])), quick.episodes)
+    texts = [episode.instruction.text for episode in listed]
+    every = corrupted(texts, FAMILIES, cfg.severity, "test", cfg.seed)
+    chosen = [
+        r for i, r in enumerate(every) if i % len(FAMILIES) == (i // len(texts)) % len(FAMILIES)
+    ]
+    with trained.untuned() as untuned:  # type: ignore[operator]
+        before_alone = repaired(chosen, alone(untuned))
+    results = {
+        "none": chosen,
+        "rules": repaired(chosen, guarded(Safeguard())),
+        "before, alone": before_alone,
+        "after, alone": repaired(chosen, alone(trained)),  # type: ignore[arg-type]
+        "after, guarded": repaired(chosen, guarded(Safeguard(trained))),  # type: ignore[arg-type]
+    }
+    write(results, folder, f"{quick.split}, severity {cfg.severity:g}, unseen attacks")
+
+
+def before_after_tagger(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
+    """As :func:`before_after`, of a tagger, on what people of the validation voices say (at most
+    ``evaluation.episodes`` texts of each voice); ``before`` is not used."""
+    each = cfg.evaluation.episodes
+    chosen = voices("validation", None if each is None else each * len(VALIDATION))
+    results = {
+        "none": chosen,
+        "rules": repaired(chosen, guarded(Safeguard())),
+        "tagger, alone": repaired(chosen, tagged_alone(trained)),
+        "tagger, guarded": repaired(chosen, guarded(Safeguard(tagger=trained))),  # type: ignore[arg-type]
+    }
+    write(results, folder, f"{len(chosen)} texts of the validation voices")
+
+
+def tagged_alone(tagger: Any) -> Repairer:
+    """Return a tagger as a repairer, without rules and gate."""
+    return lambda texts: [tagger.alone(text) for text in texts]
+
+
+def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:
+    """Write ``text.md`` and ``repairs.jsonl`` into ``folder`` and print the tables."""
+    parts = [f"# Text metrics: {title}\n\nIn percent, but for the count.\n"]
+    parts.append(summary({name: by_family(found) for name, found in results.items()}))
+    for name, found in results.items():
+        parts.append(f"\n## {name}\n\n{table(by_family(found))}\n")
+    with atomic_text(folder / "text.md") as file:
+        file.write("\n".join(parts))
+    with atomic_text(folder / "repairs.jsonl") as file:
+        for name, found in results.items():
+            for r in found:
+                line = {"safeguard": name, "family": r.family, "clean": r.clean}
+                file.write(json.dumps({**line, "heard": r.heard, "repaired": r.repaired}) + "\n")
+    print("\n".join(parts), flush=True)
+    print(f"wrote {folder / 'text.md'}\nwrote {folder / 'repairs.jsonl'}", flush=True)
+
+
+def summary(scores: dict[str, dict[str, Scores]]) -> str:
+    """Return one Markdown row a safeguard: what its authors aim at, over the corrupted families."""
+    head = ["safeguard", "directions", "landmarks", "token F1", "attacks removed", "clean changed"]
+    lines = []
+    for name, found in scores.items():
+        met = {f: s for f, s in found.items() if f not in (CLEAN, "all")}
+        count = sum(s.count for s in met.values())
+        means = [
+            sum(s.count * (getattr(s, field) or 0.0) for s in met.values()) / count
+            if count
+            else None
+            for field in ("directions", "landmarks", "token_f1")
+        ]
+        removed, clean = found["all"].removed, found["all"].changed
+        cells = [*means, removed, clean]
+        lines.append([name, *("–" if c is None else f"{100 * c:.1f}" for c in cells)])
+    return markdown_table(head, lines)
+
+
+def examples(repairs: Sequence[Repair], count: int, seed: int) -> str:
+    """Return ``count`` repairs drawn by ``seed``, as a Markdown list."""
+    order = generator(seed, "examples").permutation(len(repairs))[:count]
+    chosen = [repairs[i] for i in sorted(order)]
+    return "\n".join(
+        f"{n}. `{r.family}`\n   - meant: {r.clean.strip()}\n   - heard: {r.heard.strip()}\n"
+        f"   - repaired: {r.repaired.strip()}"
+        for n, r in enumerate(chosen, 1)
+    )
+
+
+def read_lines(path: str, count: int | None) -> list[str]:
+    """Return the instructions of an episode file, or of a text file with one a line."""
+    if path.endswith((".json", ".json.gz")):
+        return read_texts([path])[:count]
+    with open_text(path) as file:
+        lines = [line.strip() for line in file if line.strip() and not line.startswith("#")]
+    return lines[:count]
+
+
+def voices(split: str, count: int | None) -> list[Repair]:
+    """Return what people of a split say, spread over the voices; each voice is a family."""
+    texts = spoken(split)
+    chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]
+    kept = [texts[i] for i in sorted(chosen)]
+    return [Repair(text.voice, text.plain, text.said, text.said) for text in kept]
+
+
+def _heard(options: argparse.Namespace) -> tuple[list[Repair], str]:
+    """What the safeguards hear, and a title."""
+    if options.voices:
+        said = voices(options.voices, options.count)
+        return said, f"{len(said)} texts of the {options.voices} voices"
+    texts = read_lines(options.texts, options.count)
+    if not texts:
+        raise ValueError(f"There are no instructions in {options.texts}.")
+    made = corrupted(texts, options.families, options.severity, options.split, options.seed)
+    about = f"{len(texts)} texts, severity {options.severity:g}, {options.split} attacks"
+    return made, f"{Path(options.texts).name}, {about}"
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Entry point."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument(
+        "safeguards", nargs="+", help="none, rules, lora, lora-alone, a folder, ..."
+    )
+    heard = parser.add_mutually_exclusive_group(required=True)
+    heard.add_argument("--texts", help="episode file, or text file, one a line")
+    heard.add_argument("--voices", choices=SPLITS, help="people's texts of a split, as they are")
+    parser.add_argument("--count", type=positive, help="of the texts; default all")
+    parser.add_argument("--families", nargs="+", default=FAMILIES, choices=FAMILIES)
+    parser.add_argument("--severity", type=float, default=1.0)
+    parser.add_argument("--split", default="test", help="of the attacks: train, validation, test")
+    parser.add_argument("--examples", type=int, default=0, help="print so many, drawn by the seed")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--out", type=Path, default=Path("runs/safeguard-text"))
+    options = parser.parse_args(arguments)
+    changed, title = _heard(options)
+    results = {}
+    for name in options.safeguards:
+        began = time.monotonic()
+        results[name] = repaired(changed, choose(name))
+        spent = (time.monotonic() - began) / len(changed)
+        print(f"{name}: {1000 * spent:.1f} ms an instruction, in batches", flush=True)
+    write(results, options.out, title)
+    if options.examples:
+        print(examples(results[options.safeguards[-1]], options.examples, options.seed))
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (ValueError, FileNotFoundError) as error:
+        sys.exit(f"error: {error}")

@@ -1,0 +1,55 @@
+"""One Ray cluster for all tests of a process, and SLURM's jobs as processes of this machine."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from mitigate.cluster.launcher import RayConfig, SlurmConfig
+
+# a worker that dies while it starts is noticed so soon (Ray's own default is a minute)
+HEAD = {
+    "num_cpus": 1,
+    "include_dashboard": False,
+    # and workers get their share of a busy machine (Ray's own niceness is 15)
+    "_system_config": {"worker_register_timeout_seconds": 15, "worker_niceness": 0},
+}
+
+
+@pytest.fixture(scope="session")
+def cluster():
+    """Ray's own cluster for tests: three nodes on this machine, one CPU each."""
+    ray = pytest.importorskip("ray", reason="ray is not installed (the extra cluster)")
+    from ray.cluster_utils import Cluster
+
+    path = os.environ.get("PYTHONPATH")
+    os.environ["PYTHONPATH"] = os.pathsep.join([str(Path(__file__).parents[2]), path or ""])
+    made = Cluster(initialize_head=True, head_node_args=HEAD)
+    made.nodes = [made.add_node(num_cpus=1) for _ in range(2)]
+    ray.init(address=made.address, log_to_driver=False)
+    yield made
+    ray.shutdown()
+    made.shutdown()
+
+
+@pytest.fixture
+def ray_launcher(cluster):
+    return RayConfig(cpus=1)
+
+
+@pytest.fixture
+def slurm_launcher(tmp_path, monkeypatch):
+    """Makes a launcher of jobs that are processes here."""
+    pytest.importorskip("submitit", reason="submitit is not installed (the extra cluster)")
+    from submitit.core.core import Job
+
+    # where a job that ended left no result: its file system is this machine's, which is never late
+    monkeypatch.setattr(Job, "_results_timeout_s", 1)
+
+    def make(**settings):
+        settings = {"processes": 1, "minutes": 2, **settings}
+        return SlurmConfig(cluster="local", folder=str(tmp_path / "slurm"), **settings)
+
+    return make

@@ -1,0 +1,44 @@
+"""``mitigate run`` on a cluster: a condition whose worker dies is measured anew, each row once."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+
+from mitigate.bridge.conditions import cells
+from mitigate.bridge.spread import run_there
+from mitigate.core.conf import load_config
+
+pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
+
+# An agent of two episodes; in the middle of the first one under spatter it kills its worker, once.
+AGENT = """
+import os, pathlib, signal, sys
+import mitigate_hook, numpy
+note = pathlib.Path(sys.argv[1])
+for name in "ab":
+    episode = mitigate_hook.connect(name)
+    for step in range(2):
+        episode.corrupt({"rgb": numpy.full((8, 8, 3), 90, "uint8")})
+    if sys.argv[2] == "spatter-s0.6" and not note.exists():
+        note.touch()
+        os.kill(os.getppid(), signal.SIGKILL)
+    episode.finish(success=name == "a", spl=0.5 * (name == "a"))
+"""
+
+
+def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept(
+    ray_launcher, tmp_path, capsys
+):
+    program, out = tmp_path / "agent.py", tmp_path / "o"
+    program.write_text(AGENT)
+    command = [sys.executable, str(program), str(tmp_path / "died"), "{condition}"]
+    cfg = load_config("run", [f"out={out}", "conditions=[spatter]", "launcher=ray"])
+    spatter = cells(cfg, command, out, "agent")[1]
+    assert run_there(cfg, command, out, "agent", [spatter]) == []
+    assert (tmp_path / "died").exists() and "starts again on another" in capsys.readouterr().out
+    found = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
+    assert {episode for episode, _ in found} == {"a", "b"} and len(found) == len({*found})
+    assert run_there(cfg, command, out, "agent", [spatter]) == []
+    assert "spatter-s0.6: done before" in capsys.readouterr().out

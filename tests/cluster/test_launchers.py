@@ -1,0 +1,243 @@
+"""Workers on a Ray cluster and as SLURM jobs: each result once, whatever dies."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+from typing import ClassVar
+
+import pytest
+from omegaconf import DictConfig, OmegaConf
+
+from mitigate.cluster import ray_actors, slurm_jobs
+from mitigate.cluster.launcher import LauncherConfig, RayConfig, SlurmConfig, chosen, count, results
+from mitigate.core.progress import Progress
+from mitigate.core.workers import WorkersDied
+
+GROUPS = [[(g, i) for i in range(3)] for g in range(6)]
+
+
+class Squares:
+    """Job (g, i) gives 10 g + i, after a while; ``deadly`` jobs kill their process the first time,
+    leaving a note in ``folder``; ``always`` every time."""
+
+    preload: ClassVar[str] = "mitigate.core.workers"
+
+    def __init__(self, folder: Path, deadly=(), always=(), wrong=(), seconds: float = 0.0) -> None:
+        self.folder, self.deadly, self.always = folder, set(deadly), set(always)
+        self.wrong, self.seconds = set(wrong), seconds
+
+    def ready(self) -> AbstractContextManager[None]:
+        return nullcontext()
+
+    def work(self, jobs: Sequence[tuple[int, int]]) -> Iterator[list[int]]:
+        for job in jobs:
+            time.sleep(self.seconds)
+            note = self.folder / f"died-{job[0]}-{job[1]}"
+            if job in self.always or (job in self.deadly and not note.exists()):
+                note.write_text("")
+                os.kill(os.getpid(), signal.SIGKILL)
+            if job in self.wrong:
+                raise ValueError(f"job {job} makes no sense")
+            yield [10 * job[0] + job[1], os.getpid()]
+
+    def name(self, job) -> str:
+        return f"job {job}"
+
+
+pytestmark = pytest.mark.xdist_group("launchers")  # one cluster is enough
+
+
+def run(launcher, task, workers=2):
+    """Results by number, each once, and the processes that worked."""
+    found = {}
+    with Progress("jobs", 18, unit="job") as progress:
+        for item in results(launcher, task, GROUPS, workers, progress):
+            if item is not None:
+                assert item[0] not in found
+                found[item[0]] = item[1]
+    values = {number: value for number, (value, _) in found.items()}
+    return values, {process for _, process in found.values()}
+
+
+EXPECTED = {3 * g + i: 10 * g + i for g in range(6) for i in range(3)}
+
+
+def test_ray_gives_every_result_once_from_processes_of_its_own(ray_launcher, tmp_path):
+    values, processes = run(ray_launcher, Squares(tmp_path, seconds=0.05))
+    assert values == EXPECTED
+    assert 1 <= len(processes) <= 2 and os.getpid() not in processes
+
+
+def test_ray_gives_the_jobs_of_a_killed_worker_to_another(ray_launcher, tmp_path):
+    values, _ = run(ray_launcher, Squares(tmp_path, deadly=[(1, 1), (4, 0)]))
+    assert values == EXPECTED
+    assert sorted(p.name for p in tmp_path.glob("died-*")) == ["died-1-1", "died-4-0"]
+
+
+def test_ray_says_which_job_no_worker_survives(ray_launcher, tmp_path):
+    with pytest.raises(WorkersDied, match=r"job \(2, 2\).*3 times"):
+        run(ray_launcher, Squares(tmp_path, always=[(2, 2)]))
+
+
+def test_what_a_job_raises_is_raised_here(ray_launcher, tmp_path):
+    with pytest.raises(ValueError, match="makes no sense"):
+        run(ray_launcher, Squares(tmp_path, wrong=[(3, 1)]))
+
+
+def test_a_node_that_dies_loses_no_result_and_doubles_none(cluster, ray_launcher, tmp_path):
+    task, found = Squares(tmp_path, seconds=0.15), {}
+    with Progress("jobs", 18, unit="job") as progress:
+        for item in results(ray_launcher, task, GROUPS, 3, progress):
+            if item is None:
+                continue
+            assert item[0] not in found
+            found[item[0]] = item[1][0]
+            if len(found) == 4:
+                cluster.remove_node(cluster.nodes.pop(), allow_graceful=False)
+    assert found == EXPECTED
+
+
+def test_ray_is_asked_how_many_workers_it_has_room_for(ray_launcher):
+    assert 1 <= count(ray_launcher, None, 1000, 40) <= 3
+    assert count(ray_launcher, 5, 1000, 40) == 5
+
+
+def test_slurm_jobs_give_every_result_once(slurm_launcher, tmp_path):
+    values, processes = run(slurm_launcher(), Squares(tmp_path))
+    assert values == EXPECTED
+    assert len(processes) == 2
+    assert not list((tmp_path / "slurm").iterdir())  # nothing is left behind
+
+
+def test_the_rest_of_a_killed_slurm_job_is_submitted_again(slurm_launcher, tmp_path):
+    values, _ = run(slurm_launcher(), Squares(tmp_path, deadly=[(2, 1)]))
+    assert values == EXPECTED
+
+
+def test_a_wrong_job_is_told_at_once_and_not_tried_on_other_nodes(slurm_launcher, tmp_path):
+    with pytest.raises(ValueError, match="makes no sense"):
+        run(slurm_launcher(attempts=2), Squares(tmp_path, wrong=[(0, 1)]), workers=1)
+    left = [path.name for path in (tmp_path / "slurm").rglob("*")]
+    assert slurm_jobs.TASK not in left and "logs" in left  # to see what went wrong
+
+
+def test_the_rest_of_a_share_keeps_its_groups_and_a_failed_submission_leaves_no_job(
+    tmp_path, monkeypatch
+):
+    """A group is what a process takes: as one group the rest would be one process's."""
+    given, cancelled = [], []
+
+    class Job:
+        job_id = 1
+
+        def __init__(self, groups, lines):
+            self.lines, self.groups = lines, groups
+
+        def done(self):
+            if len(given) == 1:  # the first ends early, with one result
+                self.lines.write_text('{"job": 0, "result": [0, 0]}\n')
+            else:
+                found = [n for group in self.groups for n, _ in group]
+                made = [json.dumps({"job": n, "result": [n, 0]}) for n in found]
+                self.lines.write_text("\n".join(made) + "\n")
+            return True
+
+        def exception(self):
+            return RuntimeError("Error: time ran out")
+
+        def cancel(self):
+            cancelled.append(self)
+
+    class Executor:
+        most = 9
+
+        def submit(self, serve, task, groups, processes, lines):
+            if len(given) == self.most:
+                raise OSError("submit limit")
+            given.append([[number for number, _ in group] for group in groups])
+            return Job(groups, lines)
+
+    monkeypatch.setattr(slurm_jobs, "check", lambda launcher: None)
+    monkeypatch.setattr(slurm_jobs, "_executor", lambda launcher, folder: Executor())
+    launcher = SlurmConfig(folder=str(tmp_path / "slurm"))
+    run(launcher, Squares(tmp_path), workers=1)
+    assert given[0][0] == [0, *given[1][0]] and given[1][1:] == given[0][1:] != []
+    given.clear()
+    monkeypatch.setattr(Executor, "most", 1)
+    with pytest.raises(OSError, match="submit limit"):
+        run(launcher, Squares(tmp_path), workers=2)
+    assert len(cancelled) == 1
+    assert not [*(tmp_path / "slurm").iterdir()]  # nor its task, with the agent's weights
+
+
+@pytest.mark.parametrize(
+    "number",
+    [{"processes": 0}, {"attempts": 0}, {"memory": -1.0}, {"memory": math.inf}, {"cpus": math.inf}],
+    ids=str,
+)
+def test_a_launcher_of_nothing_is_refused(number):
+    kind = RayConfig if "cpus" in number else SlurmConfig
+    node = OmegaConf.structured(kind(**number))
+    with pytest.raises(ValueError, match=f"launcher.{next(iter(number))}=.* must be above 0"):
+        chosen(node)
+
+
+def test_without_slurm_it_says_what_to_do(tmp_path, monkeypatch):
+    pytest.importorskip("submitit")
+    monkeypatch.setenv("PATH", "")
+    launcher = SlurmConfig(folder=str(tmp_path))
+    for read in (lambda: run(launcher, Squares(tmp_path)), lambda: chosen(launcher_node(launcher))):
+        with pytest.raises(ValueError, match="login node"):
+            read()
+    assert not [*tmp_path.iterdir()]
+
+
+def launcher_node(launcher: LauncherConfig) -> DictConfig:
+    """``launcher`` as the config that names it."""
+    return OmegaConf.structured(launcher)
+
+
+@pytest.mark.parametrize(
+    ("launcher", "package", "says"),
+    [
+        (SlurmConfig(cluster="foo"), "submitit", "no launcher.cluster 'foo'"),
+        (RayConfig(address="not an address"), "ray", "must be auto, ray://"),
+        (RayConfig(address="host"), "ray", "must be auto, ray://"),
+    ],
+    ids=lambda value: str(value)[:40],
+)
+def test_a_launcher_that_is_none_is_told_when_it_is_chosen(launcher, package, says):
+    pytest.importorskip(package)
+    with pytest.raises(ValueError, match=says):
+        chosen(launcher_node(launcher))
+
+
+@pytest.mark.parametrize("address", [None, "auto", "10.0.0.1:6379", "ray://head:10001"])
+def test_an_address_is_of_a_form_that_ray_knows(address):
+    pytest.importorskip("ray")
+    assert chosen(launcher_node(RayConfig(address=address))).address == address
+
+
+def test_what_is_not_installed_is_told_when_it_is_chosen(monkeypatch):
+    for module, launcher in ((slurm_jobs, SlurmConfig()), (ray_actors, RayConfig())):
+        monkeypatch.setattr(module, "find_spec", lambda name: None)
+        with pytest.raises(ValueError, match=r"pip install -e '.\[cluster\]'"):
+            chosen(launcher_node(launcher))
+
+
+def test_local_is_what_it_was(tmp_path):
+    values, _ = run(LauncherConfig(), Squares(tmp_path))
+    assert values == EXPECTED
+
+
+@pytest.mark.parametrize("workers", [0, -1])
+def test_fewer_than_one_worker_is_refused(workers, tmp_path):
+    with pytest.raises(ValueError, match="workers="):
+        count(SlurmConfig(), workers, 100, 40)

@@ -1,0 +1,128 @@
+"""Chains of programs on this machine, on Ray and as SLURM jobs: what a cell of a grid is."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from mitigate.cluster import programs
+from mitigate.cluster.launcher import LauncherConfig
+from mitigate.core.progress import Progress
+from mitigate.core.signals import Ended, raise_ended
+
+pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
+
+# Appends the rows that are missing to a file; with a note's name, it kills its worker after two.
+ROWS = """
+import os, pathlib, signal, sys, time
+file, note = map(pathlib.Path, sys.argv[1:])
+have = file.read_text().split() if file.exists() else []
+for row in "abcd":
+    if row not in have:
+        with open(file, "a") as out:
+            out.write(row + "\\n")
+    if row == "b" and note.name != "none" and not note.exists():
+        note.touch()
+        os.kill(os.getppid(), signal.SIGKILL)
+        time.sleep(30)
+        file.write_text("this program outlived its worker")
+"""
+
+
+def chain(folder: Path, name: str, deadly: bool = False, code: str = ROWS) -> programs.Chain:
+    words = (
+        sys.executable,
+        "-c",
+        code,
+        str(folder / name),
+        str(folder / ("died" if deadly else "none")),
+    )
+    told = (sys.executable, "-c", "import os; print(os.environ['PYTHON_CPU_COUNT'])")
+    return programs.Chain(
+        name,
+        (("train", words), ("evaluate", told)),
+        folder / f"{name}.txt",
+        folder,
+        {"PYTHON_CPU_COUNT": "1"},
+    )
+
+
+def run(chains, launcher, jobs=2) -> dict[int, programs.Outcome]:
+    """The outcome of each chain, each told once."""
+    found: dict[int, programs.Outcome] = {}
+
+    def told(number, outcome):
+        assert number not in found
+        found[number] = outcome
+
+    with Progress("cells", len(chains), unit="cell") as progress:
+        programs.run(chains, jobs, launcher, progress, told)
+    return found
+
+
+def test_each_chain_is_run_to_its_end_and_its_cpu_seconds_are_told(tmp_path):
+    made = [chain(tmp_path, name) for name in ("one", "two", "three")]
+    found = run(made, LauncherConfig())
+    assert sorted(found) == [0, 1, 2]
+    for number, one in enumerate(made):
+        assert found[number].problem == "" and {*found[number].seconds} == {"train", "evaluate"}
+        assert (tmp_path / one.name).read_text().split() == [*"abcd"]
+        assert one.log.read_text() == "1\n"
+
+
+@pytest.mark.parametrize("kind", ["ray", "slurm"])
+def test_a_chain_whose_worker_is_killed_goes_on_elsewhere_and_doubles_no_row(
+    kind, request, tmp_path
+):
+    launcher = request.getfixturevalue(f"{kind}_launcher")
+    made = [chain(tmp_path, "one", deadly=True), chain(tmp_path, "two")]
+    found = run(made, launcher() if kind == "slurm" else launcher)
+    assert [found[n].problem for n in (0, 1)] == ["", ""]
+    assert all({*found[n].seconds} == {"train", "evaluate"} for n in (0, 1))
+    assert (tmp_path / "died").exists()
+    assert (tmp_path / "one").read_text().split() == [*"abcd"]  # the first program is gone, too
+
+
+def test_a_program_that_fails_ends_its_chain_alone_and_its_last_line_is_told(tmp_path):
+    wrong = chain(tmp_path, "wrong", code="import sys; print('well'); sys.exit('no such recipe')")
+    found = run([wrong, chain(tmp_path, "right")], LauncherConfig())
+    assert found[0].problem == "train ended with 1 (no such recipe)"
+    assert "evaluate" not in found[0].seconds and found[1].problem == ""
+
+
+SAVES = """
+import pathlib, signal, sys, time
+def save(*_):
+    pathlib.Path(sys.argv[1]).write_text("saved")
+    sys.exit(143)
+signal.signal(signal.SIGTERM, save)
+print("ready", flush=True)
+time.sleep(30)
+"""
+
+
+def test_whoever_is_stopped_lets_its_programs_save_first(tmp_path):
+    made = [chain(tmp_path, name, code=SAVES) for name in ("one", "two", "never begun")]
+
+    def stop():
+        while not all(c.log.is_file() and "ready" in c.log.read_text() for c in made[:2]):
+            time.sleep(0.05)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    before = signal.signal(signal.SIGTERM, raise_ended)
+    stopping = threading.Thread(target=stop)
+    stopping.start()
+    try:
+        with pytest.raises(Ended):
+            run(made, LauncherConfig())
+    finally:
+        stopping.join()
+        signal.signal(signal.SIGTERM, before)
+    assert (tmp_path / "one").read_text() == (tmp_path / "two").read_text() == "saved"
+    assert not made[2].log.exists()

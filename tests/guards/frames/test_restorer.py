@@ -1,0 +1,387 @@
+"""Frames taken for clean pass as they are; others are corrected, filled, and keep their form."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from tests.restoration.conftest import opened
+
+from mitigate.core.observation import DEPTH, RGB, Observation
+from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
+from mitigate.guards.frames import choices, ring
+from mitigate.guards.frames.restorer import Restorer, load_restorer, restorer_of
+from mitigate.guards.frames.world import Restored
+from mitigate.training.reports import restorer as report
+from mitigate.worlds.world import Corrupted
+
+SHIPPED = Path(__file__).parents[2] / "checkpoints/restorer"
+SHAPES = [(64, 64), (50, 70), (120, 160)]
+
+
+def frames(sensor: str, *shape: int) -> np.ndarray:
+    rng = np.random.default_rng(0)
+    if sensor == RGB:
+        return rng.integers(20, 230, (*shape, 3), np.uint8)
+    return rng.uniform(0.5, 9.0, (*shape, 1)).astype(np.float32)
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_a_frame_that_the_gate_takes_for_clean_is_the_same_object(untrained, sensor):
+    opened(untrained, 1e9)
+    frame = frames(sensor, 12, 64, 64)
+    before = frame.copy()
+    made = untrained({sensor: frame, "pose": "as it came"})
+    assert made[sensor] is frame and made["pose"] == "as it came"
+    assert np.array_equal(frame, before)
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_before_anything_is_learned_a_frame_hardly_changes(untrained, sensor, shape):
+    for full in (shape, (1, *shape), (3, *shape)):
+        frame = frames(sensor, *full)
+        made = untrained.restore(sensor, frame)
+        assert made.shape == frame.shape and made.dtype == frame.dtype and made is not frame
+        moved = np.abs(made.astype(float) - frame).mean()
+        assert moved <= (3.0 if sensor == RGB else 0.1)
+
+
+def wall(metres: float, hole: bool = False) -> np.ndarray:
+    """A camera before a wall, with a sensor's noise of 2 cm; ``hole``: 4 % of it reads nothing."""
+    noise = np.random.default_rng(0).normal(0, 0.02, (96, 96))
+    made = (metres + noise).astype(np.float32)
+    made[40:60, 40:60] *= not hole
+    return made
+
+
+@pytest.mark.filterwarnings("ignore:More than")
+@pytest.mark.parametrize("metres", [9.0, 9.9, 11.0, 20.0])
+@pytest.mark.parametrize("hole", [False, True])
+def test_no_obstacle_is_invented_before_a_wall_far_away(metres, hole):
+    """The shipped network, which knows apartments, would put one at 1.2 m."""
+    frame = wall(metres, hole)
+    assert load_restorer(SHIPPED).restore(DEPTH, frame) is frame
+
+
+def test_a_wall_nearby_with_a_hole_is_filled():
+    made = load_restorer(SHIPPED).restore(DEPTH, wall(3.0, hole=True))
+    assert np.abs(made - 3).max() < 0.5
+
+
+def test_depth_that_is_mostly_too_far_is_left_with_a_warning(untrained):
+    frame = wall(5.0)
+    frame[:9] = 12.0  # 9.4 % of it
+    assert untrained.restore(DEPTH, frame).max() <= 10
+    frame[:10] = 12.0
+    with pytest.warns(UserWarning, match="farther than 10 m"):
+        assert untrained.restore(DEPTH, frame) is frame
+    with pytest.warns(UserWarning, match="farther than 10 m"):
+        assert untrained.doubt(DEPTH, frame) == -np.inf
+
+
+def test_what_reads_nothing_is_in_no_doubt(untrained):
+    for nothing in (0.0, np.nan, np.inf):
+        frame = np.full((40, 48), nothing, np.float32)
+        assert untrained.restore(DEPTH, frame) is frame
+        assert untrained.doubt(DEPTH, frame) == -np.inf
+    assert untrained.doubt(RGB, frames(RGB, 40, 48)) > 0
+
+
+def test_depth_may_lack_its_last_axis_and_holds_no_hole_afterwards(untrained):
+    frame = frames(DEPTH, 40, 48)[..., 0]
+    frame[10:20, 10:20], frame[0, 0], frame[1, 1] = 0.0, np.nan, np.inf
+    made = untrained.restore(DEPTH, frame)
+    assert made.shape == (40, 48) and np.isfinite(made).all() and (made > 0).all()
+    assert 0.5 < made[10:20, 10:20].mean() < 9.0
+
+
+@pytest.mark.parametrize(
+    ("sensor", "frame", "words"),
+    [
+        (RGB, np.zeros((8, 8, 3), np.float32), "uint8"),
+        (DEPTH, np.zeros((8, 8, 1), np.uint16), "float32 metres"),
+        (DEPTH, np.full((8, 8), 2500, np.float32), "in millimetres"),
+        (RGB, torch.zeros(8, 8, 3, dtype=torch.uint8), r"not Tensor: .*numpy\(\)"),
+        (DEPTH, [[1.0]], "must be a numpy array, not list"),
+        (RGB, None, "must be a numpy array, not NoneType"),
+        (RGB, np.zeros((8, 8), np.uint8), r"\[H, W, 3\]"),
+        (RGB, np.zeros((37, 8, 8, 3), np.uint8), "36 views"),
+        ("sound", np.zeros(3), "rgb, depth, not for sound"),
+    ],
+)
+def test_frames_of_another_form_are_refused(untrained, sensor, frame, words):
+    for call in (untrained.restore, untrained.doubt):
+        with pytest.raises((TypeError, ValueError, KeyError), match=words):
+            call(sensor, frame)
+
+
+def test_a_large_frame_keeps_its_detail_under_a_correction_computed_small():
+    restorer = opened(Restorer([RGB], width=8, size=32).eval())
+    net = restorer.nets[RGB]
+    with torch.no_grad():
+        net.net.head.bias.view(-1, 4)[:3] = np.log(2.0)  # every gain is 2
+        net.net.head.bias.view(-1, 4)[6:] = -100.0  # nothing is lost
+    frame = frames(RGB, 128, 128) // 2
+    made = restorer.restore(RGB, frame)
+    assert np.abs(made.astype(int) - 2 * frame.astype(int)).max() <= 1
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_the_neighbours_show_what_a_view_has_lost(panorama, sensor):
+    values = torch.from_numpy(panorama[sensor]).float().permute(0, 3, 1, 2)
+    values = values / (255 if sensor == RGB else 10)
+    trust = torch.ones_like(values[:, :1])
+    trust[0] = 0
+    other, sure = ring.from_neighbours(values, trust, sensor == DEPTH)
+    seen = sure[0] > 0.9
+    assert seen.float().mean() > 0.9
+    error = ((other[0] - values[0]).abs() * seen).mean()
+    assert error < (0.35 if sensor == RGB else 0.05) * (values[0] - values[0].mean()).abs().mean()
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_the_views_of_a_panorama_tell_which_of_them_lies(panorama, sensor):
+    values = torch.from_numpy(panorama[sensor]).float().permute(0, 3, 1, 2)
+    values = (values / (255 if sensor == RGB else 10)).clamp(max=1)
+    valid = torch.ones_like(values[:, :1])
+    wrong = values.clone()
+    wrong[3, :, 20:40, 20:40] = (wrong[3, :, 20:40, 20:40] + 0.5) % 1
+
+    def outside(shown):
+        low, high, seen = ring.compared(shown, valid, sensor == DEPTH)
+        assert seen.mean() > 0.95
+        return (low - shown).clamp(min=0) + (shown - high).clamp(min=0)
+
+    before, after = outside(values), outside(wrong)
+    assert before.mean() < (0.04 if sensor == RGB else 0.002)
+    assert after[3, :, 22:38, 22:38].mean() > 0.25
+    others = [v for v in range(12) if v != 3]
+    assert after[others].mean() < before[others].mean() + 0.01
+
+
+@pytest.mark.parametrize("sensor", [RGB, DEPTH])
+def test_a_speck_that_no_other_view_shows_goes_before_anything_is_learned(
+    untrained, panorama, sensor
+):
+    rng, clean = np.random.default_rng(0), panorama[sensor]
+    specks = rng.random(clean.shape[:3]) < 0.05
+    frames = clean.copy()
+    frames[specks] = np.where(clean[specks] > clean.max() / 2, clean.max() * 0.02, clean.max())
+    made = untrained.restore(sensor, frames)
+    before, after = (np.abs(f.astype(float) - clean)[specks].mean() for f in (frames, made))
+    assert after < 0.35 * before
+    alone = untrained.restore(sensor, frames[4])
+    assert np.abs(alone.astype(float) - frames[4])[specks[4]].mean() < 0.1 * before
+
+
+def test_what_no_other_view_shows_is_compared_with_nothing():
+    values, valid = torch.rand(12, 1, 16, 16), torch.zeros(12, 1, 16, 16)
+    valid[5] = 1
+    low, high, seen = ring.compared(values, valid, True)
+    assert not seen[5].any() and torch.equal(low[5], values[5]) and torch.equal(high[5], values[5])
+    assert seen[4].any() and seen[6].any()
+
+
+def test_a_hole_takes_the_mean_around_it():
+    values = torch.zeros(1, 1, 32, 32)
+    values[..., 16:] = 1.0
+    trust = torch.ones_like(values)
+    trust[..., 10:20, 2:8] = trust[..., 10:20, 24:30] = 0
+    filled = ring.from_around(torch.where(trust > 0, values, 0.5), trust)
+    assert filled[0, 0, 15, 5] < 0.15 and filled[0, 0, 15, 27] > 0.85
+
+
+def test_a_world_is_restored_when_its_frames_are_read(untrained, panorama):
+    class Still:
+        sensors: dict = {}
+        reads = 0
+
+        def reset(self, episode):
+            def made():
+                self.reads += 1
+                return {RGB: panorama[RGB]}
+
+            return Observation({"pose": panorama["pose"]}, made, (RGB,))
+
+    class Episode:
+        episode_id = "1"
+
+    still = Still()
+    met = Corrupted(still, Corruption("foreign_object", 0.6), 0)
+    shown = Restored(met, untrained).reset(Episode())
+    assert still.reads == 0 and shown["pose"] is panorama["pose"]
+    assert not np.array_equal(shown[RGB], met.last[RGB]) and still.reads == 1
+    assert np.array_equal(shown.clean[RGB], panorama[RGB])
+
+
+# folders -----------------------------------------------------------------------------------------
+
+
+def test_a_folder_gives_the_same_restorer(untrained, tmp_path):
+    opened(untrained, 0.25)
+    untrained.save(tmp_path, half=True)
+    loaded = load_restorer(tmp_path)
+    assert loaded.hash == untrained.hash and loaded.nets[RGB].threshold == 0.25
+    frame = frames(RGB, 12, 64, 64)
+    opened(untrained), opened(loaded)
+    assert np.array_equal(loaded.restore(RGB, frame), untrained.restore(RGB, frame))
+
+
+def damaged_weights(folder: Path) -> None:
+    file = folder / "model.safetensors"
+    raw = bytearray(file.read_bytes())
+    raw[-3] ^= 1
+    file.write_bytes(bytes(raw))
+
+
+def damaged_sum(folder: Path) -> None:
+    (folder / "model.safetensors.sha256").write_text("x")
+
+
+def no_sum(folder: Path) -> None:
+    (folder / "model.safetensors.sha256").unlink()
+
+
+def card_with(**changed):
+    def change(folder: Path) -> None:
+        card = json.loads((folder / "card.json").read_text())
+        settings = {k: v for k, v in changed.items() if k in card["settings"]}
+        card = {**card, **{k: v for k, v in changed.items() if k not in settings}}
+        card["settings"] |= settings
+        (folder / "card.json").write_text(json.dumps(card))
+
+    return change
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (damaged_weights, "cut short or damaged"),
+        (damaged_sum, "cannot be compared with model.safetensors.sha256 .* Fetch the folder again"),
+        (no_sum, "no model.safetensors.sha256"),
+        (card_with(hash="0" * 12), "not those of its card"),
+        (card_with(width=1 << 30), "whole number from 4 to 128"),
+        (card_with(width=16), "do not fit"),
+        (card_with(far="many"), "far must be metres"),
+        (card_with(sensors=["rgb", "sound"]), "a list of rgb, depth"),
+        (card_with(format=1), "format 4"),
+        (lambda folder: (folder / "card.json").unlink(), "card.json missing"),
+    ],
+)
+def test_a_damaged_folder_is_refused(untrained, tmp_path, change, words):
+    untrained.save(tmp_path)
+    change(tmp_path)
+    with pytest.raises((ValueError, FileNotFoundError), match=words) as error:
+        load_restorer(tmp_path)
+    assert "delete" not in str(error.value)  # it needs every file
+
+
+# what is shipped ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory):
+    copied = tmp_path_factory.mktemp("shipped") / "restorer"
+    shutil.copytree(SHIPPED, copied)
+    return load_restorer(copied)
+
+
+def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
+    Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
+    with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose: leave"):
+        restorer_of(str(tmp_path / "mine"), (RGB, "pose"))
+    assert restorer_of(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
+    assert restorer_of(None, (RGB,)) is None
+
+
+def test_one_sensor_alone_is_restored_and_is_another_restorer(tmp_path):
+    made = Restorer(width=4, depth_width=4)
+    made.save(tmp_path / "mine")
+    whole = restorer_of(str(tmp_path / "mine"))
+    alone = restorer_of(f"{tmp_path / 'mine'}:rgb")
+    assert list(alone.nets) == ["rgb"] and alone.hash not in (whole.hash, made.hash)
+    depth = np.zeros((8, 8, 1), np.float32)
+    rgb = np.zeros((8, 8, 3), np.uint8)
+    assert alone({"rgb": rgb, "depth": depth})["depth"] is depth
+    assert choices.label(f"{tmp_path / 'mine'}:rgb") == "mine-rgb"
+    assert choices.label("runs/a/agent") == "a"
+    with pytest.raises(ValueError, match="restores none|is for rgb"):
+        restorer_of(f"{tmp_path / 'mine'}:rgb", ["depth"])
+    Restorer(["depth"], depth_width=4).save(tmp_path / "depth")
+    with pytest.raises(ValueError, match="for depth, not for rgb"):
+        restorer_of(f"{tmp_path / 'depth'}:rgb")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--suite", "fulll"], "no suite 'fulll'. Did you mean full?"),
+        (["--suite", "instructions"], "suite=instructions corrupts no frames of rgb, depth"),
+        (["--count", "0"], "--count 0: give 1 instant or more"),
+        (["--split", "nowhere"], "no split 'nowhere'"),
+    ],
+)
+def test_the_report_says_what_is_wrong_and_writes_nothing(tmp_path, options, words):
+    with pytest.raises(ValueError, match=words):
+        report.main([str(SHIPPED), "--out", str(tmp_path / "out"), *options])
+    assert not [*tmp_path.iterdir()]
+
+
+def test_the_shipped_restorer_leaves_a_clean_panorama_alone(shipped, panorama):
+    made = shipped(panorama)
+    assert made[RGB] is panorama[RGB] and made[DEPTH] is panorama[DEPTH]
+
+
+@pytest.mark.parametrize(
+    ("name", "sensor", "left"),
+    [
+        ("foreign_object", RGB, 0.35),
+        ("low_light_noise", RGB, 0.75),
+        ("black_out", RGB, 0.4),
+        ("missing_data", DEPTH, 0.25),
+    ],
+)
+def test_the_shipped_restorer_takes_away_its_part_of_a_corruption(
+    shipped, panorama, name, sensor, left
+):
+    frames = corrupt_observation(panorama, Corruption(name, 0.6), Key(0, "test"))
+    made = shipped(frames)
+    errors = [np.abs(f[sensor].astype(float) - panorama[sensor]).mean() for f in (frames, made)]
+    assert errors[1] < left * errors[0]
+    other = DEPTH if sensor == RGB else RGB
+    assert made[other] is panorama[other]
+
+
+def test_clean_is_no_corruption_to_the_shipped_one(shipped, panorama):
+    seen = corrupt_observation(panorama, CLEAN, Key(0, "test"))
+    dark = corrupt_observation(panorama, Corruption("low_light", 0.8), Key(0, "test"))
+    assert shipped.doubt(RGB, seen[RGB]) < 0 < shipped.doubt(RGB, dark[RGB])
+
+
+def test_a_report_corrupts_depth_as_far_as_its_world_sees(panorama):
+    near = {**panorama, DEPTH: np.minimum(panorama[DEPTH], 5.0)}
+    lost = Corruption("missing_data", 1.0)
+    far = [
+        report.Instants([near], depth).corrupted(0, lost, 0)[DEPTH].max()
+        for depth in (DepthSensor(z_max=5.0), DepthSensor())
+    ]
+    assert far == [5.0, 10.0]
+
+
+@pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
+def test_a_report_of_what_corrupts_no_sensor_that_there_is_has_a_table_and_no_picture(
+    tmp_path, panorama, met
+):
+    """As at the end of a training with suite=clean, or of RGB alone for a restorer of depth."""
+    only = opened(Restorer([DEPTH], depth_width=4).eval())
+    report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
+    assert [path.name for path in tmp_path.iterdir()] == ["restoration.md"]
+    assert "Clean" in (tmp_path / "restoration.md").read_text()
+    met = [*met, Corruption("missing_data", 0.6)]
+    report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
+    assert (tmp_path / "restoration.jpg").is_file()

@@ -1,0 +1,129 @@
+"""Training texts: varied, apart from what is tested on; chat files that are read with care."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+
+import pytest
+
+from mitigate.core.seeding import generator
+from mitigate.corruptions.language.prefixes import prefixes
+from mitigate.corruptions.language.style import MANNERS
+from mitigate.guards.text.learning import data, routes
+from mitigate.guards.text.learning.data import KINDS, Pair, draw_pair, read_chats
+from mitigate.worlds.apartments.instructions import TEMPLATES
+from mitigate.worlds.episodes import read_episodes
+
+SIZE = 2000
+
+pytestmark = pytest.mark.xdist_group("pairs")  # drawn once
+
+
+@pytest.fixture(scope="module")
+def pairs() -> list[Pair]:
+    return [draw_pair(0, index) for index in range(1500)]
+
+
+def plain(text: str) -> str:
+    return " ".join(re.findall(r"[a-z]+", text.lower()))
+
+
+def test_no_route_holds_a_phrase_of_the_validation_templates():
+    everything = "\n".join(f" {plain(routes.draw_route(generator(1, i)))} " for i in range(SIZE))
+    for split in ("val_seen", "val_unseen"):
+        for kind, phrases in TEMPLATES[split].items():
+            for phrase in phrases if kind != "join" else ():
+                parts = [f" {plain(part)} " for part in re.split(r"\{\w+\}", phrase)]
+                held = "(?:[a-z]+ ){1,3}?".join(part.lstrip() for part in parts)
+                assert not re.search(f" {held}", everything), phrase
+
+
+def test_no_validation_instruction_can_be_drawn():
+    listed = read_episodes("mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz")
+    assert all(routes.overlaps_validation(episode.instruction.text) for episode in listed)
+    assert not routes.overlaps_validation("Leave the pantry and veer left at the piano.")
+
+
+def test_no_pair_holds_an_attack_of_the_validation_or_test_families(pairs):
+    bank = [s for split in ("validation", "test") for g in prefixes(split).values() for s in g]
+    texts = " ".join(plain(f"{pair.source} {pair.target}") for pair in pairs)
+    assert not [sentence for sentence in bank if plain(sentence) in texts]
+
+
+def test_held_out_style_phrases_never_occur(pairs):
+    assert all(len(data.held_out(manner)) >= 2 for manner in MANNERS)
+    for pair in pairs:
+        if pair.kind == "style":
+            assert not all(data.holds_held_out(pair.source, manner) for manner in MANNERS)
+
+
+def test_routes_are_varied():
+    texts = [routes.draw_route(generator(2, i)) for i in range(SIZE)]
+    assert len(set(texts)) > 0.97 * SIZE
+    sizes = [len(text.split()) for text in texts]
+    assert min(sizes) <= 4 and max(sizes) >= 60
+    openings = {" ".join(text.lower().split()[:2]) for text in texts}
+    assert len(openings) > 100
+    assert any(text != text.lower() for text in texts) and any(t == t.lower() for t in texts)
+
+
+def test_pairs_have_the_shares_asked_for_and_depend_on_seed_and_index_alone(pairs):
+    for kind, share in KINDS.items():
+        found = sum(pair.kind == kind for pair in pairs) / len(pairs)
+        assert abs(found - share) < 0.05
+    assert draw_pair(0, 700) == pairs[700] and draw_pair(1, 700) != pairs[700]
+
+
+def test_identity_pairs_are_identical_and_attacks_alone_have_an_empty_target(pairs):
+    assert all(p.source == p.target for p in pairs if p.kind == "identity")
+    attacked = [p for p in pairs if p.kind == "black_box"]
+    before_plain = sum(p.source.endswith(p.target) for p in attacked) / len(attacked)
+    assert 0.6 < before_plain < 0.95  # the others stand before what people say
+    assert 0.1 < sum(not p.target for p in attacked) / len(attacked) < 0.5
+
+
+def test_texts_of_the_user_take_their_share():
+    mine = ["Swagger by the xylophone, then sashay up to the zebra statue."]
+    pairs = [draw_pair(0, index, mine, 0.5) for index in range(200)]
+    found = sum("xylophone" in p.source.lower() or "zebra" in p.source.lower() for p in pairs)
+    assert 50 < found < 130
+
+
+def test_chats_come_back_as_written(tmp_path, pairs):
+    lines = []
+    for pair in pairs[:20]:
+        said = [("system", "Repair."), ("user", pair.source), ("assistant", pair.target)]
+        messages = [{"role": role, "content": content} for role, content in said]
+        lines.append(json.dumps({"messages": messages, "kind": pair.kind}))
+    with gzip.open(tmp_path / "a.jsonl.gz", "wt", encoding="utf-8") as file:
+        file.write("\n".join(lines))
+    assert list(read_chats(tmp_path / "a.jsonl.gz")) == pairs[:20]
+
+
+USER, ASSISTANT = {"role": "user", "content": "Go."}, {"role": "assistant", "content": "Go."}
+
+
+@pytest.mark.parametrize(
+    "line, problem",
+    [
+        ("{", "is not JSON"),
+        ("[1]", "no list 'messages'"),
+        ('{"messages": {}}', "no list 'messages'"),
+        (json.dumps({"messages": ["hello"]}), "message 0 has no role"),
+        (json.dumps({"messages": [{"role": "boss", "content": "x"}]}), "role of system, user"),
+        (json.dumps({"messages": [{"role": "user", "content": 3}]}), "no text 'content'"),
+        (json.dumps({"messages": [USER]}), "one user and then one assistant"),
+        (json.dumps({"messages": [ASSISTANT, USER]}), "one user and then one assistant"),
+        (json.dumps({"messages": [{**USER, "content": "  "}, ASSISTANT]}), "empty user text"),
+    ],
+)
+def test_a_malformed_line_is_named_with_its_number(tmp_path, line, problem):
+    good = json.dumps({"messages": [USER, ASSISTANT]})
+    path = tmp_path / "chats.jsonl"
+    path.write_text(f"{good}\n\n{line}\n")
+    chats = read_chats(path)
+    assert next(chats) == Pair("Go.", "Go.", "chat")
+    with pytest.raises(ValueError, match=f"line 3 .*{re.escape(problem)}.*Mend or delete"):
+        list(chats)

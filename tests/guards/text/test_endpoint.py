@@ -1,0 +1,285 @@
+"""The prompted safeguard against a small local server that is good, slow, broken or rude."""
+
+from __future__ import annotations
+
+import json
+import sqlite3
+import sys
+import threading
+import time
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+
+import pytest
+
+from mitigate.evaluation import evaluate
+from mitigate.guards.text.addresses import check_arguments, check_choice
+from mitigate.guards.text.guard import Safeguard, open_safeguard
+from mitigate.guards.text.language_models.endpoint import ChatEndpoint
+from mitigate.guards.text.language_models.posting import LARGEST
+
+
+class Server(ThreadingHTTPServer):
+    """Answers with ``replies`` in turn (status, body, seconds of delay), the last one for ever."""
+
+    daemon_threads = True
+
+    def __init__(self):
+        super().__init__(("127.0.0.1", 0), Handler)
+        self.replies, self.requests = [], []
+        self.drops, self.pause = 1 << 30, 0.0  # bytes of a piece, seconds before each
+        self.headers = 0  # that drip before the first
+        self.url = f"http://127.0.0.1:{self.server_port}/v1"
+
+
+class Handler(BaseHTTPRequestHandler):
+    def do_GET(self):
+        self.do_POST()
+
+    def do_POST(self):
+        body = json.loads(self.rfile.read(int(self.headers.get("Content-Length", 0))) or b"{}")
+        self.server.requests.append((self.path, body, self.headers.get("Authorization")))
+        index = min(len(self.server.requests), len(self.server.replies)) - 1
+        status, reply, delay = self.server.replies[index]
+        time.sleep(delay)
+        try:
+            for n in range(self.server.headers):
+                time.sleep(self.server.pause)
+                self.wfile.write(b"a" if n else b"HTTP/1.0 200 OK\r\nX: ")
+            self.send_response(status)
+            if 300 <= status < 400:
+                self.send_header("Location", reply.decode())
+            self.end_headers()
+            for n in range(0, len(reply), self.server.drops):
+                time.sleep(self.server.pause)
+                self.wfile.write(reply[n : n + self.server.drops])
+        except OSError:  # the client gave up
+            pass
+
+    def log_message(self, *_):
+        pass
+
+
+def said(content) -> bytes:
+    return json.dumps(
+        {"choices": [{"message": {"role": "assistant", "content": content}}]}
+    ).encode()
+
+
+@pytest.fixture
+def server():
+    made = Server()
+    thread = threading.Thread(
+        target=made.serve_forever, kwargs={"poll_interval": 0.02}, daemon=True
+    )
+    thread.start()
+    yield made
+    made.shutdown()
+    made.server_close()
+
+
+def endpoint(server, **others) -> ChatEndpoint:
+    return ChatEndpoint(server.url, "some-model", **{"pause": 0.01, "timeout": 0.5, **others})
+
+
+def test_it_asks_as_openai_does_and_takes_the_first_choice(server, monkeypatch):
+    monkeypatch.setenv("OPENAI_API_KEY", "secret")
+    server.replies = [(200, said(" Turn left. "), 0)]
+    assert endpoint(server, options={"temperature": 0}).rewrite(["HEY turn left"]) == ["Turn left."]
+    path, body, key = server.requests[0]
+    assert path == "/v1/chat/completions" and key == "Bearer secret"
+    assert body["model"] == "some-model" and body["temperature"] == 0
+    assert [m["role"] for m in body["messages"]] == ["system", "user"]
+    assert body["messages"][1]["content"] == "HEY turn left"
+
+
+def test_a_failure_that_may_pass_is_tried_again_and_another_is_not(server):
+    server.replies = [(503, b"", 0), (429, b"", 0), (200, said("Go."), 0)]
+    assert endpoint(server).rewrite(["a"]) == ["Go."] and len(server.requests) == 3
+    server.requests.clear()
+    server.replies = [(401, b"", 0)]
+    asked = endpoint(server)
+    assert asked.rewrite(["a"]) == [None] and len(server.requests) == 1
+    assert "HTTP 401" in asked.failures[0]
+
+
+def test_an_endpoint_that_hangs_costs_its_time_out_only(server):
+    server.replies = [(200, said("late"), 3)]
+    asked = endpoint(server, timeout=0.2, retries=1)
+    began = time.monotonic()
+    assert asked.rewrite(["a"]) == [None]
+    assert time.monotonic() - began < 2 and "time" in asked.failures[0].lower()
+    assert endpoint(server, timeout=9).rewrite(["a", "b"], seconds=0.2) == [None, None]
+
+
+@pytest.mark.parametrize(
+    "reply",
+    [
+        *(
+            b"<html>hello</html>",
+            b"\xff\xfe",
+            b"[]",
+            b"{}",
+            b'{"choices": []}',
+            said(None),
+            said(["x"]),
+        ),
+        *(b"", b"null", b"[" * 100_000, b'{"a":' * 100_000, b"9" * 100_000, b" " * (LARGEST + 9)),
+        *(
+            b'{"choices": 7}',
+            b'{"choices": [null]}',
+            b'{"choices": {"0": 1}}',
+            said(said("x").decode())[:-3],
+        ),
+    ],
+    ids=lambda reply: repr(reply[:20]),
+)
+def test_rubbish_is_no_answer(server, reply):
+    server.replies = [(200, reply, 0)]
+    asked = endpoint(server, retries=1)
+    assert asked.rewrite(["a"]) == [None] and asked.failures
+
+
+def test_no_server_is_no_answer():
+    assert ChatEndpoint("http://127.0.0.1:9/v1", "m", retries=0).rewrite(["a"]) == [None]
+
+
+def test_answers_are_kept_by_text_model_and_prompt(server, tmp_path):
+    server.replies = [(200, said("One."), 0), (200, said("Two."), 0)]
+    cache = tmp_path / "answers.sqlite"
+    assert endpoint(server, cache=cache).rewrite(["a"]) == ["One."]
+    assert endpoint(server, cache=cache).rewrite(["a"]) == ["One."] and len(server.requests) == 1
+    assert endpoint(server, cache=cache, prompt="tuned").rewrite(["a"]) == ["Two."]
+    assert "secret" not in cache.read_bytes().decode(errors="replace")
+
+
+def test_failures_are_not_kept(server, tmp_path):
+    server.replies = [(500, b"", 0), (200, said("Go."), 0)]
+    asked = endpoint(server, cache=tmp_path / "answers.sqlite", retries=0)
+    assert asked.rewrite(["a"]) == [None] and asked.rewrite(["a"]) == ["Go."]
+
+
+def test_a_wrong_url_or_cache_is_explained(tmp_path):
+    with pytest.raises(ValueError, match="is no URL"):
+        ChatEndpoint("localhost:8000", "m")
+    (tmp_path / "notes").write_text("not a data base, but long enough to be taken for one" * 40)
+    with pytest.raises(ValueError, match="is no cache"):
+        ChatEndpoint("http://localhost:8000", "m", cache=tmp_path / "notes")
+
+
+def test_the_guard_stands_behind_an_endpoint_too(server):
+    server.replies = [(200, said("Walk to the airport and fly right."), 0)]
+    heard = "Hey there! So, go ahead and stroll past the sofa. Then hang a left, okay?"
+    decision = Safeguard(endpoint(server)).canonicalise(heard)
+    assert decision.route == "fallback" and "airport" not in decision.text
+
+
+@pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
+def test_a_redirect_is_not_followed_and_the_key_stays_here(server, monkeypatch, status):
+    monkeypatch.setenv("OPENAI_API_KEY", "secret")
+    other = Server()
+    thread = threading.Thread(target=other.serve_forever, args=(0.02,), daemon=True)
+    thread.start()
+    other.replies = [(200, said("Go."), 0)]
+    server.replies = [(status, f"{other.url}/chat/completions".encode(), 0)]
+    asked = endpoint(server, retries=1)
+    assert asked.rewrite(["a"]) == [None] and f"HTTP {status}" in asked.failures[0]
+    other.shutdown()
+    other.server_close()
+    assert not other.requests and "secret" not in asked.failures[0]
+
+
+@pytest.mark.parametrize("headers", [0, 200])
+def test_a_server_that_drips_costs_its_time_out_only(server, headers):
+    server.replies, server.drops, server.pause = [(200, said("x" * 200), 0)], 2, 0.05
+    server.headers = headers
+    asked = endpoint(server, timeout=0.4, retries=0)
+    began = time.monotonic()
+    assert asked.rewrite(["a"]) == [None]
+    assert time.monotonic() - began < 1.5 and "time" in asked.failures[0].lower()
+
+
+SECRETS = [
+    "http://user:hush@host/v1?key=hush@m",
+    "http://user:hush@host/v1@m",
+    "http://user:hush@host/v1",
+    "http://hush@host/v1",
+    "http://user:hush@host",
+    "https://host/v1?key=hush@m",
+    "https://host/v1?key=hush",
+    "https://host/v1#hush@m",
+    "https://host/v1@m?key=hush",
+    "HTTP://user:hush@host/v1@m",
+    "http://hush:hush:hush@m",
+    "http:///hush@m",
+    "http:hush@m",
+    "http://hush-without-a-model/v1",
+    "https://user:hush@host/",
+    "tagger+http://user:hush@host/v1@m",
+    "reader+http://user:hush@host/v1@m",
+]
+
+
+@pytest.mark.parametrize("choice", SECRETS)
+def test_a_url_with_a_secret_is_refused_and_not_repeated(tmp_path, monkeypatch, capfd, choice):
+    with pytest.raises(ValueError, match="endpoint") as error:
+        check_choice(choice)
+    assert "hush" not in str(error.value)
+    with pytest.raises(ValueError, match="endpoint") as error:
+        open_safeguard(choice)
+    assert "hush" not in str(error.value)
+    monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
+    monkeypatch.setattr(sys, "argv", ["evaluate", f"safeguard='{choice}'", f"runs={tmp_path}"])
+    with pytest.raises(SystemExit) as stop:
+        evaluate.main()
+    assert "hush" not in str(stop.value.code) + "".join(capfd.readouterr())
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_endpoint_without_a_secret_passes():
+    for choice in ("none", "rules", "http://h:8000/v1@m", "http://h/v1@org/model:2", "a@b?c"):
+        check_choice(choice)
+        check_arguments(["evaluate", f"safeguard={choice}", "x=1"])
+
+
+def test_a_cache_of_anybody_is_data(server, tmp_path):
+    server.replies = [(200, said("Go."), 0)]
+    for number, script in enumerate(
+        (
+            "CREATE VIEW answers AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x FROM c) "
+            "SELECT '' || x AS name, 'x' AS answer FROM c",
+            "CREATE TABLE answers (name, answer); CREATE TRIGGER t AFTER INSERT ON answers BEGIN "
+            "DELETE FROM answers; END",
+        )
+    ):
+        cache = tmp_path / f"{number}.sqlite"
+        with sqlite3.connect(cache) as held:
+            held.executescript(script)
+        with pytest.raises(ValueError, match="is no cache of endpoint answers"):
+            endpoint(server, cache=cache)
+    cache = tmp_path / "answers.sqlite"
+    asked = endpoint(server, cache=cache)
+    assert asked.rewrite(["a"]) == ["Go."]
+    for bad in (
+        "7",
+        "x'ff'",
+        "NULL",
+        "replace(hex(zeroblob(100000)), '0', 'x')",
+        "CAST(x'ff' AS TEXT)",
+    ):
+        with sqlite3.connect(cache) as held:
+            held.execute(f"UPDATE answers SET answer = {bad}")
+        server.requests.clear()
+        assert endpoint(server, cache=cache).rewrite(["a"]) == ["Go."] and len(server.requests) == 1
+
+
+def test_a_cache_with_flipped_bytes_costs_a_question_or_is_named(server, tmp_path):
+    server.replies = [(200, said("Go."), 0)]
+    cache = tmp_path / "answers.sqlite"
+    endpoint(server, cache=cache).rewrite([f"text {n}" for n in range(60)])
+    sound = cache.read_bytes()
+    for place in range(0, len(sound), 701):
+        cache.write_bytes(sound[:place] + b"\xa5" * 64 + sound[place + 64 :])
+        try:
+            assert endpoint(server, cache=cache).rewrite(["text 7"])[0] is not None
+        except ValueError as error:
+            assert "is no cache" in str(error)

@@ -1,0 +1,45 @@
+"""People's texts by voice: what is learned from, and what is kept for the figures."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mitigate.guards.text.learning import spoken
+from mitigate.training.reports.safeguard import voices
+
+
+def test_splits_share_no_voice_and_no_text():
+    found = {split: spoken.spoken(split) for split in spoken.SPLITS}
+    by_voice = [{text.voice for text in texts} for texts in found.values()]
+    assert sum(map(len, by_voice)) == len(set.union(*by_voice)) >= 16
+    said = [{text.said.lower() for text in texts} for texts in found.values()]
+    assert sum(map(len, said)) == len(set.union(*said))
+    assert sum(len(texts) for texts in found.values()) >= 1500
+
+
+def test_every_text_says_something_plain_and_every_part_is_heard():
+    for split in spoken.SPLITS:
+        for text in spoken.spoken(split):
+            assert text.plain and text.said != text.plain, text
+            assert all(said.strip() for said, _ in text.parts), text
+            assert text.task in ("route", "object")
+
+
+def test_a_passage_is_some_parts_in_a_row_of_a_train_voice():
+    train = {text.said: text for text in spoken.spoken("train")}
+    for seed in range(200):
+        said, plain = spoken.passage(np.random.default_rng(seed))
+        assert said and len(said.split()) <= 250
+        (whole,) = [t for heard, t in train.items() if said in heard][:1]
+        assert all(part in whole.plain for part in plain.split(". ")[:1] if part)
+
+
+def test_the_report_takes_so_many_spread_over_the_voices():
+    some = voices("validation", 30)
+    assert len(some) == 30 and {r.family for r in some} == set(spoken.VALIDATION)
+
+
+def test_an_unknown_split_names_those_that_there_are():
+    with pytest.raises(ValueError, match="train, validation, test"):
+        spoken.spoken("dev")

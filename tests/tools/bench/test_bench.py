@@ -1,0 +1,81 @@
+"""The bench: its clocks, its peers and its page."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from mitigate.corruptions import DEPTH, NAMES
+from mitigate.corruptions.registry import record
+from tools.bench import evaluation, report, suite, timing, training
+from tools.bench.peers import plain
+from tools.bench.renderers import OURS
+
+
+def test_the_clocks_count_what_a_call_takes():
+    assert 1.9 < timing.steady(lambda i: time.sleep(0.002), 0.01) < 20
+    seen = []
+    assert timing.fresh(seen.append, 0.001) < 1
+    assert seen == list(range(len(seen))) and len(seen) > timing.LEAST
+
+
+def test_every_corruption_has_a_bar_and_the_depth_ones_a_plain_peer():
+    assert all(record(name).bars for name in NAMES)
+    depth = np.full((2, 40, 48), 3.0, np.float32)
+    depth[:, :, 24:] = 5.0
+    calls = plain(depth, 0.6)
+    assert set(calls) == set(DEPTH)
+    for call in calls.values():
+        out = np.asarray(call())
+        assert out.shape == depth.shape and (out != depth).any()
+
+
+@pytest.mark.parametrize("name", ["low_light", "quantization"])
+def test_a_cost_is_measured_on_the_frame(name):
+    frame = np.full((1, 32, 32, 3), 90, np.uint8)
+    frame = frame if name not in DEPTH else frame[..., 0].astype(np.float32) / 30
+    found = suite.cost(name, frame, 1e-3, {"slow": 9.0, "fast": 7.0}, bar=1e-9)
+    assert found.over and found.best_peer == ("fast", 7.0)
+    assert 0 < found.steady < 5 and 0 < found.copy < found.per_frame
+
+
+def test_the_clock_around_a_function_counts_its_calls_only():
+    clock = training.Clock()
+    assert clock.around(lambda x: time.sleep(0.01) or x)(3) == 3
+    time.sleep(0.01)
+    assert 0.009 < clock.seconds < 0.1
+
+
+def test_the_page_lists_what_is_over_the_bar():
+    good = suite.Cost(0.1, 0.2, 0.3, 0.01, 0.05, {"peer 1": 0.4}, 0.2)
+    missed = suite.Cost(0.5, 0.6, 0.7, 0.01, 0.05, {}, 0.2)
+    rates = {OURS: (100.0, 100.0), "other": (50.0, 25.0)}
+    parts = {"rendering": 900.0, "network": 2700.0}
+    stage = training.Stage("da_per_frame", "imitation", "fp32", 2000.0, 1600.0, 500.0, parts)
+    stages = {False: [stage], True: []}
+    costs = {"224x224": {"low_light": good, "quantization": missed}}
+    paces = {"base": evaluation.Pace(26, 5.2, 2.6, True)}
+    text = report.page(costs, 3.9, stages, rates, 64, 0.2, paces, {1: 9.0, 2: 5.0}, "--steps 3")
+    assert '`make bench ARGS="--steps 3"` on' in text
+    assert (
+        "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
+        in text
+    )
+    over = text.split("### Over the bar")[1].split("## Training")[0]
+    assert "`quantization` | 224x224 | 0.3000" in over and "low_light" not in over
+    assert (
+        "| `da_per_frame` | imitation | fp32 | 0.50 | 2000 | 80% | 20% | 4.00 | 20% | 900" in text
+    )
+    assert "| other | 50 | 25 | 4 | 2.0 times |" in text
+    assert "| `base` | 26 | 5.0 | 10.0 | 2.00 | the same |" in text
+    assert "9.0 s with 1, 5.0 s with 2 (1.80 times)." in text
+
+
+def test_both_ways_of_evaluating_are_timed_on_the_same_rows(monkeypatch):
+    monkeypatch.setattr(evaluation, "CHECKPOINTS", ("checkpoints/base",))
+    real, names = evaluation.conditions, ["clean", "flare", "missing_data"]
+    monkeypatch.setattr(evaluation, "conditions", lambda _, *severities: real(names, *severities))
+    (pace,) = evaluation.paces(1).values()
+    assert pace.same and pace.count == 3 and pace.alone > 0 and pace.together > 0

@@ -1,0 +1,83 @@
+"""A soak sees memory and files that grow, sees none where none do, and says when it cannot tell."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from tools.bench import soak
+from tools.bench.growth import Growth, growth
+
+HOURS = np.linspace(0, 1, 600)
+
+
+def wander(seed: int, share: float = 0.9) -> np.ndarray:
+    """Noise of standard deviation 3 in which each value is near the one before."""
+    rng, found = np.random.default_rng(seed), np.zeros(len(HOURS))
+    for n in range(1, len(found)):
+        found[n] = share * found[n - 1] + rng.normal(0, 3 * (1 - share**2) ** 0.5)
+    return found
+
+
+def test_a_leak_is_found_and_its_slope_lies_in_the_interval():
+    found = growth(HOURS, 900 + 40 * HOURS + wander(0))
+    assert found.low < 40 < found.high and found.low > 20
+    assert found.verdict == "grows"
+
+
+def test_what_is_built_up_once_is_no_growth():
+    values = 900 - 500 * np.exp(-HOURS / 0.03) + wander(1, 0.2)
+    assert growth(HOURS, values).verdict == "flat"
+
+
+def test_the_interval_holds_the_true_slope_about_as_often_as_it_says():
+    held = [g.low <= 0 <= g.high for g in (growth(HOURS, wander(seed)) for seed in range(30))]
+    assert 0.75 <= np.mean(held) <= 1.0
+
+
+def test_a_short_noisy_series_decides_nothing():
+    short = np.linspace(0, 0.05, 60)
+    assert growth(short, 900 + wander(2)[:60]).verdict == "too short to say"
+    with pytest.raises(ValueError, match="too few for a slope"):
+        growth(short[:10], np.ones(10))
+
+
+def test_no_growth_at_all_is_flat():
+    assert Growth(1.0, 100.0, 0.0, 0.0, 0.0).verdict == "flat"
+
+
+HOLDS = """
+import subprocess, sys
+files = [open("/dev/null") for _ in range(40)]
+if len(sys.argv) > 1:
+    child = subprocess.Popen([sys.executable, __file__])
+print("ready", flush=True)
+sys.stdin.read()
+"""
+
+
+def test_all_processes_of_a_load_are_measured(tmp_path):
+    script = tmp_path / "holds.py"
+    script.write_text(HOLDS)
+    command = [sys.executable, str(script), "parent"]
+    process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout.readline() == process.stdout.readline() == "ready\n"
+        count, memory, descriptors = soak.measured(process.pid)
+        assert count == 2 and descriptors >= 80 and 4 < memory < 200
+    finally:
+        process.stdin.close()
+        process.wait()
+    assert soak.measured(process.pid) == (0, 0.0, 0)
+
+
+def test_a_load_that_ends_by_itself_is_told(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(soak, "LOADS", {"nothing": None})
+    assert soak.main(["--minutes", "0.2", "--every", "0.1", "--out", str(tmp_path)]) == 1
+    said = capsys.readouterr().out
+    assert "nothing ended by itself" in said and "KeyError" in said
+    assert (tmp_path / "soak.csv").is_file() and (tmp_path / "soak.png").is_file()
+    assert sorted(p.name for p in tmp_path.iterdir() if p.is_dir()) == []

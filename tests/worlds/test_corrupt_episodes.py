@@ -1,0 +1,344 @@
+"""Files of episodes: text, tokens and everything else after corruption, on files of any size."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import subprocess
+import sys
+import tracemalloc
+
+import pytest
+
+from mitigate.corruptions import Key, corrupt_instruction
+from mitigate.corruptions.language.fidelity import check
+from mitigate.corruptions.language.style import MANNERS
+from mitigate.worlds import corrupt_episodes_command as episodes_command
+from mitigate.worlds import corrupted_episodes as episode_file
+from mitigate.worlds.corrupted_episodes import ORIGINAL, run
+from mitigate.worlds.episodes import read_episodes, read_extras
+from tests.r2r_ce import FOLDER, needs_r2r_ce
+
+TEXT = "Walk past the red sofa, turn left at the door and stop by the lamp."
+WORDS = [
+    "<pad>",
+    "<unk>",
+    *sorted({"walk", "past", "the", "red", "sofa", "turn", "left", "at", "."}),
+]
+VOCABULARY = {
+    "word2idx_dict": {word: index for index, word in enumerate(WORDS)},
+    "UNK_INDEX": 1,
+    "PAD_INDEX": 0,
+}
+
+
+def episode(index: int, **instruction) -> dict:
+    return {
+        "episode_id": index,
+        "trajectory_id": index,
+        "scene_id": "a/b.glb",
+        "start_position": [0.0, 0.0, 0.0],
+        "start_rotation": [0.0, 0.0, 0.0, 1.0],
+        "info": {"geodesic_distance": 1.0},
+        "goals": [{"position": [1.0, 0.0, 0.0], "radius": 3.0}],
+        "instruction": {"instruction_text": TEXT, "instruction_tokens": [2] * 40} | instruction,
+        "reference_path": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]],
+        "odd": {"kept": True},
+    }
+
+
+def made(path, *episodes, **extras):
+    with gzip.open(path, "wt") as file:
+        json.dump({"episodes": list(episodes), "instruction_vocab": VOCABULARY} | extras, file)
+    return path
+
+
+def raw(path) -> list[dict]:
+    with gzip.open(path, "rt") as file:
+        return json.load(file)["episodes"]
+
+
+def test_only_the_instruction_changes_and_the_old_text_is_kept(tmp_path):
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(6)))
+    summary = run(source, tmp_path / "out.json.gz", "black_box", 0.5, seed=4)
+    for old, new in zip(raw(source), raw(tmp_path / "out.json.gz"), strict=True):
+        key = Key(4, str(old["episode_id"]))
+        wanted = corrupt_instruction(TEXT, "black_box", 0.5, key)
+        assert new["instruction"] == {"instruction_text": wanted, ORIGINAL: TEXT}
+        assert {k: v for k, v in new.items() if k != "instruction"} == {
+            k: v for k, v in old.items() if k != "instruction"
+        }
+    assert (summary["episodes"], summary["changed"]) == (6, 6)
+    assert summary["tokens"]["removed"] == 6
+    assert any("removed" in notice for notice in episodes_command.notices(summary))
+    assert read_extras(tmp_path / "out.json.gz") == read_extras(source)
+    assert json.loads((tmp_path / "out.json.gz.summary.json").read_text()) == summary
+
+
+@pytest.mark.parametrize("family", ["formal", "mask", "black_box"])
+def test_severity_zero_gives_the_same_episodes(tmp_path, family):
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(3)))
+    summary = run(source, tmp_path / "out.json.gz", family, 0.0)
+    assert raw(tmp_path / "out.json.gz") == raw(source) and summary["changed"] == 0
+
+
+def test_tokens_are_made_again_by_the_files_own_vocabulary(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    summary = run(source, tmp_path / "out.json.gz", "mask", 1.0, tokenizer="vocabulary")
+    (got,) = raw(tmp_path / "out.json.gz")
+    said = (
+        got["instruction"]["instruction_text"].lower().replace(",", "").replace(".", " .").split()
+    )
+    index = VOCABULARY["word2idx_dict"]
+    wanted = [index.get(word, 1) for word in said]
+    assert got["instruction"]["instruction_tokens"] == wanted + [0] * (40 - len(wanted))
+    assert summary["tokens"]["remade"] == 1 and "[mask]" in said
+    run(source, tmp_path / "long.json.gz", "black_box", 1.0, tokenizer="vocabulary")
+    summary = json.loads((tmp_path / "long.json.gz.summary.json").read_text())
+    (got,) = raw(tmp_path / "long.json.gz")
+    assert len(got["instruction"]["instruction_tokens"]) == 40
+    assert summary["tokens"]["cut_short"] == 1
+    assert "cut short" in episodes_command.notices(summary)[0]
+
+
+def test_a_named_tokenizer_gives_its_tokens_and_its_mask(tmp_path):
+    transformers = pytest.importorskip("transformers")
+    letters = ["[PAD]", "[UNK]", "[CLS]", "[SEP]", "<hole>", "walk", "past", "left", "turn"]
+    (tmp_path / "vocab.txt").write_text("\n".join(letters))
+    tokenizer = transformers.BertTokenizer(str(tmp_path / "vocab.txt"), mask_token="<hole>")
+    tokenizer.save_pretrained(tmp_path / "named")
+    source = made(tmp_path / "in.json.gz", episode(1))
+    run(source, tmp_path / "out.json.gz", "mask", 1.0, tokenizer=str(tmp_path / "named"))
+    (got,) = raw(tmp_path / "out.json.gz")
+    text, tokens = (got["instruction"][f"instruction_{kind}"] for kind in ("text", "tokens"))
+    assert "<hole>" in text and len(tokens) == 40
+    assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
+    spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
+    for severity in (0.0, 0.5):  # what the draw leaves as it is has the agent's tokens, too
+        run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
+        for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
+            text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))
+            cut = tokenizer(text, truncation=True, max_length=40)["input_ids"]
+            assert tokens == (cut + [0] * 40)[:40] and 3 in tokens  # the end mark stays
+
+
+def test_other_languages_pass_through_and_are_counted(tmp_path):
+    rxr = {"timed_instruction": [{"word": "Walk", "start_time": 0.1}]}
+    source = made(
+        tmp_path / "in.json.gz",
+        episode(1, language="hi-IN", instruction_text="आगे बढ़ें"),
+        episode(2, language="te-IN", instruction_text="ముందుకు"),
+        episode(3, language="hi-IN", instruction_text="रुकें", **rxr),
+        episode(4, language="en-IN", **rxr),
+    )
+    summary = run(source, tmp_path / "out.json.gz", "capitalize", 1.0)
+    old, new = raw(source), raw(tmp_path / "out.json.gz")
+    assert new[:3] == old[:3] and new[3]["instruction"]["language"] == "en-IN"
+    assert "timed_instruction" not in new[3]["instruction"]  # the clean words with their times
+    assert summary["skipped_languages"] == {"hi-IN": 2, "te-IN": 1} and summary["changed"] == 1
+    assert "2 in hi-IN, 1 in te-IN" in episodes_command.notices(summary)[0]
+
+
+def test_the_gate_of_a_style_is_reported(tmp_path):
+    source = made(tmp_path / "in.json.gz", *(episode(i) for i in range(40)))
+    gate = run(source, tmp_path / "out.json.gz", "formal", 0.5)["gate"]
+    assert 10 < gate["rewrites"] < 30 and gate["pass_rate"] == 1.0
+    assert gate["clauses"] == 3 * gate["rewrites"] and gate["kept_original"] == 0
+
+
+def test_memory_does_not_grow_with_the_file(tmp_path):
+    peaks = []
+    for count in (150, 1200):
+        source = made(
+            tmp_path / f"{count}.json.gz", *(episode(i, note="x" * 10_000) for i in range(count))
+        )
+        tracemalloc.start()
+        run(source, tmp_path / f"{count}-out.json.gz", "mask", 0.5)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+    assert peaks[1] < peaks[0] + 1_000_000, peaks  # the larger file holds 10 MB more
+
+
+def test_an_instruction_without_a_word_passes_through_and_is_counted(tmp_path):
+    source = made(
+        tmp_path / "in.json.gz", episode(1), *(episode(i + 2, instruction_text=t) for i, t in
+        enumerate(("  ", "...")))
+    )  # fmt: skip
+    for name in ("formal", "mask", "black_box"):
+        summary = run(source, tmp_path / "out.json.gz", name, 1.0)
+        assert raw(tmp_path / "out.json.gz")[1:] == raw(source)[1:]
+        assert (summary["blank"], summary["changed"]) == (2, 1)
+        assert "2 instructions hold no word" in episodes_command.notices(summary)[0]
+
+
+def test_a_file_without_an_episode_is_told(tmp_path, capsys):
+    source = made(tmp_path / "in.json.gz")
+    line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
+    assert episodes_command.main(line) == 0
+    assert "warning: the file holds no episode" in capsys.readouterr().err
+
+
+def test_the_summary_has_the_options_that_the_corruption_uses_and_no_others(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    options = {"split", "mask_token", "tagger"}
+    for name, used in (
+        ("formal", {}),
+        ("capitalize", {"tagger": "own"}),
+        ("mask", {"tagger": "own", "mask_token": "[MASK]"}),
+        ("black_box", {"split": "test"}),
+    ):
+        summary = run(source, tmp_path / "out.json.gz", name, 1.0)
+        assert {key: summary[key] for key in summary.keys() & options} == used
+        assert summary["corruption"] == name
+
+
+@pytest.mark.parametrize("name", ["formal", "mask", "capitalize", "black_box"])
+@pytest.mark.parametrize(
+    "option", [{"split": "tset"}, {"tagger": "best"}, {"mask_token": " "}, {"seed": 0.5}], ids=str
+)
+def test_a_wrong_option_is_refused_whatever_reads_it_and_before_an_episode(tmp_path, name, option):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    with pytest.raises(ValueError) as error:
+        run(source, tmp_path / "out.json.gz", name, 0.5, **option)
+    assert "Episode" not in str(error.value)
+
+
+def test_family_is_another_word_for_corruption(tmp_path, capsys):
+    source = str(made(tmp_path / "in.json.gz", episode(1)))
+    for number, option in enumerate(("corruption=mask", "family=mask")):
+        line = [source, str(tmp_path / f"{number}.json"), option, "severity=1"]
+        assert episodes_command.main(line) == 0
+    assert (tmp_path / "0.json").read_bytes() == (tmp_path / "1.json").read_bytes()
+    line = [source, str(tmp_path / "2.json"), "family=mask", "corruption=mask", "severity=1"]
+    assert episodes_command.main(line) == 2 and "give one of the two" in capsys.readouterr().err
+
+
+def test_a_file_of_others_is_not_written_over(tmp_path):
+    source, out = made(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
+    out.write_text("precious")
+    with pytest.raises(ValueError, match="there already and no file of corrupt_episodes.*move"):
+        run(source, out, "mask", 1.0)
+    assert out.read_text() == "precious"
+    out.unlink()
+    assert run(source, out, "mask", 1.0) == run(source, out, "mask", 1.0)
+
+
+def test_an_interrupt_ends_with_a_line_and_no_file(tmp_path, monkeypatch, capsys):
+    def interrupted(*given, **options):
+        raise KeyboardInterrupt
+
+    source = made(tmp_path / "in.json.gz", episode(1))
+    monkeypatch.setattr(episode_file, "corrupt_instruction", interrupted)
+    line = [str(source), str(tmp_path / "o.json"), "corruption=mask", "severity=1"]
+    assert episodes_command.main(line) == 130
+    assert "interrupted: nothing was written" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["in.json.gz"]
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"word2idx_dict": ["walk"]},
+        {"word2idx_dict": {"walk": "2"}},
+        {"word2idx_dict": {"walk": 2.5}},
+        {"UNK_INDEX": None},
+        {"PAD_INDEX": "0"},
+    ],
+    ids=str,
+)
+def test_a_vocabulary_of_other_types_is_refused(tmp_path, wrong):
+    source = made(tmp_path / "in.json.gz", episode(1), instruction_vocab=VOCABULARY | wrong)
+    with pytest.raises(ValueError, match="needs the key instruction_vocab.*whole numbers"):
+        run(source, tmp_path / "o.json", "mask", 1.0, tokenizer="vocabulary")
+
+
+def test_a_named_tokenizer_without_transformers_says_what_to_install(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "transformers", None)
+    source = made(tmp_path / "in.json.gz", episode(1))
+    with pytest.raises(ValueError, match="needs transformers.*pip install transformers"):
+        run(source, tmp_path / "o.json", "mask", 1.0, tokenizer="bert")
+
+
+def test_a_broken_file_leaves_no_output(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1), episode(2) | {"start_position": "here"})
+    with pytest.raises(ValueError, match="start_position"):
+        run(source, tmp_path / "out.json.gz", "mask", 0.5)
+    assert [path.name for path in tmp_path.iterdir()] == ["in.json.gz"]
+
+
+def test_mistakes_on_the_command_line_are_explained(tmp_path, capsys):
+    source, out = str(made(tmp_path / "in.json.gz", episode(1))), str(tmp_path / "out.json.gz")
+    for options, part in (
+        (["corruption=mask"], "option severity is missing"),
+        (["severity=0.5"], "Corruptions: friendly"),
+        (["corruption=mask", "severity=0.5", "split=test"], "split= has no effect on mask"),
+        (["corruption=black_box", "severity=0.5", "tagger=own"], "for mask and capitalize"),
+        (["corruption=mask", "severity=high"], "must be a number"),
+        (["corruption=maks", "severity=0.5"], "Did you mean mask"),
+        (["corruption=white_box", "severity=0.5"], "not applicable to a file"),
+        (["corruption=white_box", "severity=0.5", "split=test"], "not applicable to a file"),
+        (["corruption=spatter", "severity=0.5"], "mask, black_box."),
+        (["corruption=mask", "severity=0.5", "seed=1.5"], "seed must be a whole number"),
+        (["corruption=mask", "severity=0.5", "tokeniser=x"], "Did you mean tokenizer"),
+        (["corruption=mask", "severity=0.5", "tokenizer=/none/such"], "no tokenizer '/none/such'"),
+        (["corruption=mask", "severity=0.5", "tagger=best"], "own, spacy"),
+    ):
+        assert episodes_command.main([source, out, *options]) == 2
+        error = capsys.readouterr().err
+        assert part in error and "Traceback" not in error
+    assert episodes_command.main([source, source, "corruption=mask", "severity=0.5"]) == 2
+    assert "another name" in capsys.readouterr().err
+    assert episodes_command.main([source[:-3], out, "corruption=mask", "severity=0.5"]) == 2
+
+
+def test_as_a_program(tmp_path):
+    source = made(tmp_path / "in.json.gz", episode(1))
+    told = subprocess.run(
+        [
+            *(
+                sys.executable,
+                "-m",
+                "mitigate.corrupt_episodes",
+                source,
+                tmp_path / "out.json.gz",
+            ),
+            *("corruption=capitalize", "severity=1"),
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert json.loads(told.stdout)["changed"] == 1 and "notice" in told.stderr
+
+
+@needs_r2r_ce
+@pytest.mark.parametrize("family", [*MANNERS, "capitalize", "mask", "black_box"])
+def test_real_r2r_ce_episodes(tmp_path, family):
+    source, out = FOLDER / "val_seen.json.gz", tmp_path / "out.json.gz"
+    summary = run(source, out, family, 0.5, tokenizer="vocabulary")
+    assert summary["episodes"] == 778 and summary["tokens"]["remade"] == summary["changed"] > 300
+    for old, new in zip(read_episodes(source), read_episodes(out), strict=True):
+        assert (old.goals, old.reference_path) == (new.goals, new.reference_path)
+        if new.instruction.text == old.instruction.text:
+            assert new.instruction == old.instruction
+            continue
+        assert new.instruction.extra[ORIGINAL] == old.instruction.text
+        assert len(new.instruction.tokens) == len(old.instruction.tokens)
+        if family != "capitalize":
+            assert new.instruction.tokens != old.instruction.tokens
+        if family in MANNERS:
+            assert check(old.instruction.text, new.instruction.text) == []
+
+
+def test_a_summary_replaces_neither_the_source_nor_another_file(tmp_path, capsys):
+    source = tmp_path / "q.json.summary.json"
+    source.write_text(json.dumps({"episodes": []}))
+    options = ["corruption=mask", "severity=0.5"]
+    assert episodes_command.main([str(source), str(tmp_path / "q.json"), *options]) == 2
+    assert "is the file that is read, and the summary's name" in capsys.readouterr().err
+    other = tmp_path / "new.json.summary.json"
+    other.write_text("of somebody else")
+    assert episodes_command.main([str(source), str(tmp_path / "new.json"), *options]) == 2
+    assert "is there already, without" in capsys.readouterr().err
+    assert source.read_text() == '{"episodes": []}' and other.read_text() == "of somebody else"

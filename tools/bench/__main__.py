@@ -1,0 +1,67 @@
+"""Measure the corruptions beside their peers, the stages of training, evaluation, the renderer.
+
+    make bench ARGS="--seconds 0.2 --steps 1"
+
+Everything but the stages of training and one evaluation runs in this process, on one thread.
+``--write`` puts the tables into ``docs/benchmarks.md``: do that on a quiet machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shlex
+import sys
+from pathlib import Path
+
+for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "NO_ALBUMENTATIONS_UPDATE"):
+    os.environ.setdefault(_name, "1")  # before the libraries read it
+
+import cv2  # noqa: E402
+import torch  # noqa: E402
+
+from mitigate.core.files import write_bytes  # noqa: E402
+from tools.bench import evaluation, renderers, report, suite, training  # noqa: E402
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Command line: see the module's first lines."""
+    parser = argparse.ArgumentParser(
+        prog="tools.bench",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--seconds", type=float, default=1.0, help="of each clock (default 1)")
+    parser.add_argument("--steps", type=int, default=6, help="training steps a stage (default 6)")
+    parser.add_argument(
+        "--recipes", nargs="+", default=training.RECIPES, help="whose stages are timed"
+    )
+    parser.add_argument("--size", type=int, default=64, help="of a rendered view (default 64)")
+    parser.add_argument("--episodes", type=int, default=8, help="evaluated (default 8)")
+    parser.add_argument("--write", action="store_true", help="write docs/benchmarks.md")
+    options = parser.parse_args(arguments)
+    if min(options.steps, options.episodes) < 1 or options.seconds <= 0:
+        parser.error("--steps and --episodes must be at least 1 and --seconds above 0.")
+    torch.set_num_threads(1)
+    cv2.setNumThreads(1)
+    text = report.page(
+        suite.measure(options.seconds),
+        suite.worst_pair(options.seconds),
+        {caps: training.measured(options.recipes, options.steps, caps) for caps in (False, True)},
+        renderers.compare(options.size, options.seconds),
+        options.size,
+        options.seconds,
+        evaluation.paces(options.episodes),
+        evaluation.seconds_by_workers(options.episodes),
+        shlex.join(sys.argv[1:] if arguments is None else arguments),
+    )
+    print(text)
+    if options.write:
+        write_bytes(PAGE, text.encode())
+        print(f"wrote docs/{PAGE.name}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,82 @@
+"""What ``tools.bench.soak`` watches: ``python -m tools.bench.loads NAME FOLDER``, for ever.
+
+training: rollouts and steps of the shipped agent in 64 apartments, so that what is kept of each is
+there after some minutes, a checkpoint every 20 steps. evaluation: 20 episodes under the suite by
+two workers, again and again with other seeds. bridge: episodes of 20 looks with RGB and depth, each
+condition of the suite in turn, each with a server of its own.
+"""
+
+from __future__ import annotations
+
+import itertools
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+
+ENDLESS = 10_000_000  # steps
+EPISODES, LOOKS = 20, 20  # of a round of evaluation or bridge traffic; of an episode (ours)
+SEVERITY = 0.6
+
+
+def training(folder: Path) -> None:
+    """Train until it is ended; its checkpoints are kept two at a time."""
+    from mitigate.core import conf
+    from mitigate.training.train import run
+
+    options = [
+        "recipe=da_per_episode",
+        "experiment=frozen",
+        "rollouts=4",
+        "env.layouts=64",
+        f"trainer.steps={ENDLESS}",
+        "trainer.save_every=20",
+        "evaluation.enabled=false",
+        f"folder={folder}",
+        f"runs={folder.parent}",
+    ]
+    run(conf.load_config("train", options))
+
+
+def evaluation(folder: Path) -> None:
+    """Evaluate with one seed after the other in this process."""
+    from mitigate.core import conf
+    from mitigate.evaluation.evaluate import run
+
+    for seed in itertools.count():
+        out = folder / f"seed-{seed}"
+        options = ["checkpoint=checkpoints/base", f"episodes={EPISODES}", f"seed={seed}"]
+        run(conf.load_config("evaluate", [*options, "workers=2", f"out={out}"]))
+        shutil.rmtree(out)
+
+
+def bridge(folder: Path) -> None:
+    """Serve and ask, a server for each condition."""
+    from mitigate.bridge.condition import Condition
+    from mitigate.bridge.hook import mitigate_hook
+    from mitigate.bridge.server import Listener
+    from mitigate.bridge.words import Words
+    from mitigate.corruptions import CLEAN, NAMES, Corruption
+
+    corruptions = [CLEAN, *(Corruption(name, SEVERITY) for name in NAMES)]
+    rgb = np.full((128, 128, 3), 90, np.uint8)
+    depth = np.full((128, 128, 1), 2.0, np.float32)
+    for number, corruption in enumerate(itertools.cycle(corruptions)):
+        place = folder / f"{number}"
+        with Listener(Condition(corruption, 0, Words()), place) as listener:
+            os.environ.update(listener.environment())
+            walk = mitigate_hook.Walk()  # an environment, with a connection of its own
+            for name in map(str, range(EPISODES)):
+                episode = mitigate_hook.Episode(walk, name, "soak", None)
+                for _ in range(LOOKS):
+                    episode.corrupt({"rgb": rgb.copy(), "depth": depth.copy()})
+                episode.finish(success=True, spl=1.0)
+        shutil.rmtree(place)
+
+
+LOADS = {"training": training, "evaluation": evaluation, "bridge": bridge}
+
+if __name__ == "__main__":
+    LOADS[sys.argv[1]](Path(sys.argv[2]))

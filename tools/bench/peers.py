@@ -1,0 +1,156 @@
+"""What other libraries offer for the same failures, as near in strength as their options allow.
+
+Each is called as its documentation shows. Frames are converted to what a library takes (float
+tensors for kornia) before the clock starts. No library corrupts metric depth: there the peer is
+the plain numpy, OpenCV or torch code that one would write.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from functools import partial
+
+import cv2
+import numpy as np
+import torch
+
+from mitigate.corruptions import depth as ours
+from mitigate.corruptions import rgb
+from mitigate.corruptions.echo import echo_shift
+from tools.bench.timing import version
+
+Calls = dict[str, Callable[[], object]]  # by the name of our corruption
+GRADE = 3  # severity 1-5 of imagecorruptions
+
+
+def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> dict[str, Calls]:
+    """Every library that can be imported, with its calls on uint8 [V, H, W, 3] or float32
+    metres [V, H, W]. A line is printed for each one that cannot."""
+    found: dict[str, Calls] = {}
+    for library, make in LIBRARIES.items():
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                calls = make(rgb_views if make is not plain else depth_views, severity)
+        except ImportError as error:
+            print(f"{library} is not measured: {error}. {INSTALL.get(library, '')}")
+            continue
+        number = version(library)
+        found[f"{library} {number}" if number else library] = calls
+    return found
+
+
+def sizes(views: np.ndarray, severity: float) -> tuple[int, float]:
+    """Kernel width (odd pixels) of our motion blur and sigma of our defocus at this size."""
+    height, width = views.shape[1:3]
+    kernel = max(3, int(rgb.BLUR_LENGTH * severity * width) | 1)
+    return kernel, rgb.DEFOCUS_SIGMA * severity * min(height, width)
+
+
+def albumentations(views: np.ndarray, severity: float) -> Calls:
+    """One view a call, uint8."""
+    import albumentations as a
+
+    kernel, sigma = sizes(views, severity)
+    hole, one = (severity, severity), (1, 1)
+    transforms = {
+        "motion_blur": a.MotionBlur((kernel, kernel), p=1),
+        "low_light": a.Illumination("linear", (0.2, 0.2), "darken", p=1),
+        "low_light_noise": a.ShotNoise((0.2, 0.2), p=1),
+        "spatter": a.Spatter(mode="mud", p=1),
+        "flare": a.RandomSunFlare(src_radius=max(2, views.shape[1] // 4), p=1),
+        "defocus": a.GaussianBlur((0, 0), (sigma, sigma), p=1),
+        "foreign_object": a.CoarseDropout(one, hole, hole, p=1),
+        "black_out": a.CoarseDropout(one, (1.0, 1.0), (1.0, 1.0), p=1),
+    }
+
+    def call(transform):
+        return [transform(image=view)["image"] for view in views]
+
+    return {name: partial(call, transform) for name, transform in transforms.items()}
+
+
+def kornia(views: np.ndarray, severity: float) -> Calls:
+    """All views in one float tensor [V, 3, H, W] in 0-1."""
+    import kornia.augmentation as k
+
+    kernel, sigma = sizes(views, severity)
+    side = max(3, 2 * int(np.ceil(3 * sigma)) + 1)
+    batch = torch.from_numpy(views).permute(0, 3, 1, 2).contiguous().float() / 255
+    area = (0.25 * np.pi * severity**2,) * 2
+    transforms = {
+        "motion_blur": k.RandomMotionBlur(kernel, 10.0, 0.0, p=1.0),
+        "low_light": k.RandomLinearIllumination((0.6, 0.6), (-1.0, -1.0), p=1.0),
+        "low_light_noise": k.RandomGaussianNoise(std=0.1, p=1.0),
+        "flare": k.RandomGaussianIllumination((0.6, 0.6), p=1.0),
+        "defocus": k.RandomGaussianBlur((side, side), (sigma, sigma), p=1.0),
+        "foreign_object": k.RandomErasing(area, (1.0, 1.0), p=1.0),
+        "black_out": k.RandomErasing((1.0, 1.0), (1.0, 1.0), p=1.0),
+    }
+    return {name: partial(transform, batch) for name, transform in transforms.items()}
+
+
+def imagecorruptions(views: np.ndarray, severity: float) -> Calls:
+    """One view a call, uint8, severity 3 of 5."""
+    from imagecorruptions import corrupt
+
+    def call(name):
+        return [corrupt(view, corruption_name=name, severity=GRADE) for view in views]
+
+    names = {
+        "motion_blur": "motion_blur",
+        "low_light_noise": "shot_noise",
+        "spatter": "spatter",
+        "defocus": "defocus_blur",
+    }
+    return {ours: partial(call, theirs) for ours, theirs in names.items()}
+
+
+def plain(views: np.ndarray, severity: float) -> Calls:
+    """The depth corruptions in a few lines each, without keys or care for invalid pixels."""
+    height, width = views.shape[1:]
+    tensor, rng = torch.from_numpy(views), np.random.default_rng(0)
+    step, share = np.float32(ours.STEP * severity), ours.HOLE_SHARE * severity
+    reach = 2 * max(1, round(ours.ECHO_REACH * min(height, width))) + 1
+    square = np.ones((reach, reach), np.uint8)
+
+    def noise():
+        sigma = severity * (ours.NOISE_BASE + ours.NOISE_SQUARE * tensor**2)
+        return tensor + sigma * torch.randn_like(tensor)
+
+    def holes():
+        field = rng.standard_normal((height, width), np.float32)
+        smooth = cv2.GaussianBlur(field, (0, 0), ours.HOLE_CORRELATION * min(height, width))
+        return np.where(smooth > np.quantile(smooth, 1 - share), np.float32(0), views)
+
+    def echo():
+        far = np.stack([cv2.dilate(view, square) for view in views])
+        gap = np.clip(far - views, 0, ours.ECHO_GAP)
+        return views + echo_shift(gap, severity)
+
+    def steps():
+        return np.rint(views / step) * step
+
+    return {
+        "gaussian_noise": noise,
+        "missing_data": holes,
+        "multipath": echo,
+        "quantization": steps,
+    }
+
+
+LIBRARIES = {
+    "albumentations": albumentations,
+    "kornia": kornia,
+    "imagecorruptions": imagecorruptions,
+    "plain code": plain,
+}
+INSTALL = {
+    "albumentations": "`pip install -e '.[bench]'` brings it.",
+    "kornia": "`pip install -e '.[bench]'` brings it.",
+    "imagecorruptions": (
+        "It asks for opencv-python, which would replace the headless one, and for pkg_resources: "
+        "`pip install --no-deps imagecorruptions` and `pip install scikit-image 'setuptools<81'`."
+    ),
+}

@@ -1,0 +1,252 @@
+"""Where the time of a training step goes, in every stage of the recipes.
+
+    python -m tools.bench.training da_per_episode ts_distill --steps 8
+
+Each stage runs as ``make train`` runs it, with a worker process a core: how long a step takes, how
+long of it the trainer waits for the batch, and how long forward, backward and update take. Then the
+same batches are made in this process, where clocks around the parts say what making them costs.
+``make bench`` calls this twice, once as the machine is and once capped to AVX2.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+from unittest import mock
+
+import torch
+
+from mitigate.agents.loading import build_agent
+from mitigate.core import conf, precision, seeding
+from mitigate.core.build import build
+from mitigate.core.markdown import markdown_table
+from mitigate.core.workers import cores
+from mitigate.training import train  # noqa: F401 (train registers config types)
+from mitigate.training.batches import Batches
+from mitigate.training.recipe import Recipe, accumulate
+from mitigate.training.workers import Workers
+
+RECIPES = (
+    "da_per_episode",
+    "ts_distill",
+    "conv_adapter",
+    "harden",
+    "stacked",
+    "base",
+    "safeguard_lora",
+)
+CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
+LAYOUTS = 8  # apartments, so that their making, which a long training pays once, does not count
+NETWORK = "network"
+PARTS = {  # what making a batch consists of: module, class or None, function
+    "rendering": (("mitigate.worlds.apartments.renderer", "Renderer", "render"),),
+    "scenes": (("mitigate.worlds.apartments.renderer", "Renderer", "load"),),
+    "geodesics": (
+        ("mitigate.worlds.apartments.navigation", "FreeSpace", "distances"),
+        ("mitigate.worlds.apartments.navigation", "FreeSpace", "rays"),
+    ),
+    "corruption": (
+        ("mitigate.worlds.world", None, "corrupt_observation"),
+        ("mitigate.training.poses", None, "corrupt_observation"),
+    ),
+    NETWORK: (
+        ("mitigate.agents.topological.agent", "TopologicalAgent", "perceive"),
+        ("mitigate.agents.topological.planner", "Planner", "forward"),
+        ("mitigate.agents.topological.planner", "Planner", "look"),
+        ("mitigate.agents.topological.planner", "Planner", "read"),
+    ),
+}
+OTHER = "other"
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage of a recipe: milliseconds a step, medians but for ``parts``.
+
+    whole: all of it. waiting: of that, for the batch. alone: forward, backward and update with
+    nothing beside them. parts: what making a batch costs on one core, by name, means.
+    """
+
+    recipe: str
+    stage: str
+    precision: str
+    whole: float
+    waiting: float
+    alone: float
+    parts: dict[str, float]
+
+    @property
+    def elsewhere(self) -> float:
+        """Share of a step's time in which no network computes: what is waited for, less the
+        networks' part of it (in rollouts)."""
+        made = sum(self.parts.values())
+        network = self.parts.get(NETWORK, 0.0) / made if made else 0.0
+        return self.waiting * (1 - network) / self.whole
+
+
+class Clock:
+    """Adds up the seconds spent in calls of a function."""
+
+    def __init__(self) -> None:
+        self.seconds = 0.0
+
+    def around(self, function: Callable) -> Callable:
+        def timed(*args: Any, **named: Any) -> Any:
+            started = time.perf_counter()
+            try:
+                return function(*args, **named)
+            finally:
+                self.seconds += time.perf_counter() - started
+
+        return timed
+
+
+@contextlib.contextmanager
+def clocked() -> Iterator[dict[str, Clock]]:
+    """Within it, the calls of every function of ``PARTS`` are on their part's clock."""
+    clocks = {part: Clock() for part in PARTS}
+    with contextlib.ExitStack() as stack:
+        for part, places in PARTS.items():
+            for module, owner, name in places:
+                __import__(module)
+                holder = sys.modules[module]
+                holder = getattr(holder, owner) if owner else holder
+                timed = clocks[part].around(getattr(holder, name))
+                stack.enter_context(mock.patch.object(holder, name, timed))
+        yield clocks
+
+
+def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
+    """Measure the stages of the recipe ``name``, ``steps`` steps each after two that warm up."""
+    cfg = conf.load_config(
+        "train", [f"recipe={name}", f"env.layouts={LAYOUTS}", "env.cached=2", *options]
+    )
+    found = []
+    cfg.refresh_episodes = 1  # of a success-distributed schedule: measuring is not a step
+    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
+    with Workers(cores()) as workers:
+        for stage, node in cfg.stages.items():
+            if node is not None:
+                agent.requires_grad_(True)
+                recipe = build(node.recipe, agent=agent)
+                found.append(stage_of(recipe, name, str(stage), steps, workers))
+    return found
+
+
+def stage_of(recipe: Recipe, name: str, stage: str, steps: int, workers: Workers) -> Stage:
+    """Time one stage; see the module's docstring."""
+    device = torch.device("cpu")
+    kind = precision.choose("auto", device)
+    with precision.computing(kind, device):
+        recipe.start()
+    recipe.train()
+    update = _update(recipe, kind, device)
+    batches = Batches(recipe, workers, steps + 2, kind, device)
+    waits, updates = [], []
+    for step in range(steps + 2):
+        seeding.seed_everything(0, "bench", step)
+        began = time.perf_counter()
+        batch = batches.batch(step)
+        arrived = time.perf_counter()
+        update(batch)
+        waits.append(arrived - began)
+        updates.append(time.perf_counter() - arrived)
+    alone = [_seconds(update, batch) for _ in range(steps)]
+    whole = [a + b for a, b in zip(waits, updates, strict=True)]
+    spent = [1e3 * _median(values[-steps:]) for values in (whole, waits, alone)]
+    parts = {part: 1e3 * seconds for part, seconds in _parts(recipe, kind, steps).items()}
+    return Stage(name, stage, kind, spent[0], spent[1], spent[2], parts)
+
+
+def _update(recipe: Recipe, kind: str, device: torch.device) -> Callable[[dict], None]:
+    trained = [p for group in recipe.parameter_groups() for p in group["params"] if p.requires_grad]
+    optimizer = torch.optim.AdamW(trained, lr=1e-6)
+
+    def update(batch: dict) -> None:
+        optimizer.zero_grad(set_to_none=True)
+        accumulate(recipe, batch, kind, device)
+        optimizer.step()
+
+    return update
+
+
+def _parts(recipe: Recipe, kind: str, steps: int) -> dict[str, float]:
+    """Seconds a step of each part of making batches, in this process."""
+    batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
+    batches.batch(0)
+    with clocked() as clocks:
+        began = time.perf_counter()
+        for step in range(steps):
+            batches.batch(step)
+        whole = time.perf_counter() - began
+    parts = {part: clock.seconds / steps for part, clock in clocks.items()}
+    return {**parts, OTHER: max(0.0, whole / steps - sum(parts.values()))}
+
+
+def _seconds(call: Callable[[Any], object], given: Any) -> float:
+    began = time.perf_counter()
+    call(given)
+    return time.perf_counter() - began
+
+
+def _median(values: Sequence[float]) -> float:
+    return sorted(values)[len(values) // 2]
+
+
+def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:
+    """Run this module in a process of its own, with all cores, capped to AVX2 or not."""
+    environment = {k: v for k, v in os.environ.items() if k not in ("OMP_NUM_THREADS", *CAPS)}
+    command = [sys.executable, "-m", __name__, *recipes, "--steps", str(steps), "--json"]
+    done = subprocess.run(
+        command,
+        env={**environment, **(CAPS if caps else {})},
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    return [Stage(**stage) for stage in json.loads(done.stdout.strip().splitlines()[-1])]
+
+
+def table(stages: Sequence[Stage]) -> str:
+    """Markdown: a row a stage."""
+    names = [*PARTS, OTHER]
+    head = ["recipe", "stage", "precision", "steps/s", "ms a step", "waiting", "forward + backward"]
+    head += ["step / forward + backward alone", "no network computes", *names]
+    rows = []
+    for s in stages:
+        cells = [f"`{s.recipe}`", s.stage, s.precision, f"{1e3 / s.whole:.2f}", f"{s.whole:.0f}"]
+        cells += [f"{s.waiting / s.whole:.0%}", f"{1 - s.waiting / s.whole:.0%}"]
+        cells += [f"{s.whole / s.alone:.2f}", f"{s.elsewhere:.0%}"]
+        rows.append([*cells, *(f"{s.parts.get(name, 0.0):.0f}" for name in names)])
+    return markdown_table(head, rows, words=3)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Command line: see the module's first lines."""
+    parser = argparse.ArgumentParser(prog=__name__, description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("recipes", nargs="*", default=list(RECIPES), help="default: all")
+    parser.add_argument("--steps", type=int, default=8, help="timed, a stage (default 8)")
+    parser.add_argument("--json", action="store_true", help="print the figures as one JSON line")
+    options = parser.parse_args(arguments)
+    if options.steps < 1:
+        parser.error("--steps must be at least 1.")
+    found = []
+    for name in options.recipes:
+        print(f"timing {name}", file=sys.stderr, flush=True)
+        found += measure(name, options.steps)
+    if options.json:
+        print(json.dumps([asdict(stage) for stage in found]))
+    else:
+        print(table(found))
+
+
+if __name__ == "__main__":
+    main()
