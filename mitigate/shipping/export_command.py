@@ -13,7 +13,6 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mitigate.agents import loading
 from mitigate.core import build, conf, settings
 from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation.episode_lists import episodes
@@ -82,6 +81,7 @@ def _own_kind(run: Path) -> list[str]:
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     """How to make the agent and the world that ``overrides`` name; the agent's settings are those
     beside the run's weights, read as data."""
+    from mitigate.agents import loading
     from mitigate.shipping import others
 
     cfg = conf.composed("evaluate", overrides, configs)

@@ -22,7 +22,6 @@ from hydra.types import RunMode
 from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
 
-from mitigate.agents.loading import OWN_CONFIG_ONLY, begun_from, build_agent
 from mitigate.core import conf, seeding
 from mitigate.core.build import maker
 from mitigate.core.files import atomic_text
@@ -137,6 +136,7 @@ def run(cfg: DictConfig) -> Path:
 
 
 def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
+    from mitigate.agents.loading import begun_from, build_agent
     from mitigate.core import checkpoint
     from mitigate.training import fitting
     from mitigate.training.estimate import has_base, plan
@@ -248,6 +248,7 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
             return {k: data(v) for k, v in value.items() if not str(k).startswith("_")}
         return value
 
+    from mitigate.agents.loading import OWN_CONFIG_ONLY
     from mitigate.core.build import plain
 
     own: dict[str, Any] = getattr(agent, "settings", dict)()

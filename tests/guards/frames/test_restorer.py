@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
-from tests.restoration.conftest import opened
 
 from mitigate.core.observation import DEPTH, RGB, Observation
 from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
@@ -18,6 +17,7 @@ from mitigate.guards.frames.restorer import Restorer, load_restorer, restorer_of
 from mitigate.guards.frames.world import Restored
 from mitigate.training.reports import restorer as report
 from mitigate.worlds.world import Corrupted
+from tests.guards.frames.conftest import opened
 
 SHIPPED = Path(__file__).parents[2] / "checkpoints/restorer"
 SHAPES = [(64, 64), (50, 70), (120, 160)]
