@@ -10,7 +10,7 @@ import subprocess
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TextIO
+from typing import IO, Any
 
 from mitigate.bridge import results, verdict
 from mitigate.bridge.condition import Condition
@@ -21,8 +21,10 @@ from mitigate.bridge.results import Told
 from mitigate.bridge.server import Listener
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.verdict import lacking
+from mitigate.core import output
 from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.json_files import read_json
+from mitigate.core.output import open_output
 from mitigate.core.signals import unbroken
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
@@ -66,7 +68,8 @@ class Cell:
     tied: bool = False
     loaded: bool = False
     listener: Listener | None = None
-    lock: TextIO | None = None
+    lock: IO[str] | None = None
+    root: output.Root | None = None
     process: subprocess.Popen | None = None
 
     @property
@@ -134,7 +137,7 @@ class Cell:
 
     def _start(self) -> None:
         make_folder(self.folder)
-        self.lock = open(self.folder / LOCK, "w", encoding="utf-8")  # noqa: SIM115
+        self.lock = open_output(self.folder / LOCK, "a", encoding="utf-8")
         try:
             fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
@@ -143,6 +146,7 @@ class Cell:
                 f"Another run is at work in {self.folder}: wait for it, or name another folder "
                 "(out=...)."
             ) from error
+        self.root = output.register(self.folder, self.lock)
         kind = "finished" if (self.folder / DONE).is_file() else "unfinished"
         (self.folder / DONE).unlink(missing_ok=True)
         put_aside(self.folder, kind)
@@ -162,7 +166,7 @@ class Cell:
         filled = list(self.command)
         for name, value in words.items():
             filled = [word.replace(name, value) for word in filled]
-        with open(self.log, "w", encoding="utf-8") as log:
+        with open_output(self.log, "w", encoding="utf-8") as log:
             try:
                 self.process = subprocess.Popen(
                     tied.words(filled) if self.tied else filled,
@@ -179,6 +183,7 @@ class Cell:
     def poll(self) -> str | None:
         """Return None while it runs, then what went wrong, empty if nothing did."""
         assert self.process is not None and self.listener is not None
+        output.check(self.folder / EVENTS)
         status = self.process.poll()
         if status is None:
             problem = self._stuck()
@@ -210,6 +215,9 @@ class Cell:
                 self.listener = None
         finally:
             signal.signal(signal.SIGINT, before)
+            if self.root is not None:
+                output.unregister(self.root)
+                self.root = None
             if self.lock is not None:
                 self.lock.close()
                 self.lock = None

@@ -10,13 +10,15 @@ import time
 from pathlib import Path
 from typing import Any
 
+from mitigate.core.output import open_output
+
 EVENTS, LOCK = "events.jsonl", "lock"
 
 
 def note(folder: Path, **event: Any) -> None:
     """Add a line to the events in ``folder``; processes may do so side by side."""
     line = json.dumps({"time": round(time.time(), 3), "pid": os.getpid(), **event}) + "\n"
-    with open(folder / EVENTS, "a", encoding="utf-8") as file:
+    with open_output(folder / EVENTS, "a", encoding="utf-8") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         file.write(line)
 

@@ -13,6 +13,7 @@ from mitigate.bridge.identity import met
 from mitigate.bridge.randomness import randomness
 from mitigate.bridge.results import OWN
 from mitigate.bridge.verdict import lacks
+from mitigate.core.files import write_text
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import report, rows
 from mitigate.evaluation.metrics import RULES
@@ -39,7 +40,7 @@ def write_report(made: Sequence[Cell], out: Path) -> None:
     if len(again) > 1:
         told = randomness(again)
         print(told, flush=True)
-        (out / "randomness.md").write_text(told, encoding="utf-8")
+        write_text(out / "randomness.md", told)
 
 
 def earlier(made: Sequence[Cell], out: Path) -> list[Cell]:

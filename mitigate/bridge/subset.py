@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mitigate.core.files import atomic_text
+from mitigate.core.output import open_output
 from mitigate.corruptions import Key
 from mitigate.corruptions.keying import digest, uniform
 
@@ -63,12 +64,12 @@ class Subset:
     def _agree(self, names: list[str]) -> float:
         """Add ``names`` to those that are known, wait for others, and set the bound."""
         known = self.folder / "episodes.txt"
-        with open(known, "a", encoding="utf-8") as file:
+        with open_output(known, "a", encoding="utf-8") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
             file.write("".join(f"{json.dumps(name)}\n" for name in names))
         while time.time() - known.stat().st_mtime < self.settled:
             time.sleep(0.1)
-        with open(known, "r+", encoding="utf-8") as file:
+        with open_output(known, "r+", encoding="utf-8") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
             bound = self._bound()
             if bound is None:

@@ -140,8 +140,9 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     check_sensors(met, first.sensors, cfg.env.name)
     choices.check(cfg.safeguard)
     out = Path(cfg.out or default_folder(cfg, name))
-    with FolderLock(out):
+    with FolderLock(out) as lock:
         walked.keep(out, first, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
+        lock.expect(out / ROWS, *walked.notes(out, cfg.split))
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {cfg.checkpoint or name} on {cfg.split}, "

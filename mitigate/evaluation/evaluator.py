@@ -28,6 +28,7 @@ from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.held import in_eval_mode, networks
 from mitigate.core.identity import identity
 from mitigate.core.names import counted
+from mitigate.core.output import FolderLostError
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
@@ -286,11 +287,19 @@ def _write(found: Iterable[tuple[int, Any] | None], out: Path, progress: Progres
 
 def _in_order(out: Path, wanted: list[tuple]) -> list[dict[str, Any]]:
     """Return the ``wanted`` rows of ``out`` in that order, and put them into it in the file, each
-    in the place of one of them: the file is then the same for any number of processes."""
+    in the place of one of them: the file is then the same for any number of processes. Raises
+    FolderLostError if rows are missing."""
     if not wanted:
         return []
     order = {identity: number for number, identity in enumerate(wanted)}
-    held = rows.read(out)
+    held = rows.read(out) if out.is_file() else []
+    missing = len(order.keys() - {rows.identity(row) for row in held})
+    if missing:
+        raise FolderLostError(
+            f"{out} holds {len(order) - missing} of the {counted(len(order), 'row')} that were "
+            "measured: another program removed or replaced the file during the evaluation. Run "
+            "the same command again: it measures what is missing."
+        )
     places = [place for place, row in enumerate(held) if rows.identity(row) in order]
     found = sorted((held[place] for place in places), key=lambda row: order[rows.identity(row)])
     if found != [held[place] for place in places]:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from mitigate.core.files import atomic_text, make_folder, open_text, writing
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
+from mitigate.core.output import open_output
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -135,7 +136,7 @@ def append(path: Path | str, rows: Iterable[Row]) -> None:
         write(path, chain(read(path) if path.exists() else [], rows))
         return
     make_folder(path.parent)
-    with writing(path), open(path, "ab+") as file:
+    with writing(path), open_output(path, "ab+") as file:
         _mend(file)
         file.write(text.encode())
         file.flush()

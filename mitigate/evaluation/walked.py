@@ -65,6 +65,12 @@ def keep(
         json.dump(known, file)
 
 
+def notes(folder: Path, split: str) -> list[Path]:
+    """Return the files that :func:`keep` wrote for ``split``."""
+    paths = (folder / NOTE, folder / list_hash.LIST.format(split=split))
+    return [path for path in paths if path.is_file()]
+
+
 def _described(world: World) -> dict[str, str]:
     """Return what ``world`` is, as texts by name: its class, the environment inside it, and the
     hash of their code where that is of neither this project nor an installed package."""

@@ -15,8 +15,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Protocol
 
-from mitigate.core.files import find
+from mitigate.core.files import find, make_folder, writing
 from mitigate.core.names import unknown
+from mitigate.core.output import open_output
 from mitigate.safeguard.addresses import check_choice
 from mitigate.safeguard.choices import ADAPTER, CHOICES, TAGGERS, VERSION, holds_tags, identity
 from mitigate.safeguard.draft import Decision, Draft
@@ -157,9 +158,9 @@ def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     lines = "".join(json.dumps(asdict(d)) + "\n" for d in decisions)
-    with open(path, "a", encoding="utf-8") as file:
+    with writing(path), open_output(path, "a", encoding="utf-8") as file:
         file.write(lines)
         file.flush()
         os.fsync(file.fileno())

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import ClassVar
 
 from mitigate.core.files import make_folder
+from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 from mitigate.scale import launcher as launchers
 from mitigate.scale import tied
@@ -62,7 +63,7 @@ class Running:
     def _next(self) -> None:
         self.what, words = self.left.pop(0)
         chain = self.chain
-        with open(chain.log, "a", encoding="utf-8") as log:
+        with open_output(chain.log, "a", encoding="utf-8") as log:
             self.process = subprocess.Popen(
                 tied.words(list(words)),
                 cwd=chain.folder,

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.core.files import write_bytes
 from mitigate.core.names import unknown
+from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 from mitigate.core.workers import SECOND, Task, numbered
 from mitigate.core.workers import results as run_here
@@ -159,7 +160,8 @@ def serve(
         held: Task = pickle.load(file)
     numbers = [number for group in groups for number, _ in group]
     jobs = [[job for _, job in group] for group in groups]
-    with open(lines, "a", encoding="utf-8") as out, Progress("jobs", len(numbers)) as progress:
+    opened = open_output(lines, "a", encoding="utf-8")
+    with opened as out, Progress("jobs", len(numbers)) as progress:
         try:
             for found in run_here(held, jobs, processes, progress):
                 if found is not None:

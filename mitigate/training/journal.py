@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mitigate.core import progress
+from mitigate.core import output, progress
+from mitigate.core.files import make_folder
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -31,6 +32,9 @@ class Journal:
     def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
         from torch.utils.tensorboard import SummaryWriter  # slow to import
 
+        self._folder = make_folder(folder)
+        for path in self._folder.glob("events.out.tfevents.*"):  # TensorBoard appends by name
+            output.open_output(path, "ab").close()
         self._writer = SummaryWriter(str(folder), purge_step=start + 1)
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
@@ -68,7 +72,11 @@ class Journal:
         self._since = self._progress.done, time.monotonic()
 
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
-        """Log ``values`` after ``step`` updates and, with ``line``, show them."""
+        """Log ``values`` after ``step`` updates and, with ``line``, show them.
+
+        Raises FolderLostError if the folder was removed: TensorBoard would not notice.
+        """
+        output.check(self._folder / "events")
         for name, value in values.items():
             self._writer.add_scalar(name, value, step)
         if not line:

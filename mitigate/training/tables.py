@@ -20,6 +20,7 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
+from mitigate.core.output import output_folder
 from mitigate.core.progress import Progress, say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
@@ -67,6 +68,12 @@ def run(cfg: DictConfig) -> Path:
         return write_report(cfg, out, list(cfg.rows))
     made = cells(cfg)
     check(made, cfg)
+    with output_folder(out):
+        return _make_table(made, cfg, out)
+
+
+def _make_table(made: Sequence[Cell], cfg: DictConfig, out: Path) -> Path:
+    """Make the cells and write the report into ``out``; raise as :func:`run` does."""
     failed = make(made, cfg)
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
@@ -105,7 +112,12 @@ def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
             progress.advance()
 
         programs.run(chains, cfg.jobs, launcher.chosen(cfg.launcher), progress, told)
-    return problems
+    return problems or [
+        f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
+        "program after they were measured."
+        for cell in made
+        if not _rows(cell.evaluation)
+    ]
 
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
