@@ -23,7 +23,7 @@ import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
 from mitigate.core import output
-from mitigate.core.files import RECORDING, atomic_text, make_folder, write_bytes
+from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.locks import is_alive
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import open_output
@@ -70,7 +70,7 @@ class Recorder:
         self.here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
         shutil.rmtree(self.here, ignore_errors=True)
         output.forget(self.here)
-        make_folder(self.here)
+        output.make_checked(self.here)
         note = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}
         with atomic_text(self.folder / RECORDING) as file:
             json.dump(note, file)

@@ -25,6 +25,8 @@ CPU = (
 class Journal:
     """Log of one run over ``total`` steps, from ``start``; use it as a context manager.
 
+    While it is open, every write below its folder checks that the folder was not removed.
+
     It shows a :class:`~mitigate.core.progress.Progress`: a bar in a terminal, else plain lines, to
     which :meth:`scalars` with ``line=True`` adds one with all its values.
     """
@@ -43,6 +45,7 @@ class Journal:
         self._since = start, time.monotonic()
 
     def __enter__(self) -> Self:
+        self._root = output.register(self._folder)
         self._progress.__enter__()
         return self
 
@@ -54,6 +57,11 @@ class Journal:
     ) -> None:
         self._progress.__exit__(kind, error, trace)
         self._writer.close()
+        try:
+            if error is None:
+                self._root.check()
+        finally:
+            output.unregister(self._root)
 
     def advance(self, values: dict[str, float]) -> None:
         """Count one step, and keep its ``values`` for :meth:`means`."""

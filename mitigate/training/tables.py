@@ -74,7 +74,12 @@ def run(cfg: DictConfig) -> Path:
 
 def _make_table(made: Sequence[Cell], cfg: DictConfig, out: Path) -> Path:
     """Make the cells and write the report into ``out``; raise as :func:`run` does."""
-    failed = make(made, cfg)
+    failed = make(made, cfg) or [
+        f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
+        "program after they were measured."
+        for cell in made
+        if not _rows(cell.evaluation)
+    ]
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
     problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
@@ -112,12 +117,7 @@ def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
             progress.advance()
 
         programs.run(chains, cfg.jobs, launcher.chosen(cfg.launcher), progress, told)
-    return problems or [
-        f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
-        "program after they were measured."
-        for cell in made
-        if not _rows(cell.evaluation)
-    ]
+    return problems
 
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
