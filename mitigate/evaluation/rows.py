@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 ROWS = "rows.jsonl"  # in the folder of an evaluation
 IDENTITY: dict[str, Any] = {
-    "agent": str,  # core/identity.py: weights, code, settings, sensors, what stands in front
+    "agent": str,  # agents/fingerprint.py: weights, code, settings, sensors, what stands in front
     "name": str,  # "base", "da_per_episode" ...: the column of a table
     "corruption": str,  # "clean" or one of the suite
     "severity": (int, float),
