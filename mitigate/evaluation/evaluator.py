@@ -159,8 +159,7 @@ def evaluate(
     made = world()
     check_fits(agent, made.sensors, type(made).__name__)
     if known is None:
-        known = Known(agent, made.sensors, front_of(safeguard, restorer), version)
-        known.check(out, name)
+        known = Known(agent, made.sensors, front_of(safeguard, restorer), version).check(out, name)
     label = {
         "agent": known.hash,
         "name": name,
@@ -174,7 +173,14 @@ def evaluate(
     jobs = _jobs(episodes, conditions, label)
     with known:
         _run_missing(task, made, jobs, out, safeguard, (workers, launcher), f"{name}, {split}")
-    return _in_order(out, [rows.identity(label) for _, _, label in jobs])
+    return _tell_of_cuts(_in_order(out, [rows.identity(job[2]) for job in jobs]), name)
+
+
+def _tell_of_cuts(found: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+    """Print how many episodes a world's limit cut, and return the rows."""
+    if cut := rows.cuts(found):
+        print(f"{name}: {cut}", flush=True)
+    return found
 
 
 def _run_missing(

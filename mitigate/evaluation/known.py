@@ -57,8 +57,8 @@ class Known:
 
         _last[key] = same, contents(agent, self.version).parts, self.parts
 
-    def check(self, file: Path, name: str) -> None:
-        """Report that all rows of ``name`` in ``file`` belong to another agent.
+    def check(self, file: Path, name: str) -> Known:
+        """Report that all rows of ``name`` in ``file`` belong to another agent; return self.
 
         Raises:
             ValueError: there are earlier rows, and the agent cannot be read completely.
@@ -80,7 +80,7 @@ class Known:
                 flush=True,
             )
         if known or not any(row["name"] == name for row in rows):
-            return
+            return self
         counts = "attributes" if self.without_settings else "settings()"
         print(
             f"{name}: the rows of this name in {file} are of another agent, with another class, "
@@ -93,3 +93,4 @@ class Known:
                 "clock: give it settings() if only some of them should.",
                 flush=True,
             )
+        return self

@@ -88,7 +88,7 @@ def benchmark(
     with rows of another world, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
-    told: dict[str, Any] = {"training_data": training_data, "link": link}
+    told = {"training_data": training_data, "link": link}
     agent, name = _agent(agent, name, cfg, seed, evaluation.fronts(safeguard, restore))
     check_texts(name=name, **told)
     made = world or maker(cfg.env.world)
@@ -96,16 +96,20 @@ def benchmark(
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     front = _front(safeguard, restore, first)
-    known = Known(agent, first.sensors, front_of(**front), version)
-    known.check(file, name)
+    known = Known(agent, first.sensors, front_of(**front), version).check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
-    with known, FolderLock(file.parent):
+    with known:
         _tell(agent, made, chosen, met, workers)
-        walked.keep(file.parent, first, made_by, split, chosen)
-        rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
-    told["file"] = "" if file.is_absolute() else file.as_posix()
-    told["sensors"] = sensors_of(first.sensors, getattr(agent, "sensors", None))
-    return entry_of(rows, name, severity=severity, **told)
+        with FolderLock(file.parent):
+            walked.keep(file.parent, first, made_by, split, chosen)
+            rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
+    shown = sensors_of(first.sensors, getattr(agent, "sensors", None))
+    return entry_of(rows, name, severity=severity, sensors=shown, file=_relative(file), **told)
+
+
+def _relative(file: Path) -> str:
+    """The path as an entry shows it: an absolute one is of this machine alone."""
+    return "" if file.is_absolute() else file.as_posix()
 
 
 def _conditions(

@@ -24,9 +24,10 @@ from mitigate.agents.adapters import insert_adapters, save_adapters
 from mitigate.agents.fingerprint import contents
 from mitigate.core.observation import STOP
 from mitigate.encoders.plain_adapters import attach
-from mitigate.evaluation import rows
+from mitigate.evaluation import report, rows
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
+from mitigate.evaluation.sections import sections
 from mitigate.worlds.episodes import Episode, Goal, Instruction, write_episodes
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import seeded_episodes
@@ -330,6 +331,16 @@ def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
 def test_what_is_no_option_of_the_agent_or_the_world_is_refused(walk, option):
     with pytest.raises(ValueError, match=f"{option} has no effect here"):
         walk(Holder(weight(1)), options=[option])
+
+
+def test_benchmark_reports_episodes_that_a_limit_cut(walk, capsys):
+    walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=1))
+    assert "Holder: 4 of 4 episodes were cut by limit=1" in capsys.readouterr().out
+    found = rows.read(Path("rows/rows.jsonl"))
+    assert {(row["cut"], row["limit"], row["success"]) for row in found} == {(1, 1, 0)}
+    assert "Holder: 4 of 4 episodes were cut by limit=1" in report.markdown(sections(found))
+    walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=9), out="whole")
+    assert "were cut" not in capsys.readouterr().out
 
 
 def test_episodes_may_be_some_of_those_listed(walk):
