@@ -90,6 +90,7 @@ class EvaluateConfig:
     safeguard: str = "none"
     restore: str | None = None
     name: str | None = None
+    version: str | None = None
     split: str = "val_unseen"
     episodes: int | None = None
     conditions: list[str] | None = None
@@ -164,6 +165,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             launcher=where,
             safeguard=safeguard,
             restorer=restorer,
+            version=cfg.version,
         )
         write_table([out / ROWS], out, rows)
     return out

@@ -14,8 +14,8 @@ from os.path import samefile
 from pathlib import Path
 from typing import Any
 
+from mitigate.agents.fingerprint import source_of
 from mitigate.core.files import atomic_text
-from mitigate.core.identity import source_of
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.evaluation import list_hash, making
