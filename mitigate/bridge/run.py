@@ -86,12 +86,14 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     command failed.
     """
     from mitigate.bridge.conditions import cells
+    from mitigate.bridge.finished import check_finished
     from mitigate.bridge.identity import default_folder
 
     check_options(cfg, command)
     name = cfg.name or name_of(command)
     out = Path(cfg.out or default_folder(cfg, name))
     made = cells(cfg, command, out, name)
+    check_finished(out)
     with output_folder(out):
         return _measure(cfg, command, out, name, made)
 
@@ -135,7 +137,10 @@ def _measure(
     problems += _vanished(fitting, problems)
     if not clean.is_done():  # a condition showed that it is not whole
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.why_anew()}")
-    write_report([clean, *fitting], out)
+    try:
+        write_report([clean, *fitting], out)
+    except ValueError as error:  # conditions that failed are told first
+        raise ValueError("\n".join([*problems, str(error)])) from error
     if strange:
         print(strange, flush=True)
     if problems:
