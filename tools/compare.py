@@ -25,6 +25,8 @@ from pathlib import Path
 
 from safetensors.numpy import load_file
 
+from mitigate.core.files import write_text
+
 ROOT = Path(__file__).resolve().parent.parent
 KEPT = ROOT / "runs" / "compare"
 AGENTS = {  # folders of weights: what their kind is called
@@ -76,8 +78,7 @@ def figures(commit: str | None, only: list[str] | None, episodes: int) -> dict[s
             print(f"{sha or 'working tree'}: {name}", flush=True)
             kept[name] = measure()
             if sha:
-                KEPT.mkdir(parents=True, exist_ok=True)
-                note.write_text(json.dumps(kept, indent=2), encoding="utf-8")
+                write_text(note, json.dumps(kept, indent=2))
     return {n: v for n, v in kept.items() if not only or n.rpartition("/")[2] in only}
 
 

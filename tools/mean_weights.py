@@ -8,14 +8,13 @@ elsewhere the mean of weights means nothing. OUT takes the second one's config.
 
 from __future__ import annotations
 
-import shutil
 import sys
 from pathlib import Path
 
 from safetensors.torch import save_file
 
-from mitigate.core import checkpoint
-from mitigate.core.files import atomic_text, sha256
+from mitigate.core import checkpoint, checksums
+from mitigate.core.files import write_bytes
 
 
 def main() -> None:
@@ -26,12 +25,10 @@ def main() -> None:
     one, other = (checkpoint.load_tensors(f / "model.safetensors") for f in (first, second))
     if {n: t.shape for n, t in one.items()} != {n: t.shape for n, t in other.items()}:
         sys.exit(f"{first} and {second} are not of one architecture: they have other tensors.")
-    out.mkdir(parents=True, exist_ok=True)
     file = out / "model.safetensors"
-    save_file({n: (one[n].float() + other[n].float()) / 2 for n in one}, file)
-    with atomic_text(out / "model.safetensors.sha256") as text:
-        text.write(f"{sha256(file)}  {file.name}\n")
-    shutil.copy(second / "config.yaml", out / "config.yaml")
+    mean = {n: (one[n].float() + other[n].float()) / 2 for n in one}
+    checksums.write(file, lambda temporary: save_file(mean, temporary))
+    write_bytes(out / "config.yaml", (second / "config.yaml").read_bytes())
     print(f"wrote {file}")
 
 

@@ -14,9 +14,9 @@ from pathlib import Path
 
 from omegaconf import OmegaConf
 
+from mitigate.agents.fingerprint import fingerprint
 from mitigate.core import build, checkpoint, conf
 from mitigate.core.files import atomic_text
-from mitigate.core.identity import identity
 from mitigate.evaluation.evaluate import load
 from mitigate.training.train import written
 
@@ -37,7 +37,8 @@ def main() -> None:
             path.chmod(0o644)
     shipped = load(node, str(folder))
     print(f"wrote {file}, {file.stat().st_size / 1e6:.1f} MB")
-    print(f"sha {identity(agent, sensors)} before rounding, {identity(shipped, sensors)} after")
+    before, after = (fingerprint(one, sensors) for one in (agent, shipped))
+    print(f"sha {before} before rounding, {after} after")
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ from mitigate.agents.ring import RingAdapter
 from mitigate.agents.sites import MAP, Run, Site, channels_of, inputs_of, listed, look, named
 from mitigate.agents.tokens import TokenAdapter
 from mitigate.core import checkpoint
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
@@ -170,7 +170,7 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
             "with the backbone in eval mode, model.eval().",
             stacklevel=2,
         )
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     modules = nn.ModuleDict({_key(n): getattr(model.get_submodule(n), NAME) for n in names})
     checkpoint.save_weights(modules, folder / WEIGHTS)
     settings = {

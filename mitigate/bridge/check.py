@@ -20,8 +20,9 @@ from mitigate.bridge.conditions import applicable, cells, untold
 from mitigate.bridge.options import check_options, name_of
 from mitigate.bridge.results import NEAR, NORMALISED, Told
 from mitigate.bridge.sheet import HEADING, of, sheet
-from mitigate.core.files import write_atomically
+from mitigate.core.files import write_atomically, write_bytes
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.output import output_folder
 
 if TYPE_CHECKING:  # it needs torch, which a check without one does not wait for
     from mitigate.guards.frames.restorer import Restorer
@@ -76,8 +77,9 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     cell.condition.observers[:] = [FirstLook(file)]  # nothing is recorded: it ends in mid-episode
     print(f"check: started, its output is in {cell.log}", flush=True)
     try:
-        cell.start()
-        _wait(cell, file)
+        with output_folder(out):
+            cell.start()
+            _wait(cell, file)
     finally:
         cell.kill()
     told = cell.told()
@@ -104,7 +106,7 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     picture = sheet(rig, frames, drawn, told.first, cfg.seed)
     path = out / "sheet.png"
     png = cv2.imencode(".png", picture[..., ::-1])[1].tobytes()
-    write_atomically(path, lambda p: p.write_bytes(png))
+    write_bytes(path, png)
     print(f"wrote {path}: what the agent would see at its first frame", flush=True)
     return path
 

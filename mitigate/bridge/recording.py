@@ -22,9 +22,11 @@ import cv2
 import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
+from mitigate.core import output
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.locks import is_alive
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.output import open_output
 from mitigate.corruptions.frame_files import counts
 from mitigate.evaluation.rows import stem_of
 
@@ -67,14 +69,15 @@ class Recorder:
         self.place, self.cameras = place, {}
         self.here = place.with_name(f".{place.name}.{os.getpid()}.tmp")
         shutil.rmtree(self.here, ignore_errors=True)
-        self.here.mkdir(parents=True)
+        output.forget(self.here)
+        output.make_checked(self.here)
         note = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}
         with atomic_text(self.folder / RECORDING) as file:
             json.dump(note, file)
         said = ("scene", "id", "text", "tokens", "language", "category")
         with atomic_text(self.here / "episode.json") as file:
             json.dump({name: told.get(name) for name in said}, file)
-        (self.here / "steps.jsonl").write_text("", encoding="utf-8")
+        write_bytes(self.here / "steps.jsonl", b"")
 
     def frame(
         self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
@@ -93,7 +96,7 @@ class Recorder:
                 self.here / part(camera.name) / f"{int(told['call']):06d}.png", png(camera, frame)
             )
         line = {name: told.get(name) for name in ("call", "position", "heading")}
-        with open(self.here / "steps.jsonl", "a", encoding="utf-8") as file:
+        with open_output(self.here / "steps.jsonl", "a", encoding="utf-8") as file:
             file.write(json.dumps(line) + "\n")
 
     def end(self, told: Mapping[str, Any]) -> None:
@@ -103,6 +106,8 @@ class Recorder:
             with atomic_text(self.here / "end.json") as file:
                 json.dump(said, file)
             shutil.rmtree(self.place, ignore_errors=True)  # of an earlier run, or a loop's second
+            output.check(self.place)
+            output.forget(self.here)
             os.replace(self.here, self.place)
         self.here = self.place = None
 

@@ -25,6 +25,7 @@ from mitigate.bridge import verdict
 from mitigate.bridge.options import check_options, name_of
 from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
 from mitigate.core import conf
+from mitigate.core.output import output_folder
 from mitigate.core.signals import raise_ended
 from mitigate.guards.text.addresses import check_arguments
 
@@ -85,14 +86,25 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     command failed.
     """
     from mitigate.bridge.conditions import cells
+    from mitigate.bridge.finished import check_finished
     from mitigate.bridge.identity import default_folder
-    from mitigate.bridge.report import write_report
-    from mitigate.bridge.words import NO_TOKENIZER
 
     check_options(cfg, command)
     name = cfg.name or name_of(command)
     out = Path(cfg.out or default_folder(cfg, name))
     made = cells(cfg, command, out, name)
+    check_finished(out)
+    with output_folder(out):
+        return _measure(cfg, command, out, name, made)
+
+
+def _measure(
+    cfg: DictConfig, command: Sequence[str], out: Path, name: str, made: Sequence[Cell]
+) -> Path:
+    """Run the cells ``made`` and write the report into ``out``; raise as :func:`run` does."""
+    from mitigate.bridge.report import write_report
+    from mitigate.bridge.words import NO_TOKENIZER
+
     clean = made[0]
     many = "1 condition" if len(made) == 1 else f"{len(made)} conditions"
     print(
@@ -122,14 +134,28 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
         )
     problems += _run_all(cfg, command, out, name, fitting)
     _warn_of_changes([clean, *fitting], out, known if nothing else ())
+    problems += _vanished(fitting, problems)
     if not clean.is_done():  # a condition showed that it is not whole
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.why_anew()}")
-    write_report([clean, *fitting], out)
+    try:
+        write_report([clean, *fitting], out)
+    except ValueError as error:  # conditions that failed are told first
+        raise ValueError("\n".join([*problems, str(error)])) from error
     if strange:
         print(strange, flush=True)
     if problems:
         raise ValueError("Some conditions failed; run again to go on.\n" + "\n".join(problems))
     return out
+
+
+def _vanished(made: Sequence[Cell], problems: Sequence[str]) -> list[str]:
+    """Name the conditions that did not fail and whose result is missing all the same."""
+    failed = {problem.partition(":")[0] for problem in problems}
+    return [
+        f"{cell.name}: its result in {cell.folder} was removed or replaced by another program."
+        for cell in made
+        if cell.name not in failed and cell.held() is None
+    ]
 
 
 def _check_rule(made: Sequence[Cell]) -> None:

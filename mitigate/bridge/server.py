@@ -22,6 +22,7 @@ import numpy as np
 from mitigate.bridge.condition import Condition
 from mitigate.bridge.connection import Connection
 from mitigate.bridge.hook import mitigate_hook
+from mitigate.core.files import make_folder
 from mitigate.core.signals import raise_ended
 from mitigate.corruptions import Corruption
 from mitigate.corruptions.suite import corrupt
@@ -50,7 +51,7 @@ class Listener:
         listening.bind(self.address)  # in a folder that only this user may enter
         os.chmod(self.address, 0o600)
         listening.listen(256)
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_folder(self.folder)
         self.pid = os.fork()
         if self.pid == 0:
             try:

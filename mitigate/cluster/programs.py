@@ -21,6 +21,7 @@ from mitigate.cluster import launcher as launchers
 from mitigate.cluster import tied
 from mitigate.cluster.launcher import LauncherConfig
 from mitigate.core.files import make_folder
+from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 
 PAUSE = 0.1  # seconds between two looks at programs that run
@@ -62,7 +63,7 @@ class Running:
     def _next(self) -> None:
         self.what, words = self.left.pop(0)
         chain = self.chain
-        with open(chain.log, "a", encoding="utf-8") as log:
+        with open_output(chain.log, "a", encoding="utf-8") as log:
             self.process = subprocess.Popen(
                 tied.words(list(words)),
                 cwd=chain.folder,

@@ -14,6 +14,7 @@ from typing import Any
 from mitigate.core.files import atomic_text, sha256, write_atomically
 
 SUFFIX = ".sha256"
+DIGITS = 12  # hex digits of a fingerprint: 48 bits
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 
 

@@ -7,12 +7,15 @@ import gzip
 import hashlib
 import io
 import os
+import secrets
 import stat
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
+
+from mitigate.core import output
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 RECORDING = "recording.json"  # in the folder of a recording by `mitigate run record=FOLDER`
@@ -97,10 +100,12 @@ def writing(path: Path | str) -> Iterator[None]:
 
 
 def make_folder(folder: Path | str) -> Path:
-    """Make ``folder`` with those above it, unless it is there; return it. Raises OSError as
-    :func:`writing`."""
+    """Make ``folder`` with those above it, unless it is there; return it.
+
+    Raises OSError as :func:`writing`, and as :func:`mitigate.core.output.check` does.
+    """
     with writing(folder):
-        Path(folder).mkdir(parents=True, exist_ok=True)
+        output.make_checked(folder)
     return Path(folder)
 
 
@@ -108,18 +113,23 @@ def make_folder(folder: Path | str) -> Path:
 def _draft(path: Path) -> Iterator[Path]:
     """Yield an empty neighbour of ``path``, which is flushed to disk and becomes ``path`` if the
     block ends without an error, with the mode that the umask gives. Makes the folder."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    # a random part: nobody can put a link at a name that is not known
+    temporary = path.with_name(f".{path.name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
     with writing(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        temporary.touch()
+        output.make_checked(path.parent)
+        output.open_output(temporary, "xb").close()
     mode = stat.S_IMODE(temporary.stat().st_mode)
     try:
         yield temporary
         with writing(path):
+            output.check(path)
             temporary.chmod(mode)  # safetensors puts a private file in its place
             with open(temporary, "rb+") as file:
                 os.fsync(file.fileno())
             os.replace(temporary, path)
+    except (OSError, RuntimeError):  # torch raises RuntimeError for a folder that is gone
+        output.check(path)
+        raise
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -187,6 +197,26 @@ def write_bytes(path: Path | str, data: bytes) -> None:
     OSError as :func:`writing`."""
     with _draft(Path(path)) as temporary, writing(path):
         temporary.write_bytes(data)
+
+
+def write_text(path: Path | str, text: str) -> None:
+    """Write ``text`` as UTF-8, as :func:`write_bytes` does."""
+    write_bytes(path, text.encode())
+
+
+def write_figure(path: Path | str, figure: Any, **options: Any) -> Path:
+    """Write a matplotlib ``figure`` to ``path``, as :func:`write_bytes` does.
+
+    Args:
+        path: The picture; its suffix says the format.
+        figure: A ``matplotlib.figure.Figure``.
+        options: Other arguments of ``savefig``, such as ``dpi``.
+    """
+    path = Path(path)
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format=path.suffix[1:], **options)
+    write_bytes(path, drawn.getvalue())
+    return path
 
 
 def _absent(path: Path) -> str:

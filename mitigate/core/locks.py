@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import IO
 
+from mitigate.core import output
 from mitigate.core.files import make_folder, writing
 
 NAME = ".lock"
@@ -31,14 +32,18 @@ class FolderLock:
     however that ends, is not inherited by workers, and holds for other machines where the file
     system has locks for them. Where it has none, nothing is locked.
 
-    Raises ValueError, naming the process, if another one is there, and OSError if the folder cannot
-    be written.
+    While it is held, every write below the folder checks that folder and lock are still the same
+    (``core/output.py``), as does the end of the block.
+
+    Raises ValueError, naming the process, if another one is there or if the lock file is not a
+    regular file; OSError if the folder cannot be written; FolderLostError if it was removed.
     """
 
     def __init__(self, folder: str | Path, within: Iterable[str] = ()) -> None:
         self.folder, self.within = Path(folder), tuple(within)
         self.path = self.folder.resolve() / NAME
         self._file: IO[str] | None = None
+        self._root: output.Root | None = None
 
     def __enter__(self) -> FolderLock:
         make_folder(self.folder)
@@ -46,7 +51,7 @@ class FolderLock:
             raise ValueError(self._taken(_held[self.path]))
         while True:
             with writing(self.folder):
-                file = open(self.path, "a+", encoding="utf-8")
+                file = output.open_output(self.path, "a+", encoding="utf-8")
             try:
                 fcntl.lockf(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
             except (BlockingIOError, PermissionError):
@@ -55,6 +60,7 @@ class FolderLock:
                 raise ValueError(problem) from None
             except OSError:  # a file system without locks
                 file.close()
+                self._root = output.register(self.folder)
                 return self
             if _same(file, self.path):
                 break
@@ -64,12 +70,29 @@ class FolderLock:
         file.truncate(0)
         json.dump({"pid": os.getpid(), "host": socket.gethostname(), "command": _command()}, file)
         file.flush()
+        self._root = output.register(self.folder, file)
         delete_leftovers(self.folder, self.within)
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def expect(self, *paths: Path) -> None:
+        """Have the end of the block check that the files ``paths`` exist."""
+        if self._root is not None:
+            self._root.expected += paths
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        try:
+            if self._root is not None and kind is None:
+                self._root.check_expected()
+        finally:
+            self._leave()
+
+    def _leave(self) -> None:
+        if self._root is not None:
+            output.unregister(self._root)
+            self._root = None
         if self._file is not None:
-            self.path.unlink(missing_ok=True)
+            if _same(self._file, self.path):  # else it is the lock of another process
+                self.path.unlink(missing_ok=True)
             _held.pop(self.path, None)
             self._file.close()
             self._file = None
@@ -91,6 +114,7 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     """Delete what processes that are no more left in mid-write in ``folder``, and in those of the
     names ``within`` it that are no run of their own; return it. Nothing further below is theirs."""
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
+    inside = [place for place in inside if not place.is_symlink()]
     found = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
     ended = {path: _LEFT.fullmatch(path.name) for path in found}
     left = [p for p, own in ended.items() if own and _is_over(int(own[1]))]
@@ -121,7 +145,7 @@ def is_alive(pid: int) -> bool:
 
 def _same(file: IO[str], path: Path) -> bool:
     try:
-        return os.path.samestat(os.fstat(file.fileno()), os.stat(path))
+        return os.path.samestat(os.fstat(file.fileno()), os.lstat(path))
     except FileNotFoundError:
         return False
 

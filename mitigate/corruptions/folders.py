@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from mitigate.core.files import write_bytes
 from mitigate.core.observation import Z_MAX
+from mitigate.core.output import lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.frame_files import MOST, RGB
@@ -86,6 +87,12 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         raise FileNotFoundError(_nothing(source, wanted, settings, plan))
     if any(frame.path.suffix.lower() == ".png" for frame in plan.frames) and wanted != RGB:
         _check_counts(settings)
+    with output_folder(out, SUMMARY):
+        return _corrupt_all(source, out, settings, plan)
+
+
+def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dict:
+    """Corrupt the frames of ``plan``; return the summary as :func:`run` does."""
     summary = _begin(out, settings, plan)
     outputs = {frame.path: _output(frame.path, settings.format) for frame in plan.frames}
     given = set(outputs)
@@ -101,6 +108,13 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
             _corrupt_file(source / frame.path, out / target, frame, settings, plan)
             summary["written"] += name not in plan.left_out
         given.add(target)
+    missing = [
+        out / outputs[frame.path]
+        for frame in plan.frames
+        if frame.path.as_posix() not in plan.left_out and not (out / outputs[frame.path]).is_file()
+    ]
+    if missing:
+        raise lost(missing[0])
     summary["left_out"] = [{"file": f, "reason": r} for f, r in sorted(plan.left_out.items())]
     _write_summary(out, summary)
     return summary

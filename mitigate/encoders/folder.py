@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.agents import adapters
 from mitigate.core import checkpoint
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.json_files import read_json
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ encoder.load_state_dict(parse(open("{folder}/model.safetensors", "rb").read()))
 def write(encoder: Encoder, folder: str | Path) -> Path:
     """Write what was trained of ``encoder`` into ``folder``; return it."""
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     if encoder.tune == "adapters":
         adapters.save_adapters(encoder.model, folder)
     else:

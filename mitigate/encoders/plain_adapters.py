@@ -109,6 +109,10 @@ class _Adapter:
             return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
         return self.adapt(output)
 
+    def fingerprint(self):
+        """What this hook does, as plain data: mitigate reads it to tell agents apart."""
+        return [self.tokens, self.batch, self.pad, tensors_sha(self.own)]
+
     def adapt(self, x):
         w = {name: value.to(x.device, x.dtype) for name, value in self.own.items()}
         if self.tokens:
@@ -218,8 +222,13 @@ def parse(data, path="the file"):
 
 def backbone_sha(model):
     """The first 12 hex digits of the sha256 over names, types, shapes and bytes of the weights."""
+    return tensors_sha(model.state_dict())
+
+
+def tensors_sha(tensors):
+    """As ``backbone_sha``, of tensors by name."""
     sha = hashlib.sha256()
-    for name, value in sorted(model.state_dict().items()):
+    for name, value in sorted(tensors.items()):
         if isinstance(value, torch.Tensor):
             sha.update(f"{name} {value.dtype} {tuple(value.shape)}".encode())
             value = value.detach().cpu().contiguous()

@@ -25,6 +25,8 @@ from mitigate.guards.frames.world import Restored
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import Corrupted, World
 
+MOST_STEPS = 100_000  # of an episode (heuristic: 200 times the 500 of VLN-CE)
+
 
 def run_episode(
     agent: Agent,
@@ -120,6 +122,13 @@ class _Walk:
         return self.met.done
 
     def step(self, action: int) -> None:
+        """Take a step. Raises ValueError after :data:`MOST_STEPS` steps."""
+        if self.steps >= MOST_STEPS:
+            raise ValueError(
+                f"the world has not ended the episode after {MOST_STEPS:,} steps. Let its own task "
+                "end it (gymnasium: max_episode_steps=), or give limit=, which cuts episodes and "
+                "counts them."
+            )
         self.observation = self.shown.step(action)
         self.steps += 1
 

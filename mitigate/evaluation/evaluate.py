@@ -89,6 +89,7 @@ class EvaluateConfig:
     safeguard: str = "none"
     restore: str | None = None
     name: str | None = None
+    version: str | None = None
     split: str = "val_unseen"
     episodes: int | None = None
     conditions: list[str] | None = None
@@ -139,8 +140,9 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     check_sensors(met, first.sensors, cfg.env.name)
     choices.check(cfg.safeguard)
     out = Path(cfg.out or default_folder(cfg, name))
-    with FolderLock(out):
+    with FolderLock(out) as lock:
         walked.keep(out, first, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
+        lock.expect(out / ROWS, *walked.notes(out, cfg.split))
         safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {cfg.checkpoint or name} on {cfg.split}, "
@@ -162,6 +164,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             launcher=where,
             safeguard=safeguard,
             restorer=restorer,
+            version=cfg.version,
         )
         write_table([out / ROWS], out, rows)
     return out

@@ -24,11 +24,11 @@ import torch
 from mitigate.agents.agent import Agent, SideBySide
 from mitigate.agents.observation import check_fits
 from mitigate.cluster.launcher import LauncherConfig, count, results
+from mitigate.agents.state import in_eval_mode, networks
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
-from mitigate.core.held import in_eval_mode, networks
-from mitigate.core.identity import identity
 from mitigate.core.names import counted
+from mitigate.core.output import FolderLostError
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.corruptions import SUITE_VERSION, Corruption
@@ -38,6 +38,10 @@ from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode, run_side_by_side
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.text.guard import Safeguard
+from mitigate.evaluation.known import Known
+from mitigate.restoration.restorer import Restorer
+from mitigate.safeguard.guard import Safeguard
+from mitigate.scale.launcher import LauncherConfig, count, results
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, remembering
 
@@ -134,7 +138,8 @@ def evaluate(
     launcher: LauncherConfig = LOCAL,
     safeguard: Safeguard | None = None,
     restorer: Restorer | None = None,
-    known_as: str | None = None,
+    version: str | None = None,
+    known: Known | None = None,
 ) -> list[dict[str, Any]]:
     """Evaluate an agent and return its rows, which are also in the file ``out``.
 
@@ -142,21 +147,25 @@ def evaluate(
     them for PRS; "white_box" is left out with a warning if the agent has no ``system_prompt``.
     name: the table's column. split: what the rows say. seed: of the corruptions' keys. workers:
     processes, None: one a core if there is work for them; the rows do not depend on it, nor on the
-    launcher, which says on which machines (``scale/launcher.py``). safeguard:
-    repairs each instruction, once, before the agent hears it. restorer: goes over the frames before
-    the agent reads them. A row's ``agent`` is the hash of the agent behind the world's sensors,
-    ``safeguard`` and ``restorer`` (``core/identity.py``), or ``known_as``, taken before it walked.
-    Raises WorkersDied if worker processes die more than once; the rows so far are in ``out``.
+    launcher, which says on which machines (``scale/launcher.py``). safeguard: repairs instructions.
+    restorer: goes over the frames before the agent reads them. version: names what cannot be read
+    of the agent, so that its rows can be reused (``agents/fingerprint.py``). known: the agent's
+    fingerprint, if it was taken before. A row's ``agent`` is the fingerprint of the agent behind
+    the sensors, safeguard and restorer.
+
+    Raises ValueError if ``out`` holds rows of this fingerprint and the agent cannot be read
+    completely; WorkersDied if worker processes die more than once; the rows so far are in ``out``.
     """
     out = Path(out)
     conditions = _applicable(agent, conditions, name)
     if isinstance(agent, torch.nn.Module):
         check_finite(agent, f"The weights of {name}")
-    known = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     made = world()
     check_fits(agent, made.sensors, type(made).__name__)
+    if known is None:
+        known = Known(agent, made.sensors, front_of(safeguard, restorer), version).check(out, name)
     label = {
-        "agent": known_as or identity(agent, made.sensors, front_of(safeguard, restorer)),
+        "agent": known.hash,
         "name": name,
         "split": split,
         "seed": seed,
@@ -164,21 +173,42 @@ def evaluate(
         "rule": made.rule,
         **({"weights": weights_sha(agent)} if isinstance(agent, torch.nn.Module) else {}),
     }
+    task = EpisodeTask(agent, world, {}, restorer)
     jobs = _jobs(episodes, conditions, label)
-    todo = [job for job in jobs if rows.identity(job[2]) not in known]
+    with known:
+        _run_missing(task, made, jobs, out, safeguard, (workers, launcher), f"{name}, {split}")
+    return _tell_of_cuts(_in_order(out, [rows.identity(job[2]) for job in jobs]), name)
+
+
+def _tell_of_cuts(found: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+    """Print how many episodes a world's limit cut, and return the rows."""
+    if cut := rows.cuts(found):
+        print(f"{name}: {cut}", flush=True)
+    return found
+
+
+def _run_missing(
+    task: EpisodeTask,
+    world: World,
+    jobs: list[Job],
+    out: Path,
+    safeguard: Safeguard | None,
+    where: tuple[int | None, LauncherConfig],
+    title: str,
+) -> None:
+    """Run the jobs that have no row in ``out``. ``where``: processes, and their launcher."""
+    finished = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
+    todo = [job for job in jobs if rows.identity(job[2]) not in finished]
     _warn_of_languages(todo)
-    heard = [instruction(episode, condition, seed) for episode, condition, _ in todo]
+    heard = [instruction(episode, condition, label["seed"]) for episode, condition, label in todo]
     decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
-    repaired = {decision.original: decision.text for decision in decided}
-    title = f"{name}, {split}"
+    task.repaired = {decision.original: decision.text for decision in decided}
     if not todo:
         print(f"{title}: {counted(len(jobs), 'walk')}, all done before, in {out}", flush=True)
-    else:
-        task = EpisodeTask(agent, world, repaired, restorer)
-        at_once = _together(agent, made)
-        groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
-        _run(task, groups, len(jobs), out, workers, launcher, title)
-    return _in_order(out, [rows.identity(label) for _, _, label in jobs])
+        return
+    at_once = _together(task.agent, world)
+    groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
+    _run(task, groups, len(jobs), out, *where, title)
 
 
 def front_of(safeguard: Safeguard | None, restorer: Restorer | None) -> str:
@@ -286,11 +316,19 @@ def _write(found: Iterable[tuple[int, Any] | None], out: Path, progress: Progres
 
 def _in_order(out: Path, wanted: list[tuple]) -> list[dict[str, Any]]:
     """Return the ``wanted`` rows of ``out`` in that order, and put them into it in the file, each
-    in the place of one of them: the file is then the same for any number of processes."""
+    in the place of one of them: the file is then the same for any number of processes. Raises
+    FolderLostError if rows are missing."""
     if not wanted:
         return []
     order = {identity: number for number, identity in enumerate(wanted)}
-    held = rows.read(out)
+    held = rows.read(out) if out.is_file() else []
+    missing = len(order.keys() - {rows.identity(row) for row in held})
+    if missing:
+        raise FolderLostError(
+            f"{out} holds {len(order) - missing} of the {counted(len(order), 'row')} that were "
+            "measured: another program removed or replaced the file during the evaluation. Run "
+            "the same command again: it measures what is missing."
+        )
     places = [place for place, row in enumerate(held) if rows.identity(row) in order]
     found = sorted((held[place] for place in places), key=lambda row: order[rows.identity(row)])
     if found != [held[place] for place in places]:

@@ -10,6 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from mitigate.evaluation import metrics
 from mitigate.evaluation.blocks import BLOCKS
 from mitigate.evaluation.labels import label_columns
 from mitigate.evaluation.lists import by_list
-from mitigate.evaluation.rows import Row, scene_of, upsert
+from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
 
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}
@@ -64,7 +65,8 @@ class Grid:
     severity, over that one's seeds. ``unfinished[label, severity]`` holds the seeds that are left
     out, with the rows they have and the rows of a whole one. ``runs[label][seed]`` are the cells of
     one seed, by (corruption, severity, metric). ``units`` [N] are numbers: the bootstrap draws
-    episodes of one number together, and ``drawn`` says what that is. ``begins`` is the first
+    episodes of one number together, and ``drawn`` says what that is. ``cut[label]`` says
+    how many episodes a limit cut, if it cut any. ``begins`` is the first
     episode's id where another grid differs in its list alone, else empty.
     """
 
@@ -80,6 +82,7 @@ class Grid:
     runs: dict[str, dict[int, _Run]]
     drawn: str
     units: np.ndarray
+    cut: dict[str, str]
     begins: str = ""
 
     @property
@@ -234,7 +237,9 @@ def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str) -> Grid:
     if drawn != DRAWN[0]:
         scenes = {row["episode_id"]: scene_of(row) for row in rows}
         units = np.unique([scenes[episode] for episode in episodes], return_inverse=True)[1]
-    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs, drawn, units)
+    notes = {label: cuts(chain.from_iterable(each.values())) for label, each in held.items()}
+    cut = {label: text for label, text in notes.items() if text}
+    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs, drawn, units, cut)
 
 
 def _cells(rows: list[Row], place: dict[str, int]) -> _Run:

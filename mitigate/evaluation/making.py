@@ -20,8 +20,9 @@ from typing import Any
 
 import numpy as np
 
+from mitigate.agents.fingerprint import source_of
+from mitigate.agents.state import array_sha
 from mitigate.core.build import Maker
-from mitigate.core.identity import array_sha, source_of
 from mitigate.worlds.world import World
 
 MADE = "what makes it"

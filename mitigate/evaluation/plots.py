@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mitigate.core.files import write_figure
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.blocks import BLOCKS
 from mitigate.evaluation.grid import Grid
@@ -170,7 +171,4 @@ def plain(name: str) -> str:
 
 
 def _save(figure: Figure, path: Path | str) -> Path:
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=DPI, facecolor="white")
-    return path
+    return write_figure(path, figure, dpi=DPI, facecolor="white")

@@ -214,6 +214,9 @@ def _notes(section: Section) -> str:
                 f"Seed {seed} of {markdown_of(column)} is not finished and left out: "
                 f"{have:,} of {want:,} rows."
             )
+    for column in section.columns:
+        if column in section.grid.cut:
+            notes.append(f"{markdown_of(column)}: {section.grid.cut[column]}")
     if section.gaps:
         notes.append("\\* over the episodes at hand. Missing cells:")
         notes += [

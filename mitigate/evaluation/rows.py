@@ -18,7 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.core.files import atomic_text, make_folder, open_text, writing
 from mitigate.core.json_files import parse_json
-from mitigate.core.names import short
+from mitigate.core.names import counted, short
+from mitigate.core.output import open_output
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 ROWS = "rows.jsonl"  # in the folder of an evaluation
 IDENTITY: dict[str, Any] = {
-    "agent": str,  # core/identity.py: weights, code, settings, sensors, what stands in front
+    "agent": str,  # agents/fingerprint.py: weights, code, settings, sensors, what stands in front
     "name": str,  # "base", "da_per_episode" ...: the column of a table
     "corruption": str,  # "clean" or one of the suite
     "severity": (int, float),
@@ -39,7 +40,7 @@ IDENTITY: dict[str, Any] = {
 REQUIRED = IDENTITY | {"success": (int, float), "spl": (int, float)}
 MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
-    *("collisions", "decisions", "steps"),
+    *("collisions", "decisions", "steps", "cut", "limit"),
 )
 SCENE = "scene"  # the entry of a row that says in which scene its episode is
 SUFFIXES = (".jsonl", ".jsonl.gz")
@@ -50,7 +51,7 @@ _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")  # a corruption; + is betwee
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
 _OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")  # ids of apartments; of the bridge
-_SHARES = ("severity", "success", "spl", "ndtw")  # numbers from 0 to 1
+_SHARES = ("severity", "success", "spl", "ndtw", "cut")  # numbers from 0 to 1
 _NUMBERS = ("severity", "seed", *MEASURES)
 _ROUNDING = 1e-9
 _MARK = "\ufeff"  # the byte order mark of editors of Windows; joined files have it in the middle
@@ -135,15 +136,32 @@ def append(path: Path | str, rows: Iterable[Row]) -> None:
         write(path, chain(read(path) if path.exists() else [], rows))
         return
     make_folder(path.parent)
-    with writing(path), open(path, "ab+") as file:
+    with writing(path), open_output(path, "ab+") as file:
         _mend(file)
         file.write(text.encode())
         file.flush()
         os.fsync(file.fileno())
 
 
-def write(path: Path | str, rows: Iterable[Row]) -> None:
-    """Write ``rows`` to ``path``, atomically, in place of what was there."""
+def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None:
+    """Replace the file ``path`` by ``rows``, atomically.
+
+    Args:
+        path: The file, which need not exist.
+        rows: All rows of the new file.
+        fewer: Whether they may be fewer than the file holds: the caller has compared them.
+
+    Raises:
+        ValueError: The file holds more rows than ``rows``, or is damaged. It stays as it is.
+    """
+    path, rows = Path(path), list(rows)
+    before = len(read(path)) if path.exists() and not fewer else 0
+    if len(rows) < before:
+        raise ValueError(
+            f"{path} holds {counted(before, 'row')}, and only {len(rows)} would replace them. The "
+            "file was left as it is. Find out why rows are missing, or move the file to another "
+            "folder and run the same command again."
+        )
     with atomic_text(path) as file:
         file.writelines(_line(row) for row in rows)
 
@@ -151,6 +169,19 @@ def write(path: Path | str, rows: Iterable[Row]) -> None:
 def upsert(*parts: Iterable[Row]) -> list[Row]:
     """Return the rows of all ``parts``, one an identity: the last in the first one's place."""
     return list({identity(row): row for row in chain(*parts)}.values())
+
+
+def cuts(rows: Iterable[Row]) -> str:
+    """Return in words how many episodes a world's ``limit=`` cut; empty if none were."""
+    rows = list(rows)
+    cut = [row for row in rows if row.get("cut")]
+    if not cut:
+        return ""
+    limits = " and ".join(f"{n:g}" for n in sorted({row["limit"] for row in cut if "limit" in row}))
+    return (
+        f"{len(cut):,} of {counted(len(rows), 'episode')} were cut by limit={limits or 'unknown'} "
+        "before the environment ended them; a cut episode is a failure unless it reports success."
+    )
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:

@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mitigate.agents.agent import Agent
-from mitigate.core.files import write_bytes
+from mitigate.core.files import write_bytes, write_figure
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import depth_picture, draw_path, strip
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
@@ -100,10 +100,7 @@ def draw_trajectories(
     getattr(world, "draw", _blank)(plan)
     _draw_walks(plan, world.reset(episode)[POSE], episode, walks)
     figure.suptitle("\n".join(textwrap.wrap(episode.instruction.text, 100)), fontsize=11)
-    out = Path(out)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=DPI, facecolor="white")
-    return out
+    return write_figure(out, figure, dpi=DPI, facecolor="white")
 
 
 def first_sight(

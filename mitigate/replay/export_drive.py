@@ -25,6 +25,7 @@ from mitigate.core.files import atomic_text, make_folder, write_bytes
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.options import paths_and_overrides
+from mitigate.core.output import output_folder
 from mitigate.corruptions.frame_files import counts
 
 FORMS = ("frames", "bag", "mcap")
@@ -71,10 +72,11 @@ def run(cfg: DictConfig, out: Path) -> list[Path]:
         raise ValueError("A drive has one camera: set env.views=1.")
     chosen, written = episodes(cfg.env, cfg.split, cfg.episodes), []
     paths = _paths(out, [episode.episode_id for episode in chosen], cfg.form)
-    with Progress("export_drive", len(chosen), unit="drive") as progress:
+    progress = Progress("export_drive", len(chosen), unit="drive")
+    with output_folder(out) as root, progress:
         for episode, path in zip(chosen, paths, strict=True):
             steps, words = list(oracle(world, episode)), episode.instruction.text
-            make_folder(out)
+            root.check()
             with tempfile.TemporaryDirectory(prefix=".drive.", dir=out) as aside:
                 draft = Path(aside) / path.stem
                 if cfg.form == "frames":
@@ -84,6 +86,7 @@ def run(cfg: DictConfig, out: Path) -> list[Path]:
                     write_bytes(path.with_suffix(".txt"), words.encode())
                 draft.rename(path)
             written.append(path)
+            root.expected.append(path)
             progress.advance(note=path.name)
     return written
 
@@ -145,7 +148,7 @@ def write_bag(path: Path, steps: Sequence[dict[str, np.ndarray]], form: str) -> 
     path = path.with_suffix(".bag") if form == "bag" else path
     if path.exists():
         raise ValueError(f"{path} is there already: name another folder, or delete it.")
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     old = form == "bag"
     store = get_typestore(Stores.ROS1_NOETIC if old else Stores.ROS2_HUMBLE)
     writer = Writer1(path) if old else Writer2(path, version=9, storage_plugin=StoragePlugin.MCAP)

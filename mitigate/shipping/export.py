@@ -25,7 +25,8 @@ from torch import Tensor
 from mitigate.agents import adapters, hardened
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint
-from mitigate.core.files import find, make_folder, put_folder, sha256
+from mitigate.core.files import find, put_folder, sha256, write_text
+from mitigate.core.output import output_folder
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.rows import Row
 from mitigate.shipping import others, programs
@@ -72,8 +73,8 @@ def export(
     if onnx and walks is not None:
         raise ValueError("--onnx is for the topological agent: folders of others hold no programs.")
     cfg, agent = finished(run, walks)
-    make_folder(out)
-    with tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
+    watched = output_folder(out, name)
+    with watched, tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
         draft = Path(aside) / name
         draft.mkdir()
         _write(draft, run, cfg, agent, name, list(rows), onnx, walks)
@@ -131,7 +132,7 @@ def _write(
     """Fill ``draft`` and check it."""
     config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)  # where it ran is no matter
     config = config.replace(f"{Path.cwd()}/", "")
-    (draft / hardened.CONFIG).write_text(config, encoding="utf-8")
+    write_text(draft / hardened.CONFIG, config)
     adapters_only = _only_adapters_trained(cfg, agent)
     known = facts(cfg, agent)  # before the slow part: what is missing shows at once
     shipped = agent
@@ -157,7 +158,7 @@ def _write(
         "metrics": metrics(found, weights),
         **made,
     }
-    (draft / hardened.README).write_text(readme(card), encoding="utf-8")
+    write_text(draft / hardened.README, readme(card))
     for file in draft.iterdir():
         file.chmod(0o644)  # safetensors are written for their owner alone
     card["files"] = {file.name: sha256(file) for file in sorted(draft.iterdir())}
@@ -278,4 +279,4 @@ def _open(tensors: dict[str, Tensor]) -> dict[str, Tensor]:
 
 
 def _write_json(file: Path, value: Any) -> None:
-    file.write_text(json.dumps(value, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    write_text(file, json.dumps(value, indent=2, allow_nan=False) + "\n")

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mitigate.core import progress
+from mitigate.core import output, progress
+from mitigate.core.files import make_folder
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -24,6 +25,8 @@ CPU = (
 class Journal:
     """Log of one run over ``total`` steps, from ``start``; use it as a context manager.
 
+    While it is open, every write below its folder checks that the folder was not removed.
+
     It shows a :class:`~mitigate.core.progress.Progress`: a bar in a terminal, else plain lines, to
     which :meth:`scalars` with ``line=True`` adds one with all its values.
     """
@@ -31,6 +34,9 @@ class Journal:
     def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
         from torch.utils.tensorboard import SummaryWriter  # slow to import
 
+        self._folder = make_folder(folder)
+        for path in self._folder.glob("events.out.tfevents.*"):  # TensorBoard appends by name
+            output.open_output(path, "ab").close()
         self._writer = SummaryWriter(str(folder), purge_step=start + 1)
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
@@ -39,6 +45,7 @@ class Journal:
         self._since = start, time.monotonic()
 
     def __enter__(self) -> Self:
+        self._root = output.register(self._folder)
         self._progress.__enter__()
         return self
 
@@ -50,6 +57,11 @@ class Journal:
     ) -> None:
         self._progress.__exit__(kind, error, trace)
         self._writer.close()
+        try:
+            if error is None:
+                self._root.check()
+        finally:
+            output.unregister(self._root)
 
     def advance(self, values: dict[str, float]) -> None:
         """Count one step, and keep its ``values`` for :meth:`means`."""
@@ -68,7 +80,11 @@ class Journal:
         self._since = self._progress.done, time.monotonic()
 
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
-        """Log ``values`` after ``step`` updates and, with ``line``, show them."""
+        """Log ``values`` after ``step`` updates and, with ``line``, show them.
+
+        Raises FolderLostError if the folder was removed: TensorBoard would not notice.
+        """
+        output.check(self._folder / "events")
         for name, value in values.items():
             self._writer.add_scalar(name, value, step)
         if not line:

@@ -10,10 +10,10 @@ from typing import Any
 from omegaconf import DictConfig
 from torch import nn
 
+from mitigate.agents.fingerprint import code_sha
 from mitigate.core import checkpoint, seeding
 from mitigate.core.build import build, plain
 from mitigate.core.files import atomic_text
-from mitigate.core.identity import code_sha
 from mitigate.training import states
 from mitigate.training.ranks import Ranks
 from mitigate.training.recipe import Recipe

@@ -21,6 +21,9 @@ from omegaconf import MISSING, DictConfig
 from mitigate.cluster import launcher, programs
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_object
+from mitigate.core.names import short
+from mitigate.core.output import output_folder
 from mitigate.core.progress import Progress, say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
@@ -67,7 +70,18 @@ def run(cfg: DictConfig) -> Path:
         return write_report(cfg, out, list(cfg.rows))
     made = cells(cfg)
     check(made, cfg)
-    failed = make(made, cfg)
+    with output_folder(out):
+        return _make_table(made, cfg, out)
+
+
+def _make_table(made: Sequence[Cell], cfg: DictConfig, out: Path) -> Path:
+    """Make the cells and write the report into ``out``; raise as :func:`run` does."""
+    failed = make(made, cfg) or [
+        f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
+        "program after they were measured."
+        for cell in made
+        if not _rows(cell.evaluation)
+    ]
     if len(failed) == len(made):
         raise ValueError("Every cell failed. " + " ".join(failed))
     problem = "Some cells failed; run again to go on with them. " + " ".join(failed)
@@ -110,11 +124,23 @@ def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
     """Add CPU seconds to a cell's account, which counts all its runs that had something to do."""
-    cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    cost = _read_cost(path) if path.is_file() else {}
     for kind, seconds in spent.items():
         cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
     with atomic_text(path) as file:
         json.dump(cost, file)
+
+
+def _read_cost(path: Path) -> dict[str, float]:
+    """Return a cell's CPU seconds by program. Raises ValueError if the file is damaged."""
+    again = "Delete the file: the cell's CPU time is then counted from the next run on."
+    cost = read_object(path, again)
+    for kind, seconds in cost.items():
+        if isinstance(seconds, bool) or not isinstance(seconds, (int, float)):
+            raise ValueError(
+                f"{path}: {short(kind)} must be seconds, got {short(seconds)}. {again}"
+            )
+    return cost
 
 
 def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:
@@ -207,7 +233,7 @@ def costs(out: Path) -> dict[str, dict[str, float]]:
     spent: dict[str, dict[str, list[float]]] = {}
     for path in sorted((out / "cells").glob(f"*/{COST}")):
         column = _named(path.parent)
-        for kind, seconds in json.loads(path.read_text(encoding="utf-8")).items():
+        for kind, seconds in _read_cost(path).items():
             spent.setdefault(kind, {}).setdefault(column, []).append(seconds / 60)
     return {
         kind: {column: sum(held) / len(held) for column, held in columns.items()}

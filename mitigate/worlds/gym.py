@@ -9,7 +9,7 @@ import numpy as np
 
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.seeded import SeededWorld
+from mitigate.worlds.seeded import SeededWorld, Success
 
 WHOLE = ""  # the name of an observation that is one frame
 
@@ -19,7 +19,8 @@ class GymWorld(SeededWorld):
     env: with discrete actions. Its observation is an RGB frame (uint8 [H, W, 3] or [V, H, W, 3]) or
     a ``Dict`` that holds one.
     entries: of a ``Dict``, by default those that are called "rgb", "depth" and "pose"; one within
-    another is "camera.rgb". success: an entry of ``info``. The others: as ``SeededWorld``.
+    another is "camera.rgb". success: an entry of ``info``, or a function. The others: as
+    ``SeededWorld``.
 
     Raises ValueError as ``SeededWorld`` does, and for actions that are not discrete.
     """
@@ -29,9 +30,9 @@ class GymWorld(SeededWorld):
         env: Any,
         entries: Mapping[str, str] | None = None,
         *,
-        success: str | None = None,
+        success: Success | None = None,
         unit: float | None = None,
-        limit: int = 500,
+        limit: int | None = None,
         rule: str | None = None,
     ) -> None:
         space = env.action_space
@@ -62,18 +63,11 @@ class GymWorld(SeededWorld):
             raise ValueError(f"Unknown action {action}: the environment has {space.n}.")
         first = int(getattr(space, "start", 0))
         seen, reward, terminated, truncated, self._info = self.env.step(action + first)
-        over = bool(terminated or truncated)
-        if over and self.success is not None and self.success not in self._info:
-            raise ValueError(
-                f"At the end of the episode info has no entry {self.success!r}, only "
-                f"{', '.join(map(repr, self._info)) or 'none'}: name another, or write it there, "
-                "False for a failure."
-            )
-        self._end_step(float(reward), over)
+        self._end_step(float(reward), bool(terminated or truncated))
         return self._observation(_by_name(seen))
 
-    def _flag(self) -> bool:
-        return bool(self._info.get(self.success))
+    def _report(self) -> Mapping[str, Any]:
+        return self._info
 
 
 def _by_name(seen: Any) -> dict[str, Any]:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,20 +30,42 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     ]
 
 
+@dataclass(frozen=True)
+class Ending:
+    """What a ``success`` function is asked at the end of an episode.
+
+    Attributes:
+        info: what the environment reported with the last step.
+        reward: of the last step.
+        total: sum of the rewards of the episode.
+        steps: number of steps.
+    """
+
+    info: Mapping[str, Any]
+    reward: float
+    total: float
+    steps: int
+
+
+Success = str | Callable[[Ending], bool]  # an entry of the environment's report, or a function
+
+
 class SeededWorld:
     """A subclass sets ``_steps``, ``_reward`` and ``done`` as it goes, and says what it saw.
 
     Args: found: shape, dtype and greatest value of each entry of the environment's observations.
     entries: names of its frames by ours ("rgb", "depth", "pose"), and of whatever else the agent
     reads, by the names that it reads ("goal"). success: the entry that says at
-    the end whether it went well; None: a reward above 0 in the last step. unit: metres of one unit
-    of depth, which whole numbers need, and depth that ends at 1 or below; None: 1. limit: steps
-    after which an episode is over at the latest. rule: what success means, in words, for the rows;
-    None: what ``success`` says.
+    the end whether it went well, or a function of the :class:`Ending`; None: the entry "success".
+    unit: metres of one unit of depth, which whole numbers need, and depth that ends at 1 or below;
+    None: 1. limit: steps after which an episode is cut; None: the environment ends it. Measures
+    then say ``limit``, and whether it ``cut`` the episode before the environment ended it. rule:
+    what success means, in words, for the rows; None: the entry's name. A function needs it.
 
     Depth that is not finite or below 0 reads 0, no reading. Raises ValueError if an entry is not
-    there, frames have other shapes than the suite takes, RGB is not uint8, or ``unit`` or ``limit``
-    is none; and for the first depth of an episode if that cannot be metres.
+    there, frames have other shapes than the suite takes, RGB is not uint8, ``unit`` or ``limit`` is
+    invalid, or a ``success`` function has no ``rule``; at the end of an episode that does not
+    report success; and for the first depth of an episode if that cannot be metres.
     """
 
     done = True
@@ -51,16 +74,21 @@ class SeededWorld:
         self,
         found: Mapping[str, tuple[tuple[int, ...], str, float]],
         entries: Mapping[str, str],
-        success: str | None,
+        success: Success | None,
         unit: float | None,
-        limit: int,
+        limit: int | None,
         rule: str | None,
     ) -> None:
-        if type(limit) is not int or limit < 1:
-            raise ValueError(f"limit={limit!r} must be a whole number of steps, 1 or more.")
-        self.entries, self.success = dict(entries), success
+        if limit is not None and (type(limit) is not int or limit < 1):
+            raise ValueError(
+                f"limit must be a whole number of steps >= 1 or None, got {limit!r}. None lets the "
+                "environment end its episodes."
+            )
+        _check_success(success, rule)
+        self.entries = dict(entries)
+        self.success: Success = "success" if success is None else success
         self.unit, self.limit = 1.0 if unit is None else unit, limit
-        self.rule = rule or (f"{success} at the end" if success else "reward > 0 at the end")
+        self.rule = rule or f"{self.success} at the end"
         named = self.entries.items()
         lacking = [repr(entry) if entry else name for name, entry in named if entry not in found]
         if lacking or not self.entries:
@@ -90,29 +118,51 @@ class SeededWorld:
             raise RuntimeError("The episode is over: reset first.")
 
     def measures(self) -> dict[str, float]:
-        """success, spl (the same: no shortest path is known) and steps."""
+        """Return success, spl (the same: no shortest path is known), steps; with a limit also
+        whether it cut the episode, and the limit."""
         won = int(self.done and self._won())
-        return {"success": won, "spl": float(won), "steps": self._steps}
+        found = {"success": won, "spl": float(won), "steps": self._steps}
+        if self.limit is None:
+            return found
+        return found | {"cut": int(self._cut), "limit": self.limit}
 
     def expert(self) -> None:
         """Nobody: a subclass that knows what to do next returns somebody with ``action()``."""
 
     def _begin(self, episode: Episode) -> int:
         """Count from 0 again; the seed of an episode, ``info["seed"]`` or else made of its id."""
-        self.done, self._reward, self._steps = False, 0.0, 0
+        self.done = self._cut = False
+        self._reward = self._total = 0.0
+        self._steps = 0
         seed = episode.info.get("seed", digest("episode", episode.episode_id))
         return int(seed) % 2**31
 
     def _end_step(self, reward: float, over: bool) -> None:
-        self._reward, self._steps = reward, self._steps + 1
-        self.done = over or self._steps >= self.limit
+        """Count a step. Raises ValueError if the environment ended the episode and does not say
+        whether it succeeded."""
+        self._reward = reward
+        self._total += reward
+        self._steps += 1
+        self._cut = not over and self.limit is not None and self._steps >= self.limit
+        self.done = over or self._cut
+        if over and isinstance(self.success, str) and self.success not in self._report():
+            raise ValueError(
+                f"At the end of an episode the environment must report success, but it has no "
+                f"entry {self.success!r}, only "
+                f"{', '.join(map(repr, self._report())) or 'none'}. Give success= the name of an "
+                "entry, which says False for a failure, or a function, such as "
+                'success=lambda end: end.total > 0, rule="return > 0".'
+            )
 
-    def _flag(self) -> bool:
-        """What the entry ``success`` says."""
-        raise NotImplementedError(f"{type(self).__name__} defines no _flag()")
+    def _report(self) -> Mapping[str, Any]:
+        """What the environment reported with the last step."""
+        raise NotImplementedError(f"{type(self).__name__} defines no _report()")
 
     def _won(self) -> bool:
-        return self._reward > 0 if self.success is None else self._flag()
+        if isinstance(self.success, str):
+            return bool(np.any(self._report().get(self.success, False)))
+        end = Ending(self._report(), self._reward, self._total, self._steps)
+        return bool(np.any(self.success(end)))
 
     def _observation(self, seen: Mapping[str, Any]) -> Observation:
         """Copies: an environment may use its buffers again."""
@@ -130,6 +180,20 @@ class SeededWorld:
             unit = "Give unit=, the metres of one unit of it (0.001 for millimetres)."
             check_metres(metres, "the depth", unit)
         return metres
+
+
+def _check_success(success: Any, rule: str | None) -> None:
+    """Raise ValueError for what cannot say whether an episode succeeded."""
+    if callable(success) and not rule:
+        raise ValueError(
+            "A success function needs rule=, what counts as success in words, such as "
+            'rule="return > 0": rows and tables show it.'
+        )
+    if not (success is None or callable(success) or (isinstance(success, str) and success)):
+        raise ValueError(
+            f"success must be the name of an entry or a function, got {success!r:.80}. Give "
+            'success="is_success", or success=lambda end: end.total > 0 with rule="return > 0".'
+        )
 
 
 def _check_shape(name: str, entry: str, shape: tuple[int, ...]) -> None:

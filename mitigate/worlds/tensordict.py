@@ -29,7 +29,7 @@ from mitigate.core.observation import (
 )
 from mitigate.core.seeding import generator
 from mitigate.worlds.episodes import Episode, read_episodes
-from mitigate.worlds.seeded import SeededWorld
+from mitigate.worlds.seeded import SeededWorld, Success
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
@@ -138,8 +138,8 @@ class EnvWorld(SeededWorld):
     """Any torchrl environment that shows frames as a world, to evaluate in under the suite.
 
     Args: env: not batched. entries: by default those that are called "rgb", "depth" and "pose"; one
-    within another is "camera.rgb". success: an entry of its tensordict. The others: as
-    ``SeededWorld``.
+    within another is "camera.rgb". success: an entry of its tensordict, or a function.
+    The others: as ``SeededWorld``.
 
     Raises ValueError as ``SeededWorld`` does, and for an environment that is batched.
     """
@@ -149,9 +149,9 @@ class EnvWorld(SeededWorld):
         env: EnvBase,
         entries: Mapping[str, str] | None = None,
         *,
-        success: str | None = None,
+        success: Success | None = None,
         unit: float | None = None,
-        limit: int = 500,
+        limit: int | None = None,
         rule: str | None = None,
     ) -> None:
         if env.batch_size.numel() != 1:
@@ -184,16 +184,10 @@ class EnvWorld(SeededWorld):
         self._now = self.env.step(self._now)["next"]
         reward = float(self._now.get(self.env.reward_key).sum())
         self._end_step(reward, bool(self._now["done"].any()))
-        if self.done and self.success is not None and self.success not in self._now.keys(True):
-            raise ValueError(
-                f"At the end of the episode the environment has no entry {self.success!r}, only "
-                f"{', '.join(map(repr, self._now.keys()))}: name another, or write it there, False "
-                "for a failure."
-            )
         return self._seen()
 
-    def _flag(self) -> bool:
-        return bool(self._now[self.success].any())
+    def _report(self) -> dict[str, Any]:
+        return {_dotted(key): self._now[key] for key in self._now.keys(True, True)}
 
     def _seen(self) -> Observation:
         keys = {_dotted(key): key for key in self._now.keys(True, True)}

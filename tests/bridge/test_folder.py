@@ -3,14 +3,19 @@ all of them."""
 
 import json
 import re
+import shutil
 import sys
 
 import pytest
 
+from mitigate.bridge import run as bridge_run
 from mitigate.bridge.conditions import cells
+from mitigate.bridge.finished import write_done
 from mitigate.bridge.identity import default_folder, files_of
+from mitigate.bridge.results import read
 from mitigate.core.conf import load_config
 from mitigate.core.files import sha256
+from mitigate.core.output import FolderLostError
 from mitigate.evaluation import rows
 from mitigate.worlds.measures import RULES
 
@@ -38,6 +43,12 @@ def program(tmp_path):
     return f"{sys.executable} {file} x"
 
 
+def finish_again(folder):
+    """Record the events of a condition as they are now, as if it had finished with them."""
+    entries = json.loads((folder / "done.json").read_text())
+    write_done(folder, entries | {"episodes_told": len(read(folder).ends)})
+
+
 def measured(out):
     """The conditions of the rows: {(corruption, severity)}."""
     return {(row["corruption"], row["severity"]) for row in rows.read(out / "rows.jsonl")}
@@ -58,6 +69,7 @@ def test_a_finished_condition_that_lacks_episodes_of_clean_is_measured_anew(run,
     events = out / "conditions" / "low_light-s0.6" / "events.jsonl"
     kept = [line for line in events.read_text().splitlines() if '"end"' not in line or "b" in line]
     events.write_text("\n".join(line for line in kept if '"episode": "a"' not in line) + "\n")
+    finish_again(events.parent)
     again = run(out, "conditions=[low_light]", program)
     assert again.returncode == 0 and "of clean's 4 episodes" in again.stdout
     assert "clean: done before" in again.stdout and "low_light-s0.6: started" in again.stdout
@@ -68,6 +80,7 @@ def test_an_episode_that_never_began_is_missed_too(run, program, tmp_path):
     assert run(tmp_path / "o", "conditions=[clean]", program).returncode == 0
     with open(folder / "clean" / "events.jsonl", "a") as file:
         file.write('{"event": "end", "scene": "", "episode": "z", "metrics": {"success": 1}}\n')
+    finish_again(folder / "clean")
     ran = run(tmp_path / "o", "conditions=[low_light]", program)
     assert ran.returncode == 1 and "1 of clean's 5 episodes is missing, such as z" in ran.stderr
 
@@ -219,3 +232,62 @@ def test_a_safeguard_makes_another_agent_of_its_own_folder(tmp_path):
     ]
     assert folder.name == "nav-s0.6" and other.name == "nav-rules-s0.6"
     assert made(["conditions=[clean]", "episodes=60"], tmp_path)[1].name == "nav-s0.6-e60"
+
+
+LOSE = """
+import numpy, shutil, sys, time, mitigate_hook
+for name in 'ab':
+    episode = mitigate_hook.connect(name, instruction='Go to the door.')
+    episode.corrupt({'rgb': numpy.full((8, 8, 3), 90, 'uint8')})
+    if name == 'b':
+        shutil.rmtree(sys.argv[1])
+        time.sleep(2)
+    episode.finish(success=True)
+"""
+
+
+@pytest.mark.parametrize("lost", ["o/conditions/clean", "o"])
+def test_run_notices_a_lost_folder(run, tmp_path, lost):
+    (tmp_path / "nav.py").write_text(LOSE)
+    command = f"{sys.executable} {tmp_path / 'nav.py'} {tmp_path / lost}"
+    with pytest.raises(FolderLostError, match="removed or replaced .* run the same command again"):
+        print(run(tmp_path / "o", "conditions=[clean]", command))
+    assert not (tmp_path / "o" / "table.md").exists()
+
+
+def test_run_notices_a_finished_condition_that_is_lost(run, program, tmp_path, monkeypatch):
+    run_here = bridge_run._run_here
+
+    def lose(waiting, jobs):
+        problems = run_here(waiting, jobs)
+        for cell in waiting:
+            if cell.name != "clean":
+                shutil.rmtree(cell.folder)
+        return problems
+
+    monkeypatch.setattr(bridge_run, "_run_here", lose)
+    ran = run(tmp_path / "o", "conditions=[low_light]", program)
+    assert ran.returncode == 1 and "low_light-s0.6: its result in" in ran.stderr
+
+
+@pytest.mark.parametrize("name", ["lock", "output.txt", "events.jsonl"])
+def test_run_does_not_write_through_a_link(run, program, tmp_path, name):
+    folder = tmp_path / "o" / "conditions" / "clean"
+    folder.mkdir(parents=True)
+    (tmp_path / "thesis.txt").write_text("mine")
+    (folder / name).symlink_to(tmp_path / "thesis.txt")
+    ran = run(tmp_path / "o", "conditions=[clean]", program)
+    assert (tmp_path / "thesis.txt").read_text() == "mine"
+    if name == "lock":
+        assert ran.returncode == 1 and "lock must be a regular file" in ran.stderr
+    else:  # what an earlier attempt left is put aside
+        assert ran.returncode == 0 and (folder / name).is_file()
+
+
+def test_run_rejects_a_linked_folder_of_a_condition(run, program, tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "o").mkdir()
+    (tmp_path / "o" / "conditions").symlink_to("../elsewhere")
+    ran = run(tmp_path / "o", "conditions=[clean]", program)
+    assert ran.returncode == 1 and "conditions must be a folder, got a symbolic link" in ran.stderr
+    assert not [*(tmp_path / "elsewhere").iterdir()]

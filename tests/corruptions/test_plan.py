@@ -1,11 +1,14 @@
 """Which files of a folder are frames: links are followed, whatever they lead to."""
 
 import os
+import shutil
 
 import numpy as np
 import pytest
 from PIL import Image
 
+from mitigate.core.output import FolderLostError
+from mitigate.corruptions import folders
 from mitigate.corruptions.folders import Settings, run
 
 
@@ -50,3 +53,27 @@ def test_a_pipe_is_left_out_with_the_reason(walk):
     assert found["written"] == 2
     left_out = {e["file"]: e["reason"] for e in found["left_out"]}
     assert left_out == dict.fromkeys(("0.5.png", "2.jpg", "3.npy"), "is no regular file")
+
+
+@pytest.mark.parametrize("lost", ["out", "out/a"])
+def test_run_notices_a_lost_folder(walk, monkeypatch, lost):
+    write, written = folders.write_bytes, []
+
+    def write_and_lose(path, data):
+        if path.name == "0.png" and path.parent.name == "b":
+            shutil.rmtree(walk / lost)
+        write(path, data)
+        written.append(path)
+
+    monkeypatch.setattr(folders, "write_bytes", write_and_lose)
+    with pytest.raises(FolderLostError, match="removed or replaced .* run the same command again"):
+        run(walk / "in", walk / "out", Settings("spatter", 0.6))
+    assert not (walk / lost).exists()
+
+
+def test_run_rejects_a_link_among_its_results(walk):
+    (walk / "out/a").symlink_to(walk / "elsewhere")
+    kept = (walk / "elsewhere/0.png").read_bytes()
+    with pytest.raises(ValueError, match="out/a must be a folder|no corrupt.json"):
+        run(walk / "in", walk / "out", Settings("spatter", 0.6))
+    assert (walk / "elsewhere/0.png").read_bytes() == kept

@@ -15,6 +15,7 @@ from safetensors.torch import save_file
 from torch import nn
 
 from mitigate.agents.adapters import insert_adapters, load_adapters, save_adapters
+from mitigate.agents.fingerprint import contents, fingerprint
 from mitigate.core.files import sha256
 from mitigate.encoders import plain_adapters
 from mitigate.encoders.loading import Wrapped
@@ -182,3 +183,30 @@ def test_it_works_as_a_copied_file(tmp_path):
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
     )
     assert done.stdout.split() == ["4", "16"]
+
+
+class Policy:
+    """An agent that holds an encoder."""
+
+    settings = {"kind": "policy"}
+
+    def __init__(self, encoder: nn.Module) -> None:
+        self.encoder = encoder
+
+
+def test_attach_changes_the_fingerprint_of_the_agent_by_target_and_weights(tmp_path):
+    def encoder() -> nn.Module:
+        torch.manual_seed(0)
+        return nn.Sequential(nn.Conv2d(3, 8, 3), nn.Conv2d(8, 8, 3)).eval()
+
+    hashes = [fingerprint(Policy(encoder()), {})]
+    for number, target in enumerate(("0", "1", "1")):
+        model = encoder()
+        insert_adapters(model, [target])
+        torch.manual_seed(number)
+        save_adapters(shaken(model), tmp_path / str(number))
+        agents = [Policy(plain_adapters.attach(encoder(), tmp_path / str(number))) for _ in "ab"]
+        assert fingerprint(agents[0], {}) == fingerprint(agents[1], {})
+        assert not contents(agents[0]).unreadable
+        hashes.append(fingerprint(agents[0], {}))
+    assert len(set(hashes)) == 4

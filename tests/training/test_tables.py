@@ -438,3 +438,11 @@ def test_a_cell_that_left_no_whole_row_does_not_hide_why(tmp_path, quick, monkey
         (broken.evaluation / "rows.jsonl").write_text(left)
         with pytest.raises(ValueError, match=f"{broken.column}, seed 0: train ended with"):
             tables.run(cfg)
+
+
+def test_run_names_cells_whose_rows_are_lost(tmp_path, quick):
+    cfg = config(tmp_path)
+    finished(cfg)
+    (tables.cells(cfg)[1].evaluation / "rows.jsonl").unlink()
+    with pytest.raises(ValueError, match="da_per_frame, seed 0: its rows in .* were removed"):
+        tables.run(cfg)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 import torch
 
 from mitigate.core import seeding
+from mitigate.core.output import FolderLostError, UnsafePathError
 from mitigate.core.precision import to_device
 from mitigate.training import states
 from mitigate.training.states import differences
@@ -43,6 +45,27 @@ def trained(folder: Path, **settings) -> dict[str, torch.Tensor]:
     made = recipe()
     Trainer(made, folder=folder, **{"steps": 20, "save_every": 5, **settings}).fit()
     return {name: value.clone() for name, value in made.agent.state_dict().items()}
+
+
+def test_trainer_notices_a_lost_folder(tmp_path, monkeypatch):
+    save = states.save
+
+    def save_and_lose(folder, state, **options):
+        written = save(folder, state, **options)
+        shutil.rmtree(folder)
+        return written
+
+    monkeypatch.setattr(states, "save", save_and_lose)
+    with pytest.raises(FolderLostError, match="run was removed or replaced"):
+        trained(tmp_path / "run", log_every=1)
+    assert not (tmp_path / "run").exists()
+
+
+def test_trainer_rejects_a_link_at_an_event_file(tmp_path):
+    (tmp_path / "mine").write_text("mine")
+    (tmp_path / "events.out.tfevents.1").symlink_to("mine")
+    with pytest.raises(UnsafePathError, match="tfevents.1 must be a regular file"):
+        trained(tmp_path)
 
 
 def same(one: dict[str, torch.Tensor], two: dict[str, torch.Tensor]) -> bool:

@@ -17,6 +17,7 @@ from mitigate.worlds.tensordict import EnvWorld, WorldEnv
 from mitigate.worlds.world import Corrupted
 
 gymnasium = pytest.importorskip("gymnasium")
+BY_REWARD = {"success": lambda end: end.reward > 0, "rule": "reward > 0 at the end"}
 SIZE = 16
 
 
@@ -86,7 +87,7 @@ def test_the_environment_shows_what_the_world_shows_and_pays_success_at_the_end(
 def test_a_gymnasium_environment_is_a_world(entry):
     from mitigate.worlds.gym import GymWorld
 
-    named = {} if entry is None else {"entries": {"rgb": entry}, "success": "won"}
+    named = BY_REWARD if entry is None else {"entries": {"rgb": entry}, "success": "won"}
     world, agent = GymWorld(Room(entry), **named), Brightness()
     assert world.sensors[RGB] == Sensor(RGB, (SIZE, SIZE, 3), "uint8")
     assert world.rule == ("reward > 0 at the end" if entry is None else "won at the end")
@@ -105,8 +106,73 @@ def test_a_success_that_info_never_says_is_told_at_the_end():
     world = GymWorld(Room(), success="is_success")
     with pytest.raises(ValueError, match="no entry 'is_success', only 'won'"):
         run_episode(Brightness(), world, episode(3), CLEAN, 0)
-    cut = GymWorld(Room(), success="is_success", limit=2)  # the environment did not end it
-    assert run_episode(Brightness(), cut, episode(3), CLEAN, 0)["success"] == 0
+    with pytest.raises(ValueError, match=r"no entry 'success'.*success=lambda end"):
+        run_episode(Brightness(), GymWorld(Room()), episode(3), CLEAN, 0)
+
+
+class Long(gymnasium.Wrapper):
+    """Ends after 525 steps, and only then reports success."""
+
+    def __init__(self) -> None:
+        super().__init__(Room())
+
+    def step(self, action):
+        seen, _, _, _, _ = self.env.step(1)
+        over = self.env.left <= -522
+        return seen, float(over), over, False, {"success": True} if over else {}
+
+
+def test_gym_world_lets_the_environment_end_an_episode():
+    from mitigate.worlds.gym import GymWorld
+
+    measures = run_episode(Brightness(), GymWorld(Long()), episode(3), CLEAN, 0)
+    assert measures["success"] == 1 and measures["steps"] == 525 and "cut" not in measures
+
+
+@pytest.mark.parametrize(("limit", "cut"), [(500, 1), (525, 0), (600, 0)])
+def test_gym_world_measures_whether_its_limit_cut_the_episode(limit, cut):
+    from mitigate.worlds.gym import GymWorld
+
+    measures = run_episode(Brightness(), GymWorld(Long(), limit=limit), episode(3), CLEAN, 0)
+    assert (measures["cut"], measures["limit"], measures["success"]) == (cut, limit, 1 - cut)
+
+
+def test_env_world_measures_whether_its_limit_cut_the_episode():
+    from mitigate.worlds.gym import GymWorld
+
+    for limit, cut in ((2, 1), (9, 0)):
+        env = WorldEnv(GymWorld(Room("rgb"), success="won"), [episode(3)])
+        world = EnvWorld(env, limit=limit, **BY_REWARD)
+        measures = run_episode(Brightness(), world, episode(3), CLEAN, 0)
+        assert (measures["cut"], measures["success"]) == (cut, 1 - cut)
+
+
+def test_run_episode_reports_a_world_that_never_ends(monkeypatch):
+    from mitigate.worlds.gym import GymWorld
+
+    monkeypatch.setattr("mitigate.evaluation.episode.MOST_STEPS", 20)
+    with pytest.raises(ValueError, match=r"step 21: .*not ended the episode after 20 steps"):
+        run_episode(Brightness(), GymWorld(Room(), **BY_REWARD), episode(99), CLEAN, 0)
+
+
+def test_gym_world_asks_a_success_function_about_the_whole_episode():
+    from mitigate.worlds.gym import GymWorld
+
+    ends = []
+    world = GymWorld(Room(), success=lambda end: ends.append(end) or True, rule="anything")
+    assert run_episode(Brightness(), world, episode(3), CLEAN, 0)["success"] == 1
+    assert (ends[0].steps, ends[0].total, ends[0].reward, ends[0].info["won"]) == (4, 1.0, 1.0, 1)
+    assert world.rule == "anything"
+
+
+@pytest.mark.parametrize("success", [3, "", ["won"]])
+def test_gym_world_rejects_invalid_success(success):
+    from mitigate.worlds.gym import GymWorld
+
+    with pytest.raises(ValueError, match="success must be the name of an entry or a function"):
+        GymWorld(Room(), success=success)
+    with pytest.raises(ValueError, match="needs rule="):
+        GymWorld(Room(), success=len)
 
 
 class Within(Room):
@@ -229,7 +295,7 @@ def test_depth_is_as_far_in_torchrl_as_it_is_in_the_world(most, far):
 def test_a_success_that_torchrl_never_says_is_told_at_the_end():
     from mitigate.worlds.gym import GymWorld
 
-    env = WorldEnv(GymWorld(Room("rgb")), [episode(1)])
+    env = WorldEnv(GymWorld(Room("rgb"), success="won"), [episode(1)])
     with pytest.raises(ValueError, match=r"no entry 'won', only .*'rgb'"):
         run_episode(Brightness(), EnvWorld(env, success="won"), episode(1), CLEAN, 0)
 
@@ -241,11 +307,11 @@ def test_depth_that_is_none_is_no_reading(value):
     assert not GymWorld(Deep(np.float32(value))).reset(episode(3))["depth"].any()
 
 
-@pytest.mark.parametrize("limit", [0, -3, 1.5, "3", None])
+@pytest.mark.parametrize("limit", [0, -3, 1.5, "3", True])
 def test_an_episode_without_a_step_is_refused(limit):
     from mitigate.worlds.gym import GymWorld
 
-    with pytest.raises(ValueError, match="whole number of steps, 1 or more"):
+    with pytest.raises(ValueError, match="limit must be a whole number of steps >= 1 or None"):
         GymWorld(Room(), limit=limit)
 
 
@@ -271,7 +337,7 @@ def test_a_gymnasium_environment_without_frames_is_refused_with_what_it_has():
 def test_an_environment_of_torchrl_is_a_world():
     """There and back: the apartments as an environment, and that as a world again."""
     listed = load_episodes("val_seen")[:1]
-    world = EnvWorld(WorldEnv(ApartmentsWorld(SIZE), listed))
+    world = EnvWorld(WorldEnv(ApartmentsWorld(SIZE), listed), **BY_REWARD)
     assert world.sensors[RGB].shape == (12, SIZE, SIZE, 3)
 
     class Stopper(Brightness):

@@ -24,8 +24,11 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.core.files import atomic_text, write_bytes
+from mitigate.bench.growth import DAY, MUCH, Growth, growth
+from mitigate.bench.loads import LOADS
+from mitigate.core.files import atomic_text, make_folder, write_bytes, write_figure
 from mitigate.core.markdown import markdown_table
+from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 from tools.bench.growth import DAY, MUCH, Growth, growth
 from tools.bench.loads import LOADS
@@ -67,7 +70,7 @@ def watch(name: str, seconds: float, every: float, out: Path) -> tuple[list[Samp
     found: list[Sample] = []
     with tempfile.TemporaryDirectory(prefix="soak-", dir=out) as folder:
         log = out / f"{name}.txt"
-        with open(log, "w", encoding="utf-8") as said:
+        with open_output(log, "w", encoding="utf-8") as said:
             process = subprocess.Popen(
                 [sys.executable, "-m", "tools.bench.loads", name, str(Path(folder) / "load")],
                 stdout=said,
@@ -132,8 +135,7 @@ def draw(samples: dict[str, list[Sample]], out: Path) -> Path:
             axes[row, column].set_ylabel(name)
         axes[0, column].set_title(load)
         axes[1, column].set_xlabel("minutes")
-    figure.savefig(out / "soak.png", dpi=100)
-    return out / "soak.png"
+    return write_figure(out / "soak.png", figure, dpi=100)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -148,7 +150,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     if chosen.minutes <= 0 or chosen.every <= 0:
         parser.error("--minutes and --every must be above 0.")
-    chosen.out.mkdir(parents=True, exist_ok=True)
+    make_folder(chosen.out)
     samples, found, problems = {}, {}, []
 
     def watched(load: str) -> tuple[list[Sample], str]:

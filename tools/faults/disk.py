@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from mitigate.core.output import open_output
+
 FILLER = "filler"  # the file that leaves no room
 
 
@@ -29,7 +31,7 @@ def small_disk(folder: Path, megabytes: int) -> Iterator[bool]:
 def filled(folder: Path, left: int) -> Iterator[None]:
     """Within it, ``left`` bytes are free on the file system of ``folder``."""
     free = shutil.disk_usage(folder).free
-    with open(folder / FILLER, "wb") as file:
+    with open_output(folder / FILLER, "wb") as file:
         os.posix_fallocate(file.fileno(), 0, max(1, free - left))
     try:
         yield

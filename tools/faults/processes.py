@@ -9,6 +9,9 @@ import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from mitigate.core.files import make_folder
+from mitigate.core.output import open_output
+
 ROOT = Path(__file__).resolve().parents[2]
 LATE = 600.0  # seconds after which a command hangs
 
@@ -19,13 +22,13 @@ class Command:
     def __init__(
         self, arguments: list[str], log: Path, environment: Mapping[str, str] | None = None
     ) -> None:
-        log.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(log.parent)
         self.log, self.began = log, time.monotonic()
         own = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONUNBUFFERED": "1", **(environment or {})}
         own["PYTHONPATH"] = os.pathsep.join(
             path for path in (own.get("PYTHONPATH"), str(ROOT)) if path
         )
-        with open(log, "w", encoding="utf-8") as out:
+        with open_output(log, "w", encoding="utf-8") as out:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", *arguments],
                 cwd=ROOT,

@@ -8,6 +8,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 
+from mitigate.core.files import write_figure
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.registry import modality
 from mitigate.corruptions.suite import NAMES, corrupt
@@ -123,4 +124,4 @@ def draw(found: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
     panels[2].set(yscale="log")
     panels[1].legend(fontsize=7, ncols=2, loc="upper right")
     panels[2].legend(fontsize=7, loc="lower right")
-    figure.savefig(path, dpi=90)
+    write_figure(path, figure, dpi=90)

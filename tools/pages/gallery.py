@@ -95,7 +95,6 @@ def contact_sheet(
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"Cannot write {path}: its name must end in {' or '.join(SUFFIXES)}.")
-    path.parent.mkdir(parents=True, exist_ok=True)
     key = key or Key(0, "contact sheet")
     high, wide = rgb.shape[1] + GUTTER, rgb.shape[2] * len(views) + GUTTER
     shape = (TITLE + high * len(names), LABEL + wide * len(severities), 3)
@@ -114,8 +113,8 @@ def contact_sheet(
             sheet[top : top + cell.shape[0], left : left + cell.shape[1]] = cell
     png = path.suffix.lower() == ".png"
     quality = [] if png else [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY]
-    if not cv2.imwrite(str(path), sheet[..., ::-1], quality):
-        raise ValueError(f"Cannot write {path}: is there space, and permission?")
+    _, encoded = cv2.imencode(path.suffix.lower(), sheet[..., ::-1], quality)
+    write_bytes(path, encoded.tobytes())
     return sheet
 
 

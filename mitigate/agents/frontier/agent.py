@@ -69,6 +69,8 @@ class FrontierAgent(nn.Module):
     Raises ValueError for an unknown name in ``blind``.
     """
 
+    fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"  # in published fingerprints
+
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)  # it finds objects, it follows no routes
     together = 8  # episodes side by side (ours): encoding one frame alone takes twice as long

@@ -54,6 +54,8 @@ class RecurrentAgent(nn.Module):
     Raises ValueError for an unknown name in ``sensors`` or ``blind``, and for no sensor.
     """
 
+    fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"  # in published fingerprints
+
     views = 1
     actions = ACTIONS
     together = 8  # episodes side by side (ours): a step of one costs 2.5 times as much alone

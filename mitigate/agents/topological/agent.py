@@ -61,6 +61,10 @@ class TopologicalAgent(nn.Module):
     Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
     """
 
+    fingerprint_kind = (
+        "mitigate.agents.topological.agent.TopologicalAgent"  # in published fingerprints
+    )
+
     views, sensors = VIEWS, (RGB, DEPTH, POSE)
     rgb_encoder: RGBEncoder | ImageNetEncoder
 

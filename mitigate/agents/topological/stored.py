@@ -25,6 +25,7 @@ from mitigate.agents.topological.stored_walk import Features, ScenePoses, Stored
 from mitigate.core import precision
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import weights_sha
+from mitigate.core.files import make_folder
 from mitigate.core.observation import RGB
 from mitigate.core.progress import Progress
 from mitigate.core.signals import unbroken
@@ -84,7 +85,7 @@ class Store:
         """Fill the store; what is there is kept. It holds what the encoders see, also those of a
         blind agent (:meth:`Features.blank`). ``workers``: processes, to the same bits for any
         number; None: one a core if there is work for them, 0: this one alone."""
-        (self.corrupted if self.variants else self.folder).mkdir(parents=True, exist_ok=True)
+        make_folder(self.corrupted if self.variants else self.folder)
         scenes, every = self.world.scenes, range(self.variants + 1)
         missing = [
             (scene, [v for v in every if not self.path(scene, v).exists()]) for scene in scenes

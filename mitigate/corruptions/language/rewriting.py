@@ -14,6 +14,8 @@ from collections.abc import Callable
 from hashlib import blake2b
 from pathlib import Path
 
+from mitigate.core.files import make_folder
+from mitigate.core.output import open_output
 from mitigate.corruptions.language.style import MANNERS
 
 TONES = {
@@ -81,8 +83,8 @@ class Rewriter:
         return self._known[key]
 
     def _append(self, line: dict[str, object]) -> None:
-        self._cache.parent.mkdir(parents=True, exist_ok=True)
-        with open(self._cache, "ab+") as file:
+        make_folder(self._cache.parent)
+        with open_output(self._cache, "ab+") as file:
             file.seek(-1 if file.tell() else 0, os.SEEK_END)
             whole = file.read() in (b"", b"\n")
             file.write((("" if whole else "\n") + json.dumps(line) + "\n").encode())

@@ -15,10 +15,10 @@ from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.agents.loading import agent_option
 from mitigate.agents.observation import check_fits
+from mitigate.agents.state import in_eval_mode
 from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
 from mitigate.core.build import located, maker
-from mitigate.core.held import in_eval_mode
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
 from mitigate.core.options import without_config_folder
@@ -30,10 +30,10 @@ from mitigate.evaluation import making, walked
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate, front_of
+from mitigate.evaluation.known import Known
 from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
-from mitigate.evaluation.leaderboard.known import Known
 from mitigate.evaluation.rows import ROWS
 from mitigate.guards.frames.restorer import restorer_of
 from mitigate.guards.text.guard import open_safeguard
@@ -50,6 +50,7 @@ def benchmark(
     agent: Any,
     *,
     name: str | None = None,
+    version: str | None = None,
     split: str | None = None,
     episodes: int | EllipsisType | None = ...,
     suite: str | Sequence[str] = "full",
@@ -71,7 +72,8 @@ def benchmark(
 
     Args:
         agent: any object of the contract (``mitigate/agents/agent.py``), or a path of weights.
-        name: heading of the entry; None: of the weights' folder, or the agent's class.
+        name: heading of the entry; None: of the weights' folder, or the agent's class. version:
+            names what cannot be read of the agent (hooks); without it its rows are not reused.
         split: list of episodes of the world; None: its own first, or the name of your own world.
             episodes: how many, spread over the list; None: all, as entries have; unless told, 20 of
             a split's, and all that are ``listed``.
@@ -87,7 +89,7 @@ def benchmark(
     with rows of another world, FileNotFoundError for missing weights.
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
-    loaded, told = isinstance(agent, (str, Path)), {"training_data": training_data, "link": link}
+    told = {"training_data": training_data, "link": link}
     agent, name = _agent(agent, name, cfg, seed, evaluation.fronts(safeguard, restore))
     check_texts(name=name, **told)
     made = world or maker(cfg.env.world)
@@ -95,17 +97,20 @@ def benchmark(
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
     front = _front(safeguard, restore, first)
-    known = Known(agent, first.sensors, front_of(**front), loaded=loaded)
-    known.check(file, name)
-    label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known_as": known.hash}
+    known = Known(agent, first.sensors, front_of(**front), version).check(file, name)
+    label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
     with known:
         _tell(agent, made, chosen, met, workers)
         with FolderLock(file.parent):
             walked.keep(file.parent, first, made_by, split, chosen)
             rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
-    told["file"] = "" if file.is_absolute() else file.as_posix()
     shown = sensors_of(first.sensors, getattr(agent, "sensors", None))
-    return entry_of(rows, name, severity=severity, sensors=shown, **told)
+    return entry_of(rows, name, severity=severity, sensors=shown, file=_relative(file), **told)
+
+
+def _relative(file: Path) -> str:
+    """The path as an entry shows it: an absolute one is of this machine alone."""
+    return "" if file.is_absolute() else file.as_posix()
 
 
 def _conditions(

@@ -222,6 +222,8 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
             notes.append(
                 f"Seed {seed} of {column} is not finished and left out: {have:,} of {want:,} rows."
             )
+    cut = section.grid.cut
+    notes += [f"{column}: {cut[column]}" for column in section.columns if column in cut]
     if None in pairs.values():
         notes.append("There is no difference of agents without a seed in common.")
     if len(section.columns) > BASELINES:

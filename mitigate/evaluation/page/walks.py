@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.agents.agent import Agent
-from mitigate.core.identity import identity
+from mitigate.agents.fingerprint import fingerprint
 from mitigate.core.observation import POSE
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import instruction
@@ -53,7 +53,7 @@ def walk_again(
         raise ValueError("This world gives no poses, so there is no walk to be drawn.")
     known = {episode.episode_id: episode for episode in episodes}
     spread = {episode_id: n * GOLDEN % 1 for n, episode_id in enumerate(known)}
-    hashes = {name: identity(agent, world.sensors) for name, agent in agents.items()}
+    hashes = {name: fingerprint(agent, world.sensors) for name, agent in agents.items()}
     own = [row for row in _own(rows, hashes) if row["episode_id"] in known and row["seed"] == seed]
     own.sort(key=lambda row: spread[row["episode_id"]])
     chosen = choose(own, list(agents), most)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.core import checkpoint, checksums
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.json_files import read_json
 from mitigate.core.observation import DEPTH, RGB
 
@@ -27,7 +27,7 @@ def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path
     """Write ``restorer`` into ``folder``; return it. The card says what the weights add up to, as
     they are read again."""
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     checkpoint.save_weights(restorer, folder, half=half)
     if half:
         checkpoint.load_weights(restorer, folder)

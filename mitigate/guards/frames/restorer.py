@@ -13,8 +13,8 @@ import torch
 from torch import nn
 
 from mitigate.core.checkpoint import weights_sha
+from mitigate.core.checksums import DIGITS
 from mitigate.core.files import find
-from mitigate.core.identity import DIGITS
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit

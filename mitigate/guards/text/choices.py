@@ -75,7 +75,7 @@ def identity(choice: str) -> str:
     its answers are judged too. "none" has no hash."""
     if choice == "none":
         return choice
-    from mitigate.core.identity import DIGITS
+    from mitigate.core.checksums import DIGITS
 
     first, plus, second = choice.partition("+")
     parts = [first, second] if plus and first in TAGGERS else [choice]

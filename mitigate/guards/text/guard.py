@@ -15,12 +15,17 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Protocol
 
-from mitigate.core.files import find
+from mitigate.core.files import find, make_folder, writing
 from mitigate.core.names import unknown
 from mitigate.guards.text.addresses import check_choice
 from mitigate.guards.text.choices import ADAPTER, CHOICES, TAGGERS, VERSION, holds_tags, identity
 from mitigate.guards.text.draft import Decision, Draft
 from mitigate.guards.text.plain.plainly_said import Tags
+from mitigate.core.output import open_output
+from mitigate.safeguard.addresses import check_choice
+from mitigate.safeguard.choices import ADAPTER, CHOICES, TAGGERS, VERSION, holds_tags, identity
+from mitigate.safeguard.draft import Decision, Draft
+from mitigate.safeguard.plain.plainly_said import Tags
 
 CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
@@ -157,9 +162,9 @@ def _opened(choice: str, log: str | Path | None) -> Safeguard | None:
 
 
 def _append(path: Path, decisions: list[Decision]) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     lines = "".join(json.dumps(asdict(d)) + "\n" for d in decisions)
-    with open(path, "a", encoding="utf-8") as file:
+    with writing(path), open_output(path, "a", encoding="utf-8") as file:
         file.write(lines)
         file.flush()
         os.fsync(file.fileno())

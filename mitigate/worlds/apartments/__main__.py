@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mitigate.core.files import write_figure
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.pictures import draw_path, strip
 from mitigate.worlds.apartments.apartment import Apartment
@@ -46,8 +47,7 @@ def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
     arrow = 0.6 * np.array([-np.sin(simulator.heading), np.cos(simulator.heading)])
     axes[2].arrow(*simulator.xy, *arrow, width=0.05, color="#1f77b4", zorder=8)
     figure.suptitle("\n".join(textwrap.wrap(made.instruction.text, 100)), fontsize=11)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(out, dpi=80, facecolor="white")
+    write_figure(out, figure, dpi=80, facecolor="white")
     print(
         f"{made.episode_id}: {made.geodesic_distance:.1f} m. {made.instruction.text}\nwrote {out}"
     )

@@ -27,6 +27,7 @@ from typing import Any
 from mitigate.core.arguments import asks_help, paths_and_options
 from mitigate.core.files import atomic_text, write_bytes
 from mitigate.core.names import unknown
+from mitigate.core.output import output_folder
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.furniture import CATEGORIES
 from mitigate.worlds.apartments.gltf import glb
@@ -62,6 +63,11 @@ ALLOWED = {"split": SPLITS, "task": ("vln", "ogn", "both")}
 def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> list[Path]:
     """Write apartments and their episodes to ``out``; return the paths of the episode lists."""
     listed: dict[str, list[Episode]] = {task: _episodes(split, task, scenes) for task in tasks}
+    with output_folder(out):
+        return _write(out, split, listed)
+
+
+def _write(out: Path, split: str, listed: dict[str, list[Episode]]) -> list[Path]:
     places = sorted({e.scene_id for episodes in listed.values() for e in episodes})
     for number, scene in enumerate(places):
         write_bytes(out / "scenes" / f"{scene}.glb", glb(apartment_of(scene).faces))

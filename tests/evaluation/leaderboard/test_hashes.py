@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from mitigate.agents.fingerprint import fingerprint
 from mitigate.core import conf
 from mitigate.core.build import maker
-from mitigate.core.identity import identity
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.leaderboard import entry
 
@@ -28,4 +28,4 @@ def test_a_shipped_agent_has_the_hash_of_its_entry(kind):
         for one in entry.load(ROOT / f"docs/leaderboard/{kind}.json").agents
         if one["seed"] == 0
     ]
-    assert identity(agent, maker(cfg.env.world)().sensors) == said
+    assert fingerprint(agent, maker(cfg.env.world)().sensors) == said

@@ -20,11 +20,14 @@ from gymnasium import spaces
 from torch import nn
 
 import mitigate
-from mitigate.core.identity import made_of
+from mitigate.agents.adapters import insert_adapters, save_adapters
+from mitigate.agents.fingerprint import contents
 from mitigate.core.observation import STOP
-from mitigate.evaluation import rows
+from mitigate.encoders.plain_adapters import attach
+from mitigate.evaluation import report, rows
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
+from mitigate.evaluation.sections import sections
 from mitigate.worlds.episodes import Episode, Goal, Instruction, write_episodes
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import seeded_episodes
@@ -157,10 +160,50 @@ def test_rows_of_an_agent_that_nothing_tells_are_not_taken_up(walk):
         settings = {"weights": "the first"}
 
     walk(Hidden(1))
-    with pytest.raises(ValueError, match="a Hidden has no settings.*its session cannot be looked"):
+    with pytest.raises(ValueError, match=r"this Hidden, session \(.*cannot be read. Give version="):
         walk(Hidden(2))
     for _ in range(2):
         walk(Told(1), out="told")
+
+
+def test_benchmark_reuses_rows_of_a_version_and_runs_another_again(walk, capsys):
+    first = walk(Hidden(1), version="1")
+    capsys.readouterr()
+    assert walk(Hidden(1), version="1").agents == first.agents
+    assert "all done before" in capsys.readouterr().out
+    assert walk(Hidden(2), version="2").agents != first.agents
+    with pytest.raises(ValueError, match="version must be a non-empty string, got 2"):
+        walk(Hidden(2), version=2)
+
+
+def test_benchmark_does_not_reuse_rows_after_a_forward_hook(walk, capsys):
+    agent = Holder(weight(1))
+    walk(agent)
+    agent.nets["policy"].register_forward_hook(lambda module, inputs, output: -output)
+    hooked = walk(agent)
+    assert hooked.SR["clean"][0] == 0
+    assert "nets.policy.forward hook (a forward hook" in capsys.readouterr().out
+    with pytest.raises(ValueError, match=r"forward hook.*cannot be read. Give version="):
+        walk(agent)
+    assert walk(agent, version="hooked").SR["clean"][0] == 0
+
+
+def test_benchmark_does_not_reuse_rows_after_adapters_were_attached(walk, tmp_path):
+    class Encoding(Holder):
+        def act(self, observation) -> int:
+            return int(self.nets["policy"](torch.ones(1, 4, 2, 2)).sum() > 99)  # STOP at once
+
+    def encoder() -> nn.Module:
+        torch.manual_seed(0)
+        return nn.Sequential(nn.Conv2d(4, 4, 1)).eval()
+
+    model = encoder()
+    insert_adapters(model, ["0"])
+    save_adapters(model, tmp_path / "adapters")
+    agent = Encoding(encoder())
+    first = walk(agent)
+    attach(agent.nets["policy"], tmp_path / "adapters")
+    assert walk(agent).agents != first.agents
 
 
 def test_a_network_or_array_beside_does_not_tell_what_is_hidden(walk):
@@ -168,7 +211,7 @@ def test_a_network_or_array_beside_does_not_tell_what_is_hidden(walk):
         first, other = Hidden(1), Hidden(2)
         first.mean = other.mean = beside
         walk(first, out=f"rows{number}")
-        with pytest.raises(ValueError, match="its session cannot be looked"):
+        with pytest.raises(ValueError, match="session .* cannot be read"):
             walk(other, out=f"rows{number}")
 
 
@@ -219,7 +262,7 @@ def test_an_attribute_that_was_changed_makes_another_agent(walk, other, capsys):
     first = walk(Near(1.0))
     assert "another agent" not in capsys.readouterr().out
     assert walk(Near(1.0)).agents == first.agents != walk(other).agents
-    assert "whose class, code, weights or attributes were others" in capsys.readouterr().out
+    assert "with another class, code, weights, attributes" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -232,11 +275,8 @@ def test_an_attribute_that_was_changed_makes_another_agent(walk, other, capsys):
     ],
 )
 def test_what_an_agent_holds_tells_it_from_another_one(one, other):
-    made = [made_of(Near(1.0, held), attributes=True) for held in (one, one, other)]
+    made = [contents(Near(1.0, held)).parts for held in (one, one, other)]
     assert made[0] == made[1] != made[2]
-    first, second = Near(1.0, [one], [one]), Near(1.0, [one], [one])
-    first.now, second.now = first.others[0], second.others[1]
-    assert made_of(first, attributes=True) != made_of(second, attributes=True)
 
 
 @dataclass(eq=True)
@@ -291,6 +331,16 @@ def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
 def test_what_is_no_option_of_the_agent_or_the_world_is_refused(walk, option):
     with pytest.raises(ValueError, match=f"{option} has no effect here"):
         walk(Holder(weight(1)), options=[option])
+
+
+def test_benchmark_reports_episodes_that_a_limit_cut(walk, capsys):
+    walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=1))
+    assert "Holder: 4 of 4 episodes were cut by limit=1" in capsys.readouterr().out
+    found = rows.read(Path("rows/rows.jsonl"))
+    assert {(row["cut"], row["limit"], row["success"]) for row in found} == {(1, 1, 0)}
+    assert "Holder: 4 of 4 episodes were cut by limit=1" in report.markdown(sections(found))
+    walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won", limit=9), out="whole")
+    assert "were cut" not in capsys.readouterr().out
 
 
 def test_episodes_may_be_some_of_those_listed(walk):

@@ -9,7 +9,7 @@ import re
 import numpy as np
 import pytest
 
-from mitigate.core.identity import identity
+from mitigate.agents.fingerprint import fingerprint
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import table
 from mitigate.evaluation.episode import run_episode
@@ -184,7 +184,7 @@ def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
             measures = run_episode(agent, world, episode, met, 0)
             at = {"corruption": met.name, "severity": met.severity, "name": name}
-            at["agent"] = identity(agent, world.sensors)
+            at["agent"] = fingerprint(agent, world.sensors)
             made.append(row(episode.episode_id, 0, **at) | measures)
     return made
 

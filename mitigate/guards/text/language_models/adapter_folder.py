@@ -11,8 +11,9 @@ from typing import Any
 
 from torch import Tensor
 
-from mitigate.core import checksums
+from mitigate.core import checksums, output
 from mitigate.core.checkpoint import load_tensors
+from mitigate.core.files import make_folder
 from mitigate.core.json_files import read_json
 
 CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
@@ -37,13 +38,14 @@ def write_adapter(
     Files appear whole or not at all; beside the weights lies their sha256.
     """
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     with tempfile.TemporaryDirectory(f".{os.getpid()}.tmp", ".adapter-", folder) as temporary:
         network.save_pretrained(temporary, state_dict=tensors, save_embedding_layers=False)
         (Path(temporary) / CARD).write_text(json.dumps(card, indent=1) + "\n", "utf-8")
         shutil.copymode(Path(temporary) / CARD, Path(temporary) / ADAPTER)  # which was private
         digest = checksums.announce(folder / ADAPTER, Path(temporary) / ADAPTER)
         for name in (CONFIG, ADAPTER, CARD):
+            output.check(folder / name)
             os.replace(Path(temporary) / name, folder / name)
     checksums.settle(folder / ADAPTER, digest)
 

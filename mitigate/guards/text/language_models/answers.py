@@ -6,6 +6,9 @@ import os
 import sqlite3
 from pathlib import Path
 
+from mitigate.core.files import make_folder
+from mitigate.core.output import open_output
+
 LONGEST = 1 << 16  # characters of an answer (ours)
 
 
@@ -14,7 +17,9 @@ class AnswerCache:
     further on, or written by another process for long, costs a question more, and no error."""
 
     def __init__(self, path: Path) -> None:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
+        if path.exists() or path.is_symlink():  # SQLite would follow a link
+            open_output(path, "ab").close()
         self._path = path.resolve()
         self._opened: dict[int, sqlite3.Connection] = {}  # by process: none survives a fork
         try:

@@ -15,8 +15,8 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate.core.held import DEPTH, held, in_eval_mode
-from mitigate.core.identity import identity
+from mitigate.agents.fingerprint import fingerprint
+from mitigate.agents.state import in_eval_mode, read_state
 
 
 def net(weight: float = 1.0) -> nn.Linear:
@@ -47,7 +47,9 @@ PLACES = {
 )
 def test_other_weights_are_another_agent_wherever_they_are(place, kinds):
     first, other = (PLACES[place](thing) for thing in kinds)
-    assert identity(first, {}) == identity(PLACES[place](kinds[0]), {}) != identity(other, {})
+    assert (
+        fingerprint(first, {}) == fingerprint(PLACES[place](kinds[0]), {}) != fingerprint(other, {})
+    )
 
 
 def test_a_list_of_networks_in_a_network_counts():
@@ -56,24 +58,29 @@ def test_a_list_of_networks_in_a_network_counts():
         made.further = [net(weight)]
         return made
 
-    assert identity(agent(1), {}) == identity(agent(1), {}) != identity(agent(2), {})
+    assert fingerprint(agent(1), {}) == fingerprint(agent(1), {}) != fingerprint(agent(2), {})
 
 
-def test_arrays_beside_networks_are_memory_and_no_weights():
-    first = SimpleNamespace(net=net(), hidden=torch.zeros(2))
-    later = SimpleNamespace(net=net(), hidden=torch.ones(2))
-    assert identity(first, {}) == identity(later, {})
+def test_arrays_beside_networks_count_without_settings():
+    first = SimpleNamespace(net=net(), mean=torch.zeros(2))
+    other = SimpleNamespace(net=net(), mean=torch.ones(2))
+    assert fingerprint(first, {}) != fingerprint(other, {})
+    first.settings = other.settings = {"size": 2}
+    assert fingerprint(first, {}) == fingerprint(other, {})
 
 
-def test_circles_end_and_what_cannot_be_looked_into_is_named():
-    agent = SimpleNamespace(itself=None, lock=iter(()), deep=SimpleNamespace())
-    agent.itself, place = agent, agent.deep
-    for _ in range(DEPTH + 1):
+def test_read_state_follows_cycles_and_reports_what_it_cannot_read():
+    agent = SimpleNamespace(itself=None, session=iter(()), deep=SimpleNamespace())
+    agent.itself = agent
+    place = agent.deep
+    for _ in range(2000):
         place.deep = SimpleNamespace()
         place = place.deep
-    found = held(agent)
-    assert found.unknown == ["lock", ".".join(["deep"] * DEPTH)]
-    assert held(SimpleNamespace(steps=1, words=["a"], where={"x": 1.5})).unknown == []
+    place.net = net()
+    state = read_state(agent)
+    assert [*state.unreadable] == ["session"] and len(state.networks) == 1
+    assert not read_state(SimpleNamespace(steps=1, words=["a"], where={"x": 1.5})).unreadable
+    assert not read_state(agent, attributes=False).unreadable
 
 
 def test_every_module_is_in_eval_mode_and_as_it_was_afterwards():
@@ -86,7 +93,7 @@ def test_every_module_is_in_eval_mode_and_as_it_was_afterwards():
     assert [module.training for module in nested.modules()] == [True, True, False]
 
 
-def test_of_what_is_large_the_rest_is_unknown_and_a_mapping_is_not_loaded():
+def test_read_state_reports_too_many_values_and_loads_no_lazy_mapping(monkeypatch):
     class Lazy(Mapping):
         def __getitem__(self, key):
             raise AssertionError("loaded")
@@ -97,13 +104,16 @@ def test_of_what_is_large_the_rest_is_unknown_and_a_mapping_is_not_loaded():
         def __len__(self):
             return 3
 
-    assert held(SimpleNamespace(seen=[(n,) for n in range(2000)])).unknown == ["seen"]
-    assert held(SimpleNamespace(words=[str(n) for n in range(2000)], data=Lazy())).unknown == []
+    monkeypatch.setattr("mitigate.agents.state.MOST_VALUES", 1000)
+    many = [[object()] for n in range(2000)]
+    assert "more than 1,000 values" in read_state(SimpleNamespace(seen=many)).unreadable[""]
+    words = [str(n) for n in range(2000)]
+    assert not read_state(SimpleNamespace(words=words, data=Lazy())).unreadable
 
 
 def test_things_of_pythons_own_library_hold_no_weights():
     things = (re.compile("a"), range(3), threading.Lock(), datetime.datetime(2020, 1, 1))
-    assert held(SimpleNamespace(things=things, first=operator.itemgetter(0))).unknown == []
+    assert not read_state(SimpleNamespace(things=things, first=operator.itemgetter(0))).unreadable
 
 
 class Anything:
@@ -114,10 +124,10 @@ class Anything:
 def test_what_cannot_be_hashed_is_unknown():
     sparse, mixed = torch.eye(2).to_sparse(), np.array([object()])
     agent = SimpleNamespace(remote=Anything(), sparse=sparse, mixed=mixed)
-    assert held(agent).unknown == ["sparse", "mixed"] and identity(agent, {})
+    assert [*read_state(agent).unreadable] == ["sparse", "mixed"] and fingerprint(agent, {})
     frozen = torch.jit.freeze(torch.jit.script(net().eval()))
     with in_eval_mode(SimpleNamespace(net=frozen)):
-        assert identity(SimpleNamespace(net=frozen), {})
+        assert fingerprint(SimpleNamespace(net=frozen), {})
 
 
 class Merged(nn.Linear):

@@ -1,0 +1,261 @@
+"""Open files for writing, and notice when an output folder disappears.
+
+Every file that is written in place goes through :func:`open_output`, and every file that replaces
+another one goes through ``mitigate/core/files.py``. A folder that was cloned or unpacked may hold
+links, FIFOs and devices in place of our files. They are rejected before a byte is written.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import IO, Any
+
+# mode: flags beside those for reading and writing; the file is truncated after it was checked
+_FLAGS = {
+    "w": os.O_CREAT,
+    "a": os.O_CREAT | os.O_APPEND,
+    "x": os.O_CREAT | os.O_EXCL,
+    "r": 0,
+}
+_KINDS = (
+    (stat.S_ISLNK, "a symbolic link"),
+    (stat.S_ISFIFO, "a FIFO"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
+
+
+class UnsafePathError(ValueError):
+    """A path to write to is a link, a FIFO or a device, or lies behind a link."""
+
+
+class FolderLostError(OSError):
+    """An output folder, or what a command wrote there, was removed or replaced by others."""
+
+
+@dataclass
+class Root:
+    """An output folder in use.
+
+    Attributes:
+        folder: The folder as the user named it. It may be a link.
+        places: Absolute path of the folder, with and without links.
+        descriptor: Open descriptor of the folder; it keeps the inode from being reused.
+        lock: Path and status of the lock file, None without one.
+        expected: Files and folders that must exist when the command ends.
+        seen: Folders inside it that existed at an earlier write.
+    """
+
+    folder: Path
+    places: tuple[Path, ...]
+    descriptor: int
+    lock: tuple[Path, os.stat_result] | None = None
+    expected: list[Path] = field(default_factory=list)
+    seen: set[Path] = field(default_factory=set)
+
+    def inner(self, path: Path) -> Path | None:
+        """Return the absolute ``path`` relative to the folder, None if it lies outside."""
+        for place in self.places:
+            if path.is_relative_to(place):
+                return path.relative_to(place)
+        return None
+
+    def check(self) -> None:
+        """Raise FolderLostError if the folder or its lock is not the one that was opened."""
+        try:
+            same = os.path.samestat(os.fstat(self.descriptor), os.stat(self.places[0]))
+        except (FileNotFoundError, NotADirectoryError):
+            same = False
+        if not same:
+            raise lost(self.folder)
+        if self.lock is None:
+            return
+        try:
+            same = os.path.samestat(self.lock[1], os.lstat(self.lock[0]))
+        except FileNotFoundError:
+            same = False
+        if not same:
+            raise lost(self.lock[0])
+
+    def check_inside(self, inner: Path) -> None:
+        """Raise UnsafePathError if a folder of ``inner`` is a link, FolderLostError if one that
+        existed is missing."""
+        place = self.places[0]
+        for part in inner.parts:
+            place = place / part
+            try:
+                mode = os.lstat(place).st_mode
+            except FileNotFoundError:
+                if place in self.seen:
+                    raise lost(place) from None
+                return
+            if not stat.S_ISDIR(mode):
+                raise UnsafePathError(
+                    f"{place} must be a folder, got {_kind(mode)}. {self.folder} itself may be a "
+                    f"link, but nothing inside it. Delete {place} and run the command again."
+                )
+            self.seen.add(place)
+
+    def check_expected(self) -> None:
+        """Raise FolderLostError if an expected file or folder is missing."""
+        self.check()
+        missing = [path for path in self.expected if not path.exists()]
+        if missing:
+            raise lost(*missing)
+
+
+_roots: list[Root] = []
+
+
+def lost(*paths: Path) -> FolderLostError:
+    """Return the error for files or folders that others removed."""
+    names = ", ".join(map(str, paths))
+    verb = "was" if len(paths) == 1 else "were"
+    return FolderLostError(
+        f"{names} {verb} removed or replaced while this command was writing there, so its results "
+        "are incomplete. Restore what was removed if you have a copy, check that no other program "
+        "cleans this folder, and run the same command again."
+    )
+
+
+def register(folder: Path | str, lock: IO[str] | None = None) -> Root:
+    """Watch an existing ``folder`` until :func:`unregister`.
+
+    Until then every write below it checks that the folder and its ``lock`` are still the same, and
+    that no folder in between is a link.
+    """
+    folder = Path(folder)
+    places = (Path(os.path.abspath(folder)), folder.resolve())
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    held = None if lock is None else (Path(lock.name), os.fstat(lock.fileno()))
+    root = Root(folder, places, descriptor, held)
+    _roots.append(root)
+    return root
+
+
+def unregister(root: Root) -> None:
+    """Stop watching a folder."""
+    if root in _roots:
+        _roots.remove(root)
+        os.close(root.descriptor)
+
+
+@contextmanager
+def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
+    """Make ``folder`` and watch it while the block runs.
+
+    Args:
+        folder: The folder that the user named; it may be a link.
+        expected: Names of files that must be in it when the block ends.
+
+    Raises:
+        FolderLostError: If it is removed or replaced while the block runs.
+    """
+    folder = Path(folder)
+    make_checked(folder)
+    root = register(folder)
+    root.expected += [folder / name for name in expected]
+    try:
+        yield root
+        root.check_expected()
+    finally:
+        unregister(root)
+
+
+def check(path: Path | str) -> None:
+    """Check the folder of ``path`` before a write to ``path``.
+
+    Raises:
+        FolderLostError: If an output folder in use was removed or replaced.
+        UnsafePathError: If a folder between the output folder and ``path`` is a link.
+    """
+    _check_folder(Path(os.path.abspath(path)).parent)
+
+
+def make_checked(folder: Path | str) -> None:
+    """Make ``folder`` with its parents unless it exists; raise as :func:`check` does."""
+    _check_folder(Path(os.path.abspath(folder)))
+    Path(folder).mkdir(parents=True, exist_ok=True)
+    _check_folder(Path(os.path.abspath(folder)))
+
+
+def forget(folder: Path | str) -> None:
+    """Call before deleting ``folder``, so that its absence is not reported."""
+    folder = Path(os.path.abspath(folder))
+    for root in _roots:
+        root.seen = {path for path in root.seen if not path.is_relative_to(folder)}
+
+
+def _check_folder(folder: Path) -> None:
+    inner = [(root, path) for root in _roots if (path := root.inner(folder)) is not None]
+    for root, _ in inner:
+        root.check()
+    if inner:
+        deepest, path = min(inner, key=lambda pair: len(pair[1].parts))
+        deepest.check_inside(path)
+
+
+def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
+    """Open a regular file for writing.
+
+    Args:
+        path: The file. Its folder must exist.
+        mode: As of ``open``: "w", "a", "x" or "r+", with "b" and "+".
+        options: Other arguments of ``open``, such as ``encoding``.
+
+    Raises:
+        UnsafePathError: If ``path`` is a link, a FIFO, a socket or a device, has a second name (a
+            hard link), or lies behind a link in an output folder.
+        FolderLostError: If its output folder was removed or replaced.
+        OSError: If it cannot be opened.
+    """
+    check(path)
+    _check_kind(path)
+    kind = mode.replace("b", "").replace("t", "")
+    access = os.O_RDWR if "+" in kind else os.O_WRONLY
+    flags = access | _FLAGS[kind.replace("+", "")] | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC
+    descriptor = os.open(path, flags, 0o666)
+    try:
+        status = os.fstat(descriptor)
+        if not stat.S_ISREG(status.st_mode):
+            raise _unsafe(path, _kind(status.st_mode))
+        if status.st_nlink > 1:
+            raise _unsafe(path, "a hard link to a file with another name")
+        if kind[0] == "w":
+            os.ftruncate(descriptor, 0)
+        os.set_blocking(descriptor, True)
+    except BaseException:
+        os.close(descriptor)
+        raise
+    return open(path, mode.replace("x", "w"), opener=lambda *_: descriptor, **options)
+
+
+def _check_kind(path: Path | str) -> None:
+    """Raise UnsafePathError for what is not a regular file, before it is opened: opening a device
+    may already change its state."""
+    try:
+        mode = os.lstat(path).st_mode
+    except FileNotFoundError:
+        return
+    if stat.S_ISDIR(mode):
+        return  # os.open names this mistake itself
+    if not stat.S_ISREG(mode):
+        raise _unsafe(path, _kind(mode))
+
+
+def _unsafe(path: Path | str, kind: str) -> UnsafePathError:
+    return UnsafePathError(
+        f"{path} must be a regular file, got {kind}. Writing to it would change something "
+        "outside this folder. Delete it, or name another folder, and run the command again."
+    )
+
+
+def _kind(mode: int) -> str:
+    return next((name for matches, name in _KINDS if matches(mode)), "a regular file")

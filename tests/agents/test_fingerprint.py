@@ -1,0 +1,410 @@
+"""One hash over all that makes an agent behave as it does."""
+
+from __future__ import annotations
+
+import copy
+import importlib
+import linecache
+import sys
+from collections import OrderedDict
+from types import SimpleNamespace
+
+import pytest
+import torch
+from torch import nn
+from torch.nn.utils.parametrizations import weight_norm
+
+from mitigate.agents.adapters import insert_adapters
+from mitigate.agents.fingerprint import contents, fingerprint, source_of
+from mitigate.agents.state import in_eval_mode
+from mitigate.agents.text import WORDS
+from mitigate.agents.topological import TopologicalAgent
+from mitigate.core import seeding
+from mitigate.core.observation import cameras
+
+SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
+
+
+def agent(**settings) -> TopologicalAgent:
+    seeding.seed_everything(0, "identity")
+    return TopologicalAgent(16, **{"planner": SMALL, **settings})
+
+
+def test_equal_agents_have_one_identity_and_every_difference_another():
+    plain, views = agent(), cameras(64)
+    moved = copy.deepcopy(plain)
+    with torch.no_grad():
+        next(moved.parameters()).view(-1)[0] += 1e-3
+    others = [
+        fingerprint(moved, views),
+        fingerprint(agent(blind=["rgb"]), views),
+        fingerprint(agent(size=32), views),
+        fingerprint(agent(planner={**SMALL, "fusion": {"rate": 4, "cap": 3}}), views),
+        fingerprint(agent(vocabulary=[*WORDS[1:], WORDS[0]]), views),  # equally many, other ids
+        fingerprint(plain, cameras(32)),
+        fingerprint(plain, views, "rules"),
+    ]
+    assert fingerprint(plain, views) == fingerprint(agent(), views)
+    assert len({fingerprint(plain, views), *others}) == 1 + len(others)
+
+
+PLAIN = """
+class Plain:
+    def reset(self, instruction):
+        self.steps = 0
+
+    def act(self, observation):
+        return 0
+"""
+
+
+def test_an_agent_without_settings_is_another_one_when_its_code_is(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    edited = PLAIN.replace("steps = 0", "steps = 1")
+    first, other, again = _hashes(tmp_path, "Plain", (PLAIN, edited, PLAIN))
+    assert first == again != other
+
+
+def _hashes(folder, agent, sources):
+    """The hash of the class ``agent`` in one module whose source is one after the other."""
+    found = []
+    for number, source in enumerate(sources):
+        (folder / "own_agent.py").write_text(source + "#" * 9 * number)  # of other lengths
+        sys.modules.pop("own_agent", None)
+        importlib.invalidate_caches()
+        linecache.clearcache()
+        found.append(fingerprint(getattr(importlib.import_module("own_agent"), agent)(), {}))
+    sys.modules.pop("own_agent")
+    return found
+
+
+def test_an_agent_is_what_was_loaded_whatever_becomes_of_its_file(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    file = tmp_path / "edited_agent.py"
+    file.write_text(PLAIN)
+    agent = importlib.import_module("edited_agent").Plain()
+    before = fingerprint(agent, {})
+    file.write_text(PLAIN.replace("steps = 0", "steps = 1"))
+    linecache.clearcache()
+    assert fingerprint(agent, {}) == before
+    sys.modules.pop("edited_agent")
+
+
+NETWORK = """
+from torch import nn
+
+class Head(nn.Linear):
+    def forward(self, x):
+        return super().forward(x)
+
+class Agent(nn.Module):
+    settings = dict
+
+    def __init__(self):
+        super().__init__()
+        self.head = Head(1, 1)
+        nn.init.ones_(self.head.weight)
+        nn.init.ones_(self.head.bias)
+"""
+
+
+def test_the_code_of_installed_packages_does_not_count(tmp_path, monkeypatch):
+    folder = tmp_path / "site-packages"
+    folder.mkdir()
+    monkeypatch.syspath_prepend(folder)
+    (folder / "installed_agent.py").write_text(PLAIN)
+    assert source_of(importlib.import_module("installed_agent").Plain) == []
+    assert source_of(nn.Linear) == source_of(OrderedDict) == source_of(TopologicalAgent) == []
+    assert source_of(Here)
+    sys.modules.pop("installed_agent")
+
+
+def test_a_set_of_networks_has_no_order():
+    class Placed(nn.Linear):
+        def __init__(self, place: int) -> None:
+            super().__init__(1, 1)
+            self.place = place
+            nn.init.constant_(self.weight, place)
+            nn.init.zeros_(self.bias)
+
+        def __hash__(self):
+            return self.place % 7
+
+    def both(first: int, second: int) -> SimpleNamespace:
+        return SimpleNamespace(nets={Placed(first), Placed(second)})
+
+    assert [net.place for net in both(1, 8).nets] != [net.place for net in both(8, 1).nets]
+    assert (
+        fingerprint(both(1, 8), {}) == fingerprint(both(8, 1), {}) != fingerprint(both(1, 15), {})
+    )
+
+
+class Here:
+    """A class of no package."""
+
+
+def test_the_code_of_an_agents_networks_counts_also_where_it_has_settings(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    edited = NETWORK.replace("return ", "return -")
+    first, other, again = _hashes(tmp_path, "Agent", (NETWORK, edited, NETWORK))
+    assert first == again != other
+
+
+NOTEBOOK = """
+from functools import partial
+from torch import nn
+
+net = nn.Sequential(nn.Dropout(0.5), nn.Linear(1, 1, bias=False))
+nn.init.constant_(net[1].weight, {weight})
+LIMIT = {limit}
+
+def choose(frame):
+    return {answer}
+
+def later(frame, steps):
+    return steps
+
+class Named:
+    def reset(self, instruction):
+        self.steps = 0
+
+    @property
+    def near(self):
+        return LIMIT
+
+    def act(self, observation):
+        return [self.head(frame) for frame in observation] and choose(observation)
+
+    def head(self, frame):
+        return net(frame)
+
+class Given:
+    def __init__(self, decide):
+        self.decide = decide
+
+    def reset(self, instruction):
+        pass
+
+made = {{
+    "named": Named(),
+    "a partial call": Given(partial(later, steps={limit})),
+    "a closure": (lambda steps: Given(lambda frame: steps))({limit}),
+    "a bound method": Given(Named().act),
+    "a function": Given(choose),
+}}
+"""
+USUAL = {"weight": 1.0, "limit": 3, "answer": 0}
+
+
+def _notebook(tmp_path, name, **changes):
+    (tmp_path / f"{name}.py").write_text(NOTEBOOK.format(**{**USUAL, **changes}))
+    module = importlib.import_module(name)
+    for kind in (module.Named, module.Given):  # its own name is the file's: make them alike
+        kind.__module__ = "notebook"
+    return module
+
+
+@pytest.mark.parametrize(
+    ("place", "change"),
+    [
+        ("named", {"weight": 2.0}),
+        ("named", {"limit": 4}),
+        ("named", {"answer": 1}),
+        ("a partial call", {"limit": 4}),
+        ("a closure", {"limit": 4}),
+        ("a bound method", {"weight": 2.0}),
+        ("a bound method", {"answer": 1}),
+        ("a function", {"answer": 1}),
+    ],
+)
+def test_what_the_code_of_an_agent_names_is_part_of_it(tmp_path, monkeypatch, place, change):
+    monkeypatch.syspath_prepend(tmp_path)
+    number = len([*sys.modules])
+    first, again, other = (
+        fingerprint(_notebook(tmp_path, f"notebook_{number}_{i}", **options).made[place], {})
+        for i, options in enumerate(({}, {}, change))
+    )
+    assert first == again != other
+
+
+def test_fingerprint_ignores_attributes_of_an_agent_with_settings(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    agent = _notebook(tmp_path, "notebook_walked").made["named"]
+    agent.settings = dict
+    before = fingerprint(agent, {})
+    agent.reset("go")
+    assert fingerprint(agent, {}) == before
+
+
+def test_a_network_that_its_code_names_is_in_eval_mode(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    module = _notebook(tmp_path, "notebook_modes")
+    with in_eval_mode(module.made["named"]):
+        assert not module.net[0].training
+    assert module.net[0].training
+
+
+def forward(module, inputs, output):
+    return -output
+
+
+class Owner:
+    """An agent without settings() that holds a network."""
+
+    threshold = 0.5
+
+    def __init__(self, net: nn.Module) -> None:
+        self.net = net
+        self.thresholds = {"stop": [0.1, (0.2, 0.3)]}
+        self.prepare = torch.relu
+
+    def reset(self, instruction):
+        pass
+
+    def act(self, observation):
+        return int(self.net(torch.ones(1, 4)).sum() > self.threshold)
+
+
+class Vouched(Owner):
+    """The same with settings()."""
+
+    settings = {"width": 4}
+
+
+def owner(kind=Owner):
+    seeding.seed_everything(0, "owner")
+    layers = nn.Linear(4, 4), nn.ReLU(), nn.BatchNorm1d(4), nn.LeakyReLU(0.1), nn.Conv2d(4, 4, 1)
+    made = kind(nn.Sequential(*layers))
+    made.net.register_buffer("scratch", torch.zeros(2), persistent=False)
+    return made.net.eval() and made
+
+
+def _patched(agent):
+    slope = 3.0
+    agent.act = lambda observation: int(slope)
+
+
+def _attached(agent):
+    insert_adapters(agent.net, ["4"])
+
+
+CHANGES = {
+    "a weight": lambda agent: agent.net[0].weight.data.add_(1),
+    "a buffer": lambda agent: agent.net[2].running_mean.add_(1),
+    "a non-persistent buffer": lambda agent: agent.net.scratch.add_(1),
+    "a dtype": lambda agent: agent.net.double(),
+    "an activation": lambda agent: agent.net.__setitem__(1, nn.GELU()),
+    "a replaced act": _patched,
+    "a replaced forward": lambda agent: setattr(agent.net[0], "forward", lambda x: x + 1),
+    "our adapters": _attached,
+    "a parametrization": lambda agent: weight_norm(agent.net[0]),
+    "data parallel": lambda agent: setattr(agent, "net", nn.DataParallel(agent.net)),
+}
+WITHOUT_SETTINGS = {
+    "a threshold": lambda agent: setattr(agent, "threshold", 0.6),
+    "a nested threshold": lambda agent: agent.thresholds["stop"].append(1),
+    "an array": lambda agent: setattr(agent, "mean", torch.ones(2)),
+    "preprocessing": lambda agent: setattr(agent, "prepare", torch.sigmoid),
+    "a slope": lambda agent: setattr(agent.net[3], "negative_slope", 0.9),
+}
+
+
+@pytest.mark.parametrize("change", [*CHANGES, *WITHOUT_SETTINGS])
+def test_fingerprint_changes_with_behaviour(change):
+    before, after = owner(), owner()
+    {**CHANGES, **WITHOUT_SETTINGS}[change](after)
+    assert fingerprint(before, {}) == fingerprint(owner(), {}) != fingerprint(after, {})
+    assert not contents(before).unreadable
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_fingerprint_with_settings_changes_with_behaviour(change):
+    before, after = owner(Vouched), owner(Vouched)
+    CHANGES[change](after)
+    assert fingerprint(before, {}) == fingerprint(owner(Vouched), {}) != fingerprint(after, {})
+
+
+def test_fingerprint_changes_when_a_network_is_quantised():
+    def quantised(weight: float) -> Owner:
+        agent = owner()
+        agent.net[0].weight.data.fill_(weight)
+        agent.net = torch.ao.quantization.quantize_dynamic(agent.net, {nn.Linear})
+        return agent
+
+    hashes = [fingerprint(quantised(weight), {}) for weight in (1.0, 1.0, 2.0)]
+    assert hashes[0] == hashes[1] != hashes[2]
+    assert hashes[0] != fingerprint(owner(), {})
+
+
+def test_fingerprint_ignores_train_and_eval_mode():
+    trained = owner()
+    trained.net.train()
+    assert fingerprint(trained, {}) == fingerprint(owner(), {})
+
+
+def _enclosing(agent):
+    session = iter([1])
+    agent.net[0].forward = lambda x: next(session)
+
+
+UNREADABLE = {
+    "a forward hook": lambda agent: agent.net[0].register_forward_hook(forward),
+    "a forward pre-hook": lambda agent: agent.net.register_forward_pre_hook(lambda m, given: given),
+    "a replaced method": _enclosing,
+    "TorchScript": lambda agent: setattr(agent, "net", torch.jit.script(agent.net)),
+}
+
+
+@pytest.mark.parametrize("kind", [Owner, Vouched])
+@pytest.mark.parametrize("change", UNREADABLE)
+def test_contents_reports_what_cannot_be_read(change, kind):
+    agent = owner(kind)
+    UNREADABLE[change](agent)
+    assert contents(agent).unreadable and contents(agent).explain()
+    assert not contents(agent, version="1").unreadable
+    hashes = {fingerprint(agent, {}, version=version) for version in (None, "1", "2")}
+    assert len(hashes) == 3
+
+
+def test_contents_reports_global_hooks():
+    handle = nn.modules.module.register_module_forward_hook(lambda *given: None)
+    try:
+        assert "registered for all modules" in contents(owner()).explain()
+    finally:
+        handle.remove()
+
+
+def test_fingerprint_of_a_shipped_agent_notices_hooks_and_replaced_methods(monkeypatch):
+    before = fingerprint(agent(), {})
+    hooked, replaced = agent(), agent()
+    hooked.rgb_encoder.register_forward_hook(forward)
+    replaced.act = lambda observation: 0
+    assert contents(hooked).unreadable
+    assert fingerprint(replaced, {}) != before
+    monkeypatch.setattr(TopologicalAgent, "act", lambda self, observation: 1)
+    assert fingerprint(agent(), {}) != before
+
+
+def test_fingerprint_reads_hooks_that_describe_themselves():
+    class Scale:
+        def __init__(self, by: float) -> None:
+            self.by = by
+
+        def __call__(self, module, inputs, output):
+            return output * self.by
+
+        def fingerprint(self):
+            return {"by": self.by}
+
+    agents = [owner(Vouched) for _ in range(3)]
+    for one, by in zip(agents, (1.0, 1.0, 2.0), strict=True):
+        one.net[0].register_forward_hook(Scale(by))
+    hashes = [fingerprint(one, {}) for one in agents]
+    assert hashes[0] == hashes[1] != hashes[2] and not contents(agents[0]).unreadable
+
+
+def test_kinds_of_agents_do_not_depend_on_module_paths(monkeypatch):
+    before = fingerprint(agent(), {}), fingerprint(owner(), {})
+    for kind in (TopologicalAgent, Owner):
+        monkeypatch.setattr(kind, "__module__", f"{kind.__module__}_moved")
+    assert (fingerprint(agent(), {}), fingerprint(owner(), {})) == before
