@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
 from mitigate.core.files import open_text
+from mitigate.core.names import short
 
 CHUNK = 1 << 16  # characters read at a time (ours)
 LARGEST_VALUE = 1 << 25  # characters of one JSON value; more means a broken file (ours)
@@ -28,6 +29,19 @@ def read_json(path: Path, again: str) -> Any:
         return parse_json(raw.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path} is cut short or damaged ({error!s:.200}). {again}") from error
+
+
+def read_object(path: Path, again: str) -> dict[str, Any]:
+    """Return the JSON object in ``path``, read as :func:`read_json` reads it.
+
+    Raises:
+        ValueError: The file is damaged or holds another kind of value, such as null or a list. The
+            message names the file and ends with ``again``.
+    """
+    value = read_json(path, again)
+    if not isinstance(value, dict):
+        raise ValueError(f"{path} must hold a JSON object, got {short(value)}. {again}")
+    return value
 
 
 def parse_json(text: str | bytes) -> Any:

@@ -14,7 +14,7 @@ from torch import nn
 from mitigate.core import checkpoint
 from mitigate.core.build import build_agent, maker
 from mitigate.core.files import atomic_text, write_atomically
-from mitigate.core.json_files import read_json
+from mitigate.core.json_files import read_object
 from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import names, title
@@ -70,8 +70,8 @@ def _begun(cfg: Any, base: Any, folder: Path) -> nn.Module:
     """The encoder as the training found it. Raises ValueError if it cannot be made again."""
     made = build_agent(cfg.agent, weights=None, seed=cfg.seed) if base is None else base
     stage = next(name for name, stage in cfg.stages.items() if stage is not None)
-    noted = read_json(folder / stage / IDENTITY, "Train again in another folder.")
-    if checkpoint.weights_sha(made) != noted["encoder_sha256"]:
+    noted = read_object(folder / stage / IDENTITY, "Train again in another folder.")
+    if checkpoint.weights_sha(made) != noted.get("encoder_sha256"):
         raise ValueError(
             f"agent.model={cfg.agent.model} has other weights than when the training began, so "
             "there is no before to compare with: its file was changed, or it draws them anew each "

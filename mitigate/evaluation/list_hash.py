@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.evaluation.rows import ROWS, read
 
 LIST = "episodes-{split}.sha256"  # of the file that the episodes of a split came from
+_SHA256 = re.compile(r"[0-9a-f]{64}")
 OLD_LIST = "episodes.sha256"  # the same by an older version: a line a file, of whichever splits
 
 
@@ -31,7 +33,13 @@ def _held(folder: Path, split: str, source: str) -> list[str]:
     known; an older version kept those of all splits in one file, by their paths."""
     note, old = folder / LIST.format(split=split), folder / OLD_LIST
     if note.is_file():
-        return note.read_text(encoding="utf-8").split()[:1]
+        words = note.read_text(encoding="utf-8", errors="replace").split()[:1]
+        if not words or not _SHA256.fullmatch(words[0]):
+            raise ValueError(
+                f"{note} must begin with a sha256, and is empty or damaged. Copy it back, or move "
+                f"{folder} aside and evaluate again."
+            )
+        return words
     written = (folder / ROWS).is_file() and any(r["split"] == split for r in read(folder / ROWS))
     if not written or not old.is_file():
         return []

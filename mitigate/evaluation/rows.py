@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.core.files import atomic_text, make_folder, open_text, writing
 from mitigate.core.json_files import parse_json
-from mitigate.core.names import short
+from mitigate.core.names import counted, short
 
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
@@ -142,8 +142,25 @@ def append(path: Path | str, rows: Iterable[Row]) -> None:
         os.fsync(file.fileno())
 
 
-def write(path: Path | str, rows: Iterable[Row]) -> None:
-    """Write ``rows`` to ``path``, atomically, in place of what was there."""
+def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None:
+    """Replace the file ``path`` by ``rows``, atomically.
+
+    Args:
+        path: The file, which need not exist.
+        rows: All rows of the new file.
+        fewer: Whether they may be fewer than the file holds: the caller has compared them.
+
+    Raises:
+        ValueError: The file holds more rows than ``rows``, or is damaged. It stays as it is.
+    """
+    path, rows = Path(path), list(rows)
+    before = len(read(path)) if path.exists() and not fewer else 0
+    if len(rows) < before:
+        raise ValueError(
+            f"{path} holds {counted(before, 'row')}, and only {len(rows)} would replace them. The "
+            "file was left as it is. Find out why rows are missing, or move the file to another "
+            "folder and run the same command again."
+        )
     with atomic_text(path) as file:
         file.writelines(_line(row) for row in rows)
 

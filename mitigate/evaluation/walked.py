@@ -16,7 +16,7 @@ from typing import Any
 
 from mitigate.core.files import atomic_text
 from mitigate.core.identity import source_of
-from mitigate.core.json_files import read_json
+from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 from mitigate.evaluation import list_hash, making
 from mitigate.evaluation.making import hash_of, kind_of
@@ -46,7 +46,7 @@ def keep(
     if source is not None:
         list_hash.keep(folder, split, source)
     note = folder / NOTE
-    known = read_json(note, "Delete its folder.") if note.is_file() else {}
+    known = _read(note) if note.is_file() else {}
     told, sums = {**_described(world), **made_by}, {e.episode_id: _sum(e) for e in episodes}
     own, kind = known.get(split, {}), _told_by_rows(world)
     worlds, sums_before = own.get("worlds", {}), own.get("sums", {})
@@ -63,6 +63,26 @@ def keep(
     known[split] = {"worlds": worlds | {kind: told}, "sums": sums_before | sums}
     with atomic_text(note) as file:
         json.dump(known, file)
+
+
+def _read(note: Path) -> dict[str, dict[str, Any]]:
+    """Return what the ``note`` of a folder says, by split. Raises ValueError if it is damaged."""
+    again = f"Copy the file back, or move {note.parent} aside and evaluate again."
+    known = read_object(note, again)
+    for split, entry in known.items():
+        if not _is_entry(entry):
+            raise ValueError(f"{note}: the entry {short(split)} is damaged. {again}")
+    return known
+
+
+def _is_entry(entry: Any) -> bool:
+    """Whether a note's entry of a split has objects where :func:`keep` reads them."""
+    if not isinstance(entry, dict):
+        return False
+    worlds, sums = entry.get("worlds", {}), entry.get("sums", {})
+    if not isinstance(worlds, dict) or not isinstance(sums, dict):
+        return False
+    return all(isinstance(world, dict) for world in worlds.values())
 
 
 def _described(world: World) -> dict[str, str]:

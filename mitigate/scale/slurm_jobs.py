@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.core.files import write_bytes
-from mitigate.core.names import unknown
+from mitigate.core.names import short, unknown
 from mitigate.core.progress import Progress
 from mitigate.core.workers import SECOND, Task, numbered
 from mitigate.core.workers import results as run_here
@@ -182,11 +182,25 @@ def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
             if not line.endswith(b"\n"):
                 break
             share.read += len(line)
-            told = json.loads(line)
+            told = _parse(line, share.lines)
             if "error" in told:
                 raise ValueError(told["error"])
             if share.left.pop(told["job"], None) is not None:
                 yield told["job"], told["result"]
+
+
+def _parse(line: bytes, file: Path) -> dict[str, Any]:
+    """Return the result in one line. Raises ValueError, naming the file, if it is damaged."""
+    try:
+        told: Any = json.loads(line)
+    except ValueError:
+        told = None
+    if not isinstance(told, dict) or not ("error" in told or {"job", "result"} <= told.keys()):
+        raise ValueError(
+            f"{file} has a damaged line, {short(line.decode(errors='replace'))}. The results "
+            "before it were kept. Run the same command again."
+        )
+    return told
 
 
 def _again(

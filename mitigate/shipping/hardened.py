@@ -18,7 +18,7 @@ import torch
 from mitigate.agents import adapters, schema
 from mitigate.core import checkpoint, settings
 from mitigate.core.files import PACKAGE, ROOT, sha256
-from mitigate.core.json_files import read_json
+from mitigate.core.json_files import read_json, read_object
 from mitigate.core.names import short
 from mitigate.shipping import given
 
@@ -179,8 +179,7 @@ def is_hardened(folder: str | Path) -> bool:
     Raises ValueError for a card that cannot be read.
     """
     file = Path(folder) / CARD
-    card = read_json(file, _AGAIN) if file.is_file() else None
-    return isinstance(card, dict) and "sha256" in card
+    return file.is_file() and "sha256" in read_object(file, _AGAIN)
 
 
 def adapters_only(folder: str | Path) -> bool:

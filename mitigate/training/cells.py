@@ -12,6 +12,7 @@ from omegaconf import DictConfig, ListConfig
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
+from mitigate.core.names import short
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.rows import ROWS
@@ -127,6 +128,11 @@ class Cell:
         if not (begun and file.is_file()):
             return
         held = read_json(file, f"Delete {self.folder}, or choose another out=.")
+        if not isinstance(held, list):
+            raise ValueError(
+                f"{file} must hold a list of options, got {short(held)}. Delete {self.folder}, or "
+                "choose another out=."
+            )
         if held != self._made_by:
             raise ValueError(
                 f"{self.folder} holds rows of an agent that was made by {held}, and the column is "

@@ -20,6 +20,7 @@ from torch import nn
 from mitigate.agents.observation import check_fits
 from mitigate.core.build import build, located, maker, plain
 from mitigate.core.conf import CONF
+from mitigate.core.json_files import read_object
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
@@ -273,7 +274,7 @@ def _check_same(file: Path, now: dict[str, Any]) -> None:
     """Raise ValueError if the identity in ``file`` names other settings than ``now``; the trainer
     compares all of it, but only when its stage begins."""
     try:
-        held = json.loads(file.read_text(encoding="utf-8"))
+        held = read_object(file, OTHER_FOLDER)
     except ValueError:  # damaged: the checkpoints have it, too
         return
     different = states.differences({key: held.get(key) for key in now}, now)

@@ -20,6 +20,8 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_object
+from mitigate.core.names import short
 from mitigate.core.progress import Progress, say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
@@ -110,11 +112,23 @@ def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
 
 def _add_cost(path: Path, spent: dict[str, float]) -> None:
     """Add CPU seconds to a cell's account, which counts all its runs that had something to do."""
-    cost = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
+    cost = _read_cost(path) if path.is_file() else {}
     for kind, seconds in spent.items():
         cost[kind] = round(cost.get(kind, 0.0) + seconds, 2)
     with atomic_text(path) as file:
         json.dump(cost, file)
+
+
+def _read_cost(path: Path) -> dict[str, float]:
+    """Return a cell's CPU seconds by program. Raises ValueError if the file is damaged."""
+    again = "Delete the file: the cell's CPU time is then counted from the next run on."
+    cost = read_object(path, again)
+    for kind, seconds in cost.items():
+        if isinstance(seconds, bool) or not isinstance(seconds, (int, float)):
+            raise ValueError(
+                f"{path}: {short(kind)} must be seconds, got {short(seconds)}. {again}"
+            )
+    return cost
 
 
 def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:
@@ -206,7 +220,7 @@ def costs(out: Path) -> dict[str, dict[str, float]]:
     spent: dict[str, dict[str, list[float]]] = {}
     for path in sorted((out / "cells").glob(f"*/{COST}")):
         column = _named(path.parent)
-        for kind, seconds in json.loads(path.read_text(encoding="utf-8")).items():
+        for kind, seconds in _read_cost(path).items():
             spent.setdefault(kind, {}).setdefault(column, []).append(seconds / 60)
     return {
         kind: {column: sum(held) / len(held) for column, held in columns.items()}

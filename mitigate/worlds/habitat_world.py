@@ -8,7 +8,6 @@ an episode's reference path, where VLN-CE's is against the denser locations of `
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from mitigate.core.json_files import read_object
 from mitigate.core.names import unknown
 from mitigate.core.observation import (
     DEPTH,
@@ -331,5 +331,6 @@ def _navmesh(given: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]
         given = str(scenes.parent / "navmesh.json")
         if not Path(given).is_file():
             return dict(NAVMESH)
-    held = json.loads(Path(given).read_text(encoding="utf-8")) if isinstance(given, str) else given
+    again = "Write it again with `mitigate export-scene`."
+    held = read_object(Path(given), again) if isinstance(given, str) else given
     return {**NAVMESH, **{n: v for n, v in dict(held).items() if n != "camera_height"}}

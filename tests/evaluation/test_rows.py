@@ -225,3 +225,25 @@ def test_a_file_whose_first_line_is_damaged_is_not_passed_over(tmp_path):
         rows.gather([tmp_path])
     file.write_bytes(b"")  # an evaluation that wrote none yet
     assert rows.gather([tmp_path]) == cell(5)
+
+
+def test_write_rejects_fewer_rows_than_the_file_holds(tmp_path):
+    file = tmp_path / "rows.jsonl"
+    rows.write(file, cell(5))
+    before = file.read_bytes()
+    count = len(rows.read(file))
+    with pytest.raises(ValueError, match=f"holds {count} rows, and only {count - 1} would"):
+        rows.write(file, rows.read(file)[:-1])
+    assert file.read_bytes() == before
+    rows.write(file, rows.read(file)[:-1], fewer=True)
+    assert len(rows.read(file)) == count - 1
+
+
+def test_write_rejects_a_damaged_file(tmp_path):
+    file = tmp_path / "rows.jsonl"
+    rows.write(file, cell(5))
+    file.write_bytes(b"[" + file.read_bytes()[1:])
+    before = file.read_bytes()
+    with pytest.raises(ValueError, match="line 1"):
+        rows.write(file, cell(5))
+    assert file.read_bytes() == before

@@ -1,0 +1,62 @@
+"""Notes of our own that were damaged: the error names the file, and the file stays."""
+
+import pytest
+
+from mitigate.core.json_files import read_object
+from mitigate.evaluation import list_hash, walked
+from mitigate.scale import slurm_jobs
+from mitigate.training import tables
+from mitigate.worlds import habitat_world
+
+NO_OBJECTS = ["null", "[]", '"x"', "3", "true", "", "{"]
+
+
+@pytest.mark.parametrize("text", NO_OBJECTS)
+def test_read_object_rejects_what_is_no_object(tmp_path, text):
+    file = tmp_path / "note.json"
+    file.write_text(text)
+    with pytest.raises(ValueError, match=r"note\.json .*Delete it\."):
+        read_object(file, "Delete it.")
+    assert file.read_text() == text
+
+
+@pytest.mark.parametrize(
+    "text", [*NO_OBJECTS, '{"a": 3}', '{"a": {"worlds": []}}', '{"a": {"worlds": {"k": null}}}']
+)
+def test_walked_rejects_a_damaged_note(tmp_path, text):
+    note = tmp_path / walked.NOTE
+    note.write_text(text)
+    with pytest.raises(ValueError, match=r"walked\.json"):
+        walked._read(note)
+
+
+@pytest.mark.parametrize("text", ["", "\n", "abc  list.json\n"])
+def test_list_hash_rejects_a_damaged_hash(tmp_path, text):
+    source = tmp_path / "list.json"
+    source.write_text("{}")
+    (tmp_path / "episodes-val.sha256").write_text(text)
+    with pytest.raises(ValueError, match="must begin with a sha256"):
+        list_hash.keep(tmp_path, "val", str(source))
+    assert (tmp_path / "episodes-val.sha256").read_text() == text
+
+
+@pytest.mark.parametrize("text", [*NO_OBJECTS, '{"train": "x"}', '{"train": null}'])
+def test_add_cost_rejects_a_damaged_account(tmp_path, text):
+    file = tmp_path / "cost.json"
+    file.write_text(text)
+    with pytest.raises(ValueError, match=r"cost\.json"):
+        tables._add_cost(file, {"train": 1.0})
+    assert file.read_text() == text
+
+
+@pytest.mark.parametrize("text", NO_OBJECTS)
+def test_habitat_world_rejects_a_damaged_navmesh(tmp_path, text):
+    (tmp_path / "navmesh.json").write_text(text)
+    with pytest.raises(ValueError, match=r"navmesh\.json"):
+        habitat_world._navmesh(None, tmp_path / "scenes")
+
+
+@pytest.mark.parametrize("line", [b"null", b"[]", b'{"job": 1}', b"{", b"\xff"])
+def test_slurm_jobs_rejects_a_damaged_result(tmp_path, line):
+    with pytest.raises(ValueError, match=r"out\.jsonl has a damaged line"):
+        slurm_jobs._parse(line, tmp_path / "out.jsonl")
