@@ -3,34 +3,31 @@
 from __future__ import annotations
 
 import fcntl
-import json
 import os
 import signal
-import subprocess
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TextIO
 
 from mitigate.bridge import results, verdict
+from mitigate.bridge.command import GRACE, Command
 from mitigate.bridge.condition import Condition
 from mitigate.bridge.events import EVENTS, LOCK, put_aside
+from mitigate.bridge.finished import DONE, lacks, read_done, write_done
 from mitigate.bridge.identity import files_of
 from mitigate.bridge.recording import delete_left, is_whole
 from mitigate.bridge.results import Told
 from mitigate.bridge.server import Listener
 from mitigate.bridge.subset import Subset
 from mitigate.bridge.verdict import lacking
-from mitigate.core.files import atomic_text, make_folder
-from mitigate.core.json_files import read_json
+from mitigate.core.files import make_folder
 from mitigate.core.signals import unbroken
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
-from mitigate.scale import tied
 
-DONE, LOG = "done.json", "output.txt"
+LOG = "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats
-GRACE = 3.0  # seconds in which the processes of a command may end by themselves (ours)
 NOTED = 5.0  # seconds in which the server notes what they left in the middle (ours)
 SILENT = 10  # times patience, after which a command that lost an episode is taken to hang (ours)
 
@@ -42,9 +39,9 @@ class Cell:
     settings: what its result depends on, by which a finished one is known again. files: of the
     command, as it was started with (``identity.py``). clean: the folder of the clean condition,
     whose episodes it is to have; None for that itself. recording: the folder that is asked for.
-    chosen: says which episodes were asked for. count_closed: see ``results.read``. tied: whether
-    the command ends when this process is killed. loaded: whether a Python process of it loaded
-    the hook.
+    chosen: says which episodes were asked for. count_closed: see ``results.read``. loaded:
+    whether a Python process of it loaded the hook. left: its processes that ran on when it had
+    ended, described.
     """
 
     name: str
@@ -63,20 +60,19 @@ class Cell:
     recording: Path | None = None
     chosen: Subset | None = None
     count_closed: bool = False
-    tied: bool = False
     loaded: bool = False
+    left: list[str] = field(default_factory=list)
     listener: Listener | None = None
     lock: TextIO | None = None
-    process: subprocess.Popen | None = None
+    process: Command | None = None
 
     @property
     def log(self) -> Path:
         return self.folder / LOG
 
     def held(self) -> dict[str, Any] | None:
-        """What was noted as it ended, None if it has not. Raises ValueError for a damaged file."""
-        file = self.folder / DONE
-        return read_json(file, "Delete it: the condition is run anew.") if file.is_file() else None
+        """What was recorded as it ended, None if it has not. Raises ValueError for damage."""
+        return read_done(self.folder)
 
     def others(self) -> list[str]:
         """The settings with another value than it was finished with."""
@@ -90,6 +86,12 @@ class Cell:
             raise ValueError(
                 f"{self.folder} was run with another {', '.join(other)} ({held.get(other[0])!r}, "
                 f"now {self.settings[other[0]]!r}). Name another folder (out=...), or delete it."
+            )
+        if held is not None and (missing := lacks(held)):
+            raise ValueError(
+                f"{self.folder / DONE} lacks {', '.join(missing)}: it is damaged, or of an older "
+                f"version. Move {self.folder} out of {self.folder.parent} and run the same command "
+                "again."
             )
         return held is not None and not self.why_anew()
 
@@ -164,22 +166,24 @@ class Cell:
             filled = [word.replace(name, value) for word in filled]
         with open(self.log, "w", encoding="utf-8") as log:
             try:
-                self.process = subprocess.Popen(
-                    tied.words(filled) if self.tied else filled,
-                    stdin=subprocess.DEVNULL,
-                    stdout=log,
-                    stderr=subprocess.STDOUT,
-                    env={**os.environ, **self.listener.environment(), **self.environment},
-                    start_new_session=True,
-                )
+                own = {**self.listener.environment(), **self.environment}
+                marker = self.listener.address
+                self.process = Command(filled, log, {**os.environ, **own}, marker)
             except OSError as error:
                 self.kill()
                 raise ValueError(f"{filled[0]} cannot be started: {error.strerror}.") from error
 
     def poll(self) -> str | None:
         """Return None while it runs, then what went wrong, empty if nothing did."""
+        try:
+            return self._poll()
+        except ValueError as error:  # its events are damaged
+            self.kill()
+            return str(error)
+
+    def _poll(self) -> str | None:
         assert self.process is not None and self.listener is not None
-        status = self.process.poll()
+        status = self.process.status()
         if status is None:
             problem = self._stuck()
             if problem is None:
@@ -187,6 +191,7 @@ class Cell:
             self.kill()
             return problem
         self.loaded = self.listener.was_loaded()
+        self.left = self.process.left()
         self._end_command()
         self._settle()
         self.kill()
@@ -196,8 +201,8 @@ class Cell:
         if not found:
             said = {"condition": self.corruption.name, "severity": self.corruption.severity}
             said |= {"repeat": self.repeat, "files": self.files}
-            with atomic_text(self.folder / DONE) as file:
-                json.dump({**self.settings, **said, "episodes_told": len(self.told().ends)}, file)
+            said |= {"episodes_told": len(self.told().ends)}
+            write_done(self.folder, {**self.settings, **said})
         return found
 
     def kill(self) -> None:
@@ -216,26 +221,14 @@ class Cell:
 
     def _end_command(self) -> None:
         """End all processes of the command: after ``GRACE`` those that are still connected, too."""
-        if self.process is None:
-            return
-        until = time.monotonic() + GRACE
-        there = self._signal(signal.SIGTERM)
-        while there and time.monotonic() < until:
-            if self.process.poll() is not None and self.told().connected < 1:
-                break
-            time.sleep(0.05)
-            there = self._signal(0)
-        self._signal(signal.SIGKILL)
-        self.process.wait()
+        if self.process is not None:
+            self.process.end(self._is_connected)
 
-    def _signal(self, number: int) -> bool:
-        """Send a signal to the processes of the command; return whether there are any."""
-        assert self.process is not None
+    def _is_connected(self) -> bool:
         try:
-            os.killpg(self.process.pid, number)
-        except ProcessLookupError:
+            return self.told().connected > 0
+        except ValueError:  # damaged events, which are reported elsewhere
             return False
-        return True
 
     def _settle(self) -> None:
         """Let the server note what the command left in the middle, also of processes that outlive

@@ -266,10 +266,14 @@ class Connection:
         count = int(message.get("count", len(self.names)))
         if keep is not None and len(self.names) < count:
             return {"more": count - len(self.names)}
-        note(self.folder, event="dataset", episodes=count)
         names, self.names = self.names, []
         least = 0 if message.get("least") == 0 else 1
-        return {"keep": None if keep is None else keep(names, least)}
+        note(self.folder, event="dataset", episodes=count)
+        chosen = None if keep is None else keep(names, least)
+        if least == 0:  # a loop of the program's own asks for the episodes that it is to run
+            wanted = count if chosen is None else len(chosen)
+            note(self.folder, event="dataset", episodes=count, wanted=wanted)
+        return {"keep": chosen}
 
     def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Adapters were put into an encoder."""

@@ -3,26 +3,30 @@ severity was asked for last."""
 
 from __future__ import annotations
 
-import json
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from mitigate.bridge.cell import DONE, Cell
+from mitigate.bridge.finished import lacks as missing_entries
+from mitigate.bridge.finished import read_done
 from mitigate.bridge.identity import met
 from mitigate.bridge.randomness import randomness
 from mitigate.bridge.results import OWN
 from mitigate.bridge.verdict import lacks
+from mitigate.core.files import write_bytes
+from mitigate.core.names import counted
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import report, rows
 from mitigate.evaluation.metrics import RULES
-from mitigate.evaluation.rows import ROWS
+from mitigate.evaluation.rows import ROWS, Row
 
 
 def write_report(made: Sequence[Cell], out: Path) -> None:
     """Write ``rows.jsonl``, the table and its pictures, and print the table."""
     done = [cell for cell in made if cell.is_done()]
-    others = earlier(made, out)
+    others, left_out = earlier(made, out)
     if others:
         print(f"also in the table, measured before: {', '.join(c.name for c in others)}")
     cells = [*done, *others]
@@ -31,7 +35,7 @@ def write_report(made: Sequence[Cell], out: Path) -> None:
         raise ValueError(
             f"No episode told how it went, so there is no table. {out} holds what was seen."
         )
-    rows.write(out / ROWS, found)
+    _write_rows(out / ROWS, found, left_out)
     rule = made[0].rule
     written = report.write(found, out, first=OWN if rule is None else str(RULES[rule]), least=2)
     print((out / "table.md").read_text("utf-8"), *(f"wrote {w}" for w in written), sep="\n")
@@ -42,10 +46,58 @@ def write_report(made: Sequence[Cell], out: Path) -> None:
         (out / "randomness.md").write_text(told, encoding="utf-8")
 
 
-def earlier(made: Sequence[Cell], out: Path) -> list[Cell]:
+def _write_rows(file: Path, found: Sequence[Row], left_out: Sequence[str]) -> None:
+    """Write the rows of a run; none of the file's may be lost without a word.
+
+    Rows of conditions that are ``left_out`` of the table are kept in a copy of the file.
+
+    Raises:
+        ValueError: The file holds rows of another condition or episode that ``found`` lacks. It
+            stays as it is.
+    """
+    before = rows.read(file) if file.exists() else []
+    now = {_measured(row) for row in found}
+    lost = [row for row in before if _measured(row) not in now]
+    names = Counter(_folder_of(row) for row in lost)
+    unexplained = [name for name in names if name not in left_out]
+    if unexplained:
+        raise ValueError(
+            f"{file} holds {counted(len(before), 'row')}, and {len(lost)} of them are of episodes "
+            f"that no finished condition gives any more ({', '.join(unexplained)}). The file was "
+            "left as it is. Run these conditions again, or move the file to another folder and run "
+            "the same command again."
+        )
+    if lost:
+        copy = _free(file.with_name(f"{file.name}.before"))
+        write_bytes(copy, file.read_bytes())
+        print(f"The rows of {', '.join(names)} are now in {copy} alone.", flush=True)
+    rows.write(file, found, fewer=True)  # another rule= gives other rows of the same episodes
+
+
+def _measured(row: Row) -> tuple[str, float, str]:
+    """What a row is of, by whatever rule: its condition and its episode."""
+    return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
+
+
+def _folder_of(row: Row) -> str:
+    """The name of the condition's folder that a row comes from."""
+    name = str(row["corruption"])
+    return f"{name}-s{row['severity']:g}" if row["severity"] else name
+
+
+def _free(path: Path) -> Path:
+    """Return ``path``, or the first of ``path``2, ``path``3, ... that does not exist."""
+    number, free = 1, path
+    while free.exists():
+        number += 1
+        free = path.with_name(f"{path.name}{number}")
+    return free
+
+
+def earlier(made: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str]]:
     """Return the finished conditions in ``out`` that are none of ``made``, but of the same agent
-    and settings; say which of the others are left out, and why."""
-    known, found = {cell.name for cell in made}, []
+    and settings, and the names of the others, which are left out; print why they are."""
+    known, found, left_out = {cell.name for cell in made}, [], []
     for file in sorted((out / "conditions").glob(f"*/{DONE}")):
         if file.parent.name in known:
             continue
@@ -56,15 +108,19 @@ def earlier(made: Sequence[Cell], out: Path) -> list[Cell]:
         if cell is None or reason:
             name = file.parent.name
             print(f"{name}: measured before, but not in the table: {reason}", flush=True)
+            left_out.append(name)
         else:
             found.append(cell)
-    return found
+    return found, left_out
 
 
 def _cell(clean: Cell, file: Path) -> Cell | None:
-    """The condition that a ``done.json`` tells of, like the ``clean`` one; None if it does not."""
+    """The condition that a ``done.json`` tells of, like the ``clean`` one; None if it does not.
+    Raises ValueError if it, or its events, are damaged."""
+    held = read_done(file.parent) or {}
+    if missing_entries(held):
+        return None
     try:
-        held = json.loads(file.read_text("utf-8"))
         severity = float(held["severity"])
         corruption = Corruption(str(held["condition"]), severity) if severity else CLEAN
         repeat = int(held["repeat"])

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.bridge.episodes import MEASURES, name_of
-from mitigate.bridge.events import EVENTS
+from mitigate.bridge.events import damaged, read_events
 from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
@@ -54,11 +53,18 @@ class Told:
     languages: dict[str, str | None] = field(default_factory=dict)
     adapted: list[str] = field(default_factory=list)
     connected: int = 0
+    announced: int = 0
+    ended: int = 0
 
     @property
     def lost(self) -> list[str]:
         """Episodes that were left in the middle, and did not end later."""
         return sorted(self.dropped.keys() - self.ends.keys())
+
+    def announce(self, event: dict[str, Any]) -> None:
+        """Take how many episodes a program is to run: of its own list, by ``wanted``."""
+        if event.get("wanted") is not None:
+            self.announced = max(self.announced, int(event["wanted"]))
 
     def end(self, name: str, event: dict[str, Any]) -> None:
         """Take how an episode ended: what was over is in place of a try that was given up."""
@@ -84,52 +90,60 @@ class Told:
 
 
 def read(folder: Path, count_closed: bool = False) -> Told:
-    """Return what the events in ``folder`` tell; a last line that is not whole is left out.
+    """Return what the events in ``folder`` tell; a last line without its end is left out.
 
     count_closed: episodes whose Env was closed before they were over count as they stood, though
     Envs walked side by side.
+
+    Raises:
+        ValueError: Another line is damaged. The message names the file, the line and what to do.
     """
-    told, ended = Told(), 0
-    began: dict[int, int] = {}  # by connection: how many had ended as its episode began
-    for event in _events(folder / EVENTS):
-        kind, name = event.get("event"), name_of(event.get("scene", ""), event.get("episode", ""))
-        if kind == "hello":
-            told.hellos.append(event)
-            told.connected += 1
-        elif kind == "bye":
-            told.connected -= 1
-        elif kind == "spec":
-            known = {camera.get("name") for camera in told.cameras}
-            told.cameras += [c for c in event["cameras"] if c.get("name") not in known]
-        elif kind == "episode":
-            told.first = told.first or event
-            told.languages[name] = event.get("language")
-            began[event.get("pid", 0)] = ended
-        elif kind == "end":
-            told.end(name, event)
-            told.beside = told.beside or began.get(event.get("pid", 0), ended) < ended
-            ended += 1
-        elif kind == "dropped":
-            told.dropped[name] = str(event.get("fault") or "")
-        elif kind == "adapted":
-            told.adapted.append(event["module"])
-        elif kind in ("refused", "stopped"):
-            told.refused.append(event["problem"])
+    told, began = Told(), dict[int, int]()
+    for number, event in read_events(folder):
+        try:
+            _take(told, event, began)
+        except (KeyError, TypeError, AttributeError, ValueError) as error:
+            raise damaged(folder, f"line {number} is no event of this version") from error
     return told if count_closed else told.without_closed()
+
+
+def _take(told: Told, event: dict[str, Any], began: dict[int, int]) -> None:
+    """Add one event to what was told.
+
+    Args:
+        told: What the events before it told.
+        event: One line of the events.
+        began: Per connection, how many episodes had ended when its episode began.
+    """
+    kind, name = event["event"], name_of(event.get("scene", ""), event.get("episode", ""))
+    if kind == "hello":
+        told.hellos.append(event)
+        told.connected += 1
+    elif kind == "bye":
+        told.connected -= 1
+    elif kind == "spec":
+        known = {camera.get("name") for camera in told.cameras}
+        told.cameras += [c for c in event["cameras"] if c.get("name") not in known]
+    elif kind == "dataset":
+        told.announce(event)
+    elif kind == "episode":
+        told.first = told.first or event
+        told.languages[name] = event.get("language")
+        began[event.get("pid", 0)] = told.ended
+    elif kind == "end":
+        told.end(name, event)
+        told.beside = told.beside or began.get(event.get("pid", 0), told.ended) < told.ended
+        told.ended += 1
+    elif kind == "dropped":
+        told.dropped[name] = str(event.get("fault") or "")
+    elif kind == "adapted":
+        told.adapted.append(event["module"])
+    elif kind in ("refused", "stopped"):
+        told.refused.append(event["problem"])
 
 
 def _how(end: dict[str, Any]) -> str:
     return end.get("how", OVER)
-
-
-def _events(file: Path) -> Iterator[dict[str, Any]]:
-    if not file.is_file():
-        return
-    for line in file.read_text("utf-8").splitlines():
-        try:
-            yield json.loads(line)
-        except ValueError:
-            return
 
 
 def rows(

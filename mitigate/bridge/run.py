@@ -85,6 +85,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     command failed.
     """
     from mitigate.bridge.conditions import cells
+    from mitigate.bridge.finished import check_finished
     from mitigate.bridge.identity import default_folder
     from mitigate.bridge.report import write_report
     from mitigate.bridge.words import NO_TOKENIZER
@@ -93,6 +94,7 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     name = cfg.name or name_of(command)
     out = Path(cfg.out or default_folder(cfg, name))
     made = cells(cfg, command, out, name)
+    check_finished(out)
     clean = made[0]
     many = "1 condition" if len(made) == 1 else f"{len(made)} conditions"
     print(
@@ -124,7 +126,10 @@ def run(cfg: DictConfig, command: Sequence[str]) -> Path:
     _warn_of_changes([clean, *fitting], out, known if nothing else ())
     if not clean.is_done():  # a condition showed that it is not whole
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.why_anew()}")
-    write_report([clean, *fitting], out)
+    try:
+        write_report([clean, *fitting], out)
+    except ValueError as error:  # conditions that failed are told first
+        raise ValueError("\n".join([*problems, str(error)])) from error
     if strange:
         print(strange, flush=True)
     if problems:

@@ -56,7 +56,6 @@ class ConditionTask:
         """Run the command under each condition to its end."""
         for name in jobs:
             cell = self.cells[name]
-            cell.tied = True
             try:
                 cell.start()
                 while (problem := cell.poll()) is None:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mitigate.core.files import atomic_text
+from mitigate.core.json_files import read_object
 from mitigate.corruptions import Key
 from mitigate.corruptions.keying import digest, uniform
 
@@ -52,13 +53,24 @@ class Subset:
         file = self.folder / "episodes.json"
         if not file.is_file():
             return None
-        held = json.loads(file.read_text("utf-8"))
-        if held["episodes"] != self.count:
+        again = f"Move {self.folder} aside, and run the same command again."
+        held = read_object(file, again)
+        bound = held.get("bound")
+        if not isinstance(bound, float) or not 0 <= bound <= 1 or not _is_count(held.get("of")):
+            raise ValueError(f"{file} is damaged: bound must be 0 to 1, and of a number. {again}")
+        if held.get("episodes") != self.count:
             raise ValueError(
-                f"{self.folder} is of a run with episodes={held['episodes']}, and this one asks "
-                f"for {self.count}. Name another folder (out=...), or delete this one."
+                f"{self.folder} is of a run with episodes={held.get('episodes')}, and this one "
+                f"asks for {self.count}. Name another folder (out=...), or delete this one."
             )
-        return held["bound"]
+        return bound
+
+    def least(self) -> int:
+        """Return how many episodes the program was asked for; 0 if none were chosen yet."""
+        if self._bound() is None:
+            return 0
+        of = int(read_object(self.folder / "episodes.json", "")["of"])
+        return min(self.count, of)
 
     def _agree(self, names: list[str]) -> float:
         """Add ``names`` to those that are known, wait for others, and set the bound."""
@@ -72,8 +84,26 @@ class Subset:
             fcntl.flock(file, fcntl.LOCK_EX)
             bound = self._bound()
             if bound is None:
-                places = sorted(place(json.loads(line)) for line in {*file})
+                places = sorted(place(_name(line, known)) for line in {*file})
                 bound = places[min(self.count, len(places)) - 1]
                 with atomic_text(self.folder / "episodes.json") as out:
                     json.dump({"bound": bound, "episodes": self.count, "of": len(places)}, out)
         return bound
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _name(line: str, file: Path) -> str:
+    """Return the episode that a line of ``file`` names. Raises ValueError if it is damaged."""
+    try:
+        name: object = json.loads(line)
+    except ValueError:
+        name = None
+    if not isinstance(name, str):
+        raise ValueError(
+            f"{file} has a damaged line, {line.strip()!r:.60}. Move {file.parent} aside, and run "
+            "the same command again."
+        )
+    return name

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from mitigate.bridge.command import SHOWN
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, unjudged, without_path
@@ -104,7 +105,35 @@ def problem(cell: Cell, status: int) -> str:
     if status:
         hint = f"\n{CRASH}" if told.lost else ""
         return f"the command ended with status {status}.{cell.said()}{hint}"
-    return _unseen(cell, told) or _unfinished(cell, told)
+    if cell.left and not told.lost:
+        return _ran_on(cell)
+    return _unseen(cell, told) or _unfinished(cell, told) or _too_few(cell, told)
+
+
+def _ran_on(cell: Cell) -> str:
+    """What if processes of the command ran on when it had ended."""
+    names = ", ".join(cell.left[:SHOWN]) + ", ..." * (len(cell.left) > SHOWN)
+    count = "1 process" if len(cell.left) == 1 else f"{len(cell.left)} processes"
+    return (
+        f"the command ended, but {count} that it started "
+        f"ran on: {names}. They were ended, and the condition is not finished. The command must "
+        "wait for what it starts (without &, nohup or setsid), and must end its helpers itself. "
+        f"Change it, and run again.{cell.said()}"
+    )
+
+
+def _too_few(cell: Cell, told: Told) -> str:
+    """What if fewer episodes ended than the program or ``episodes=`` announced."""
+    chosen = cell.chosen.least() if cell.chosen is not None and cell.clean is None else 0
+    least = max(told.announced, chosen)
+    if len(told.ends) >= least:
+        return ""
+    who = "wanted() returned" if told.announced == least else "episodes= chose"
+    return (
+        f"the command ended after {counted(len(told.ends), 'episode')}, and {who} {least}. Let it "
+        "run all of them; if it is to run fewer, choose these by episodes=, or give wanted() these "
+        f"alone. Then run again; the condition is measured again.{cell.said()}"
+    )
 
 
 def _unseen(cell: Cell, told: Told) -> str:

@@ -8,7 +8,9 @@ import sys
 import pytest
 
 from mitigate.bridge.conditions import cells
+from mitigate.bridge.finished import write_done
 from mitigate.bridge.identity import default_folder, files_of
+from mitigate.bridge.results import read
 from mitigate.core.conf import load_config
 from mitigate.core.files import sha256
 from mitigate.evaluation import rows
@@ -38,6 +40,12 @@ def program(tmp_path):
     return f"{sys.executable} {file} x"
 
 
+def finish_again(folder):
+    """Record the events of a condition as they are now, as if it had finished with them."""
+    entries = json.loads((folder / "done.json").read_text())
+    write_done(folder, entries | {"episodes_told": len(read(folder).ends)})
+
+
 def measured(out):
     """The conditions of the rows: {(corruption, severity)}."""
     return {(row["corruption"], row["severity"]) for row in rows.read(out / "rows.jsonl")}
@@ -58,6 +66,7 @@ def test_a_finished_condition_that_lacks_episodes_of_clean_is_measured_anew(run,
     events = out / "conditions" / "low_light-s0.6" / "events.jsonl"
     kept = [line for line in events.read_text().splitlines() if '"end"' not in line or "b" in line]
     events.write_text("\n".join(line for line in kept if '"episode": "a"' not in line) + "\n")
+    finish_again(events.parent)
     again = run(out, "conditions=[low_light]", program)
     assert again.returncode == 0 and "of clean's 4 episodes" in again.stdout
     assert "clean: done before" in again.stdout and "low_light-s0.6: started" in again.stdout
@@ -68,6 +77,7 @@ def test_an_episode_that_never_began_is_missed_too(run, program, tmp_path):
     assert run(tmp_path / "o", "conditions=[clean]", program).returncode == 0
     with open(folder / "clean" / "events.jsonl", "a") as file:
         file.write('{"event": "end", "scene": "", "episode": "z", "metrics": {"success": 1}}\n')
+    finish_again(folder / "clean")
     ran = run(tmp_path / "o", "conditions=[low_light]", program)
     assert ran.returncode == 1 and "1 of clean's 5 episodes is missing, such as z" in ran.stderr
 

@@ -140,7 +140,7 @@ def test_a_silent_command_that_lost_an_episode_is_ended_though_others_are_there(
 
 
 def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_path, monkeypatch):
-    from mitigate.bridge import cell
+    from mitigate.bridge import command
 
     started = []
 
@@ -150,7 +150,7 @@ def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_pat
             started.append(self)
             os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr(cell.subprocess, "Popen", Interrupted)
+    monkeypatch.setattr(command.subprocess, "Popen", Interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path / "o", "conditions=[clean]", f"{AGENT} --pause 5")
     assert started[0].poll() is not None

@@ -1,0 +1,205 @@
+"""Damaged files of a finished run are named, and none of its rows is lost."""
+
+import json
+import sys
+
+import pytest
+
+from mitigate.bridge import results
+from mitigate.bridge.events import note
+from mitigate.bridge.finished import read_done
+from mitigate.bridge.subset import Subset
+from mitigate.evaluation import rows
+
+PROGRAM = """
+import numpy, sys, mitigate_hook
+for _, name in mitigate_hook.wanted([("", name) for name in "abc"]):
+    episode = mitigate_hook.connect(name, instruction="Go to the door.")
+    episode.corrupt({"rgb": numpy.full((8, 8, 3), 90, "uint8")})
+    episode.finish(success=name == "a", distance_to_goal=1.0)
+"""
+CONDITION = "conditions/low_light-s0.6"
+
+
+@pytest.fixture
+def finished(run, tmp_path):
+    """A finished run of two conditions: its folder, and a function that runs it again."""
+    (tmp_path / "nav.py").write_text(PROGRAM)
+    out = tmp_path / "o"
+
+    def again(options="conditions=[low_light]"):
+        return run(out, options, f"{sys.executable} {tmp_path / 'nav.py'}")
+
+    assert not again().stderr
+    return out, again
+
+
+def contents(folder):
+    """Every file of a folder with its bytes, without locks."""
+    files = (path for path in folder.rglob("*") if path.is_file() and path.name != "lock")
+    return {path.relative_to(folder): path.read_bytes() for path in files}
+
+
+def with_damaged_line(data, number):
+    """The bytes of a file whose line ``number`` has one bracket less."""
+    lines = data.splitlines(keepends=True)
+    lines[number - 1] = b"[" + lines[number - 1][1:]
+    return b"".join(lines)
+
+
+@pytest.mark.parametrize("number", [1, 4, -1])
+def test_run_rejects_a_damaged_line_of_events_and_changes_nothing(finished, number):
+    out, again = finished
+    events = out / CONDITION / "events.jsonl"
+    count = len(events.read_bytes().splitlines())
+    number = number if number > 0 else count
+    events.write_bytes(with_damaged_line(events.read_bytes(), number))
+    before = contents(out)
+    ran = again()
+    assert ran.returncode == 1 and f"{events}: line {number} is damaged" in ran.stderr
+    assert f"move {out / CONDITION} out of" in ran.stderr and contents(out) == before
+
+
+@pytest.mark.parametrize("cut", [1, 40])
+def test_run_rejects_events_that_were_cut_after_the_condition_finished(finished, cut):
+    out, again = finished
+    events = out / CONDITION / "events.jsonl"
+    events.write_bytes(events.read_bytes()[:-cut])
+    before = contents(out)
+    ran = again()
+    assert ran.returncode == 1 and f"{events}: it has" in ran.stderr and contents(out) == before
+
+
+def test_run_rejects_events_in_which_a_result_changed(finished):
+    out, again = finished
+    events = out / CONDITION / "events.jsonl"
+    text = events.read_text()
+    assert text.count('"success": 0') > 0
+    events.write_text(text.replace('"success": 0', '"success": 1', 1))
+    ran = again()
+    assert ran.returncode == 1 and "its sha256 is not the one" in ran.stderr
+
+
+def test_run_rejects_damage_in_a_condition_that_was_not_asked_for(finished):
+    out, again = finished
+    events = out / CONDITION / "events.jsonl"
+    events.write_bytes(with_damaged_line(events.read_bytes(), 2))
+    before = contents(out)
+    ran = again("conditions=[clean]")
+    assert ran.returncode == 1 and "line 2 is damaged" in ran.stderr and contents(out) == before
+
+
+@pytest.mark.parametrize("text", ["[]", "null", '"x"', "3", "true", "{", "", "\udcff"])
+def test_run_rejects_a_finished_marker_that_is_no_object(finished, text):
+    out, again = finished
+    marker = out / CONDITION / "done.json"
+    marker.write_text(text, errors="surrogateescape")
+    before = contents(out)
+    for options in ("conditions=[low_light]", "conditions=[clean]"):
+        ran = again(options)
+        assert ran.returncode == 1 and f"{marker} " in ran.stderr and contents(out) == before
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("episodes_told", "3"),
+        ("episodes_told", True),
+        ("severity", None),
+        ("files", []),
+        ("events", {"bytes": 5}),
+        ("repeat", -1),
+    ],
+)
+def test_run_rejects_a_finished_marker_with_a_wrong_entry(finished, name, value):
+    out, again = finished
+    marker = out / CONDITION / "done.json"
+    marker.write_text(json.dumps(json.loads(marker.read_text()) | {name: value}))
+    ran = again()
+    assert ran.returncode == 1 and f"{marker}: {name} must be" in ran.stderr
+
+
+def test_run_compares_counts_of_a_marker_without_a_checksum(finished):
+    """As older versions wrote it."""
+    out, again = finished
+    marker = out / CONDITION / "done.json"
+    entries = json.loads(marker.read_text())
+    del entries["events"]
+    marker.write_text(json.dumps(entries))
+    assert "low_light-s0.6: done before, 3 episodes" in again().stdout
+    marker.write_text(json.dumps(entries | {"episodes_told": 4}))
+    assert "3 episodes ended, and done.json records 4" in again().stderr
+    del entries["episodes_told"]
+    marker.write_text(json.dumps(entries))
+    assert "lacks episodes_told" in again().stderr
+
+
+def test_run_measures_a_condition_again_whose_damaged_folder_was_moved(finished, tmp_path):
+    out, again = finished
+    held = rows.read(out / "rows.jsonl")
+    (out / CONDITION).rename(tmp_path / "aside")
+    ran = again()
+    assert not ran.stderr and "low_light-s0.6: started" in ran.stdout
+    assert rows.read(out / "rows.jsonl") == held
+
+
+def test_run_keeps_rows_that_no_finished_condition_gives_any_more(finished, tmp_path):
+    out, again = finished
+    (out / CONDITION).rename(tmp_path / "aside")
+    before = (out / "rows.jsonl").read_bytes()
+    ran = again("conditions=[clean]")
+    assert ran.returncode == 1 and "6 of them are of episodes that no finished" in ran.stderr
+    assert (out / "rows.jsonl").read_bytes() == before
+
+
+def test_run_copies_rows_that_stay_out_of_the_table(finished):
+    out, again = finished
+    before = (out / "rows.jsonl").read_bytes()
+    marker = out / CONDITION / "done.json"
+    marker.write_text(json.dumps(json.loads(marker.read_text()) | {"seed": 7}))
+    ran = again("conditions=[flare]")
+    assert not ran.stderr and "are now in" in ran.stdout
+    assert (out / "rows.jsonl.before").read_bytes() == before
+
+
+def test_run_may_judge_the_same_episodes_by_another_rule(finished):
+    out, again = finished
+    ran = again("conditions=[low_light] rule=etpnav")
+    assert not ran.stderr, ran.stderr
+    assert len(rows.read(out / "rows.jsonl")) == 6 and not list(out.glob("*.before*"))
+
+
+def test_read_leaves_out_a_last_line_that_is_being_written(tmp_path):
+    note(tmp_path, event="hello")
+    with open(tmp_path / "events.jsonl", "a") as file:
+        file.write('{"event": "bye"')
+    assert results.read(tmp_path).connected == 1
+    note(tmp_path, event="bye")
+    with pytest.raises(ValueError, match="line 2 is damaged"):
+        results.read(tmp_path)
+
+
+@pytest.mark.parametrize("line", ["null", "[]", '"x"', "{}", '{"event": 3}', '{"event": "spec"}'])
+def test_read_rejects_a_line_that_is_no_event(tmp_path, line):
+    (tmp_path / "events.jsonl").write_text(line + "\n")
+    with pytest.raises(ValueError, match=r"events\.jsonl: line 1 is"):
+        results.read(tmp_path)
+
+
+def test_read_done_returns_none_for_an_unfinished_condition(tmp_path):
+    note(tmp_path, event="hello")
+    assert read_done(tmp_path) is None
+
+
+@pytest.mark.parametrize("text", ["null", "[]", '{"episodes": 2}', '{"bound": "x", "of": 3}'])
+def test_subset_rejects_a_damaged_list_of_chosen_episodes(tmp_path, text):
+    (tmp_path / "episodes.json").write_text(text)
+    with pytest.raises(ValueError, match=r"episodes\.json"):
+        Subset(2, tmp_path, settled=0).keep(["a", "b"])
+
+
+@pytest.mark.parametrize("line", ["null", '"a', "7"])
+def test_subset_rejects_a_damaged_name(tmp_path, line):
+    (tmp_path / "episodes.txt").write_text(line + "\n")
+    with pytest.raises(ValueError, match=r"episodes\.txt has a damaged line"):
+        Subset(2, tmp_path, settled=0).keep(["a", "b"])
