@@ -237,8 +237,8 @@ def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str) -> Grid:
     if drawn != DRAWN[0]:
         scenes = {row["episode_id"]: scene_of(row) for row in rows}
         units = np.unique([scenes[episode] for episode in episodes], return_inverse=True)[1]
-    notes = {label: cuts(chain.from_iterable(each.values())) for label, each in held.items()}
-    cut = {label: text for label, text in notes.items() if text}
+    texts = {label: cuts(chain.from_iterable(by_seed.values())) for label, by_seed in held.items()}
+    cut = {label: text for label, text in texts.items() if text}
     return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs, drawn, units, cut)
 
 

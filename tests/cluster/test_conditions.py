@@ -14,7 +14,7 @@ pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launc
 
 # An agent of two episodes; in the middle of the first one under spatter it kills its worker, once.
 AGENT = """
-import os, pathlib, signal, sys
+import os, pathlib, signal, sys, time
 import mitigate_hook, numpy
 note = pathlib.Path(sys.argv[1])
 for name in "ab":
@@ -23,7 +23,9 @@ for name in "ab":
         episode.corrupt({"rgb": numpy.full((8, 8, 3), 90, "uint8")})
     if sys.argv[2] == "spatter-s0.6" and not note.exists():
         note.touch()
-        os.kill(os.getppid(), signal.SIGKILL)
+        parent = open(f"/proc/{os.getppid()}/stat").read()  # the supervisor's
+        os.kill(int(parent.rpartition(")")[2].split()[1]), signal.SIGKILL)
+        time.sleep(60)  # the supervisor ends this
     episode.finish(success=name == "a", spl=0.5 * (name == "a"))
 """
 

@@ -33,9 +33,9 @@ class LeaderboardEntry:
     and the seed of its rows. sensors: a line each. training_data, link: in words of who submits.
     scores: clean, mean and PRS, [value, low, high] with 95 % intervals, None where it is undefined.
     SR, SPL: the same of each condition. episodes: how many each condition has. listed: a hash of
-    their ids (``from_rows.listed_sha``), since a table compares entries over the same episodes. rows:
-    "file" (relative, or empty), "sha256" (``from_rows.rows_sha``) and "count" of those that it was
-    computed from.
+    their ids (``from_rows.listed_sha``), since a table compares entries over the same episodes.
+    rows: "file" (relative, or empty), "sha256" (``from_rows.rows_sha``) and "count" of
+    those that it was computed from.
     """
 
     name: str
