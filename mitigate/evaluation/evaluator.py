@@ -23,8 +23,8 @@ import torch
 
 from mitigate.agents.agent import Agent, SideBySide
 from mitigate.agents.observation import check_fits
-from mitigate.cluster.launcher import LauncherConfig, count, results
 from mitigate.agents.state import in_eval_mode, networks
+from mitigate.cluster.launcher import LauncherConfig, count, results
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import check_finite, weights_sha
 from mitigate.core.names import counted
@@ -36,12 +36,9 @@ from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import instruction, run_episode, run_side_by_side
+from mitigate.evaluation.known import Known
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.text.guard import Safeguard
-from mitigate.evaluation.known import Known
-from mitigate.restoration.restorer import Restorer
-from mitigate.safeguard.guard import Safeguard
-from mitigate.scale.launcher import LauncherConfig, count, results
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, remembering
 

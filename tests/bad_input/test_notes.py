@@ -2,9 +2,9 @@
 
 import pytest
 
+from mitigate.cluster import slurm_jobs
 from mitigate.core.json_files import read_object
 from mitigate.evaluation import list_hash, walked
-from mitigate.scale import slurm_jobs
 from mitigate.training import tables
 from mitigate.worlds import habitat_world
 

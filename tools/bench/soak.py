@@ -24,8 +24,6 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.bench.growth import DAY, MUCH, Growth, growth
-from mitigate.bench.loads import LOADS
 from mitigate.core.files import atomic_text, make_folder, write_bytes, write_figure
 from mitigate.core.markdown import markdown_table
 from mitigate.core.output import open_output

@@ -17,15 +17,11 @@ from typing import Protocol
 
 from mitigate.core.files import find, make_folder, writing
 from mitigate.core.names import unknown
+from mitigate.core.output import open_output
 from mitigate.guards.text.addresses import check_choice
 from mitigate.guards.text.choices import ADAPTER, CHOICES, TAGGERS, VERSION, holds_tags, identity
 from mitigate.guards.text.draft import Decision, Draft
 from mitigate.guards.text.plain.plainly_said import Tags
-from mitigate.core.output import open_output
-from mitigate.safeguard.addresses import check_choice
-from mitigate.safeguard.choices import ADAPTER, CHOICES, TAGGERS, VERSION, holds_tags, identity
-from mitigate.safeguard.draft import Decision, Draft
-from mitigate.safeguard.plain.plainly_said import Tags
 
 CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
