@@ -9,10 +9,10 @@ from typing import Any
 from torch import nn
 from torch.nn.modules.batchnorm import _NormBase
 
+from mitigate.agents.adapter_layers import FrameGate
 from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
 from mitigate.agents.adapters import adapter_parameters, adapters_of, remove_adapters
 from mitigate.agents.agent import Trainable
-from mitigate.agents.gate import FrameGate
 from mitigate.core import checkpoint
 from mitigate.core.files import find
 from mitigate.core.names import unknown

@@ -12,6 +12,7 @@ from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
 from mitigate.worlds.episodes import Episode, Instruction, is_seed
 from mitigate.worlds.metres import check_metres
+from mitigate.worlds.world import World
 
 
 def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") -> list[Episode]:
@@ -29,7 +30,7 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     ]
 
 
-class SeededWorld:
+class SeededWorld(World):
     """A subclass sets ``_steps``, ``_reward`` and ``done`` as it goes, and says what it saw.
 
     Args: found: shape, dtype and greatest value of each entry of the environment's observations.
@@ -93,9 +94,6 @@ class SeededWorld:
         """success, spl (the same: no shortest path is known) and steps."""
         won = int(self.done and self._won())
         return {"success": won, "spl": float(won), "steps": self._steps}
-
-    def expert(self) -> None:
-        """Nobody: a subclass that knows what to do next returns somebody with ``action()``."""
 
     def _begin(self, episode: Episode) -> int:
         """Count from 0 again; the seed of an episode, ``info["seed"]`` or else made of its id."""

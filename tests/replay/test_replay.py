@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from mitigate import cli
-from mitigate.agents.recurrent.odometer import Odometer
+from mitigate.agents.recurrent.policy import Odometer
 from mitigate.core.conf import load_config
 from mitigate.core.locks import FolderLock
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP

@@ -7,9 +7,10 @@ import numpy as np
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
 from mitigate.worlds.apartments.simulator import Simulator
 from mitigate.worlds.measures import Rule
+from mitigate.worlds.world import Expert
 
 
-class GeodesicExpert:
+class GeodesicExpert(Expert):
     """Distances and the greedy follower of a geodesic ``field``: it turns to the heading whose step
     lowers the distance most, and stops within what ``rule`` counts."""
 

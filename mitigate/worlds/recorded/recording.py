@@ -19,7 +19,7 @@ from mitigate.worlds.episodes import Episode, Instruction
 from mitigate.worlds.metres import check_metres
 from mitigate.worlds.recorded.source import Lens, Source
 from mitigate.worlds.recorded.steps import Driven, Step, driven, strange
-from mitigate.worlds.world import Expert
+from mitigate.worlds.world import World
 
 LARGEST = 1 << 32  # bytes of the frames of a drive (ours)
 STRANGE = 1 / 3  # of the steps that move: more do not go along the heading by mistake (ours)
@@ -199,7 +199,7 @@ def _check_headings(name: str, strange: int, moves: int) -> None:
         )
 
 
-class RecordedWorld:
+class RecordedWorld(World):
     """A world in which every step leads to the next instant of a recording, whatever the agent
     does. It is over after the last one; nobody says how well an agent would have walked."""
 
@@ -239,10 +239,6 @@ class RecordedWorld:
     def measures(self) -> dict[str, float]:
         """None: the way was the driver's."""
         return {}
-
-    def expert(self) -> Expert | None:
-        """None: how far the goal is, is not recorded."""
-        return None
 
     def _seen(self) -> Observation:
         at = min(self.at, len(self.recording.times) - 1)

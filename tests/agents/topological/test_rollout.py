@@ -9,12 +9,9 @@ import pytest
 import torch
 
 from mitigate.agents.text import Vocabulary, pad
-from mitigate.agents.topological.learning import collect
+from mitigate.agents.topological.perception import select
 from mitigate.agents.topological.rollout import STOP_BEST, LiveWalk, roll_out
-from mitigate.agents.topological.scene_poses import SPACING
-from mitigate.agents.topological.stored import Store
-from mitigate.agents.topological.stored_walk import StoredWalk
-from mitigate.agents.topological.waypoints import select
+from mitigate.agents.topological.stored import SPACING, Store, StoredWalk
 from mitigate.core.observation import VIEWS
 from mitigate.corruptions import CLEAN
 from mitigate.worlds.apartments import simulator
@@ -116,7 +113,7 @@ def test_a_rollout_ends_with_its_episode(monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 12)
     worlds, episodes = [ApartmentsWorld(SIZE) for _ in range(3)], load_episodes("val_seen")[:3]
     rngs = [np.random.default_rng(n) for n in range(3)]
-    piece = collect(wanderer(), worlds, episodes, expert_share=0.5, rngs=rngs)
+    piece = wanderer().collect(worlds, episodes, expert_share=0.5, rngs=rngs)
     assert [world.measures()["steps"] for world in worlds] == [12, 12, 12]
     for trace in piece.traces:
         assert len(trace.views) == len(trace.steps) > 0
