@@ -129,7 +129,7 @@ class _Walk:
 
     def measures(self) -> dict[str, Any]:
         found = {**self.met.measures(), "decisions": self.met.looks}
-        plain = {n: v.item() if hasattr(v, "item") else v for n, v in found.items()}  # of numpy
+        plain = {n: v.item() if hasattr(v, "item") else v for n, v in found.items()}  # arrays
         found = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
         return {name: found.pop(name) for name in MEASURES if name in found} | found
 

@@ -15,7 +15,7 @@ from mitigate.evaluation.episode import action_of, instructed
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.frames.world import Restored
 from mitigate.worlds.recorded import RecordedWorld, Recording
-from mitigate.worlds.recorded.steps import answered
+from mitigate.worlds.recorded.recording import answered
 from mitigate.worlds.world import Corrupted, World
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}

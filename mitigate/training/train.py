@@ -22,7 +22,8 @@ from hydra.types import RunMode
 from hydra.utils import get_method
 from omegaconf import MISSING, DictConfig, OmegaConf
 
-from mitigate.agents.loading import OWN_CONFIG_ONLY, begun_from, build_agent
+from mitigate.agents.agent import as_agent
+from mitigate.agents.loading import begun_from, build_agent
 from mitigate.core import conf, seeding
 from mitigate.core.build import maker
 from mitigate.core.files import atomic_text
@@ -251,7 +252,7 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
     from mitigate.core.build import plain
 
     own: dict[str, Any] = getattr(agent, "settings", dict)()
-    barred = getattr(agent, OWN_CONFIG_ONLY, ())
+    barred = as_agent(agent).own_config_only
     held = {name: value for name, value in data(plain(node)).items() if name not in barred}
     return {"_target_": node._target_, **held, **data(own)}
 

@@ -11,8 +11,7 @@ import numpy as np
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
 from mitigate.worlds.episodes import Episode, Instruction, is_seed
-from mitigate.worlds.metres import check_metres
-from mitigate.worlds.world import World
+from mitigate.worlds.world import World, check_metres
 
 
 def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") -> list[Episode]:

@@ -20,6 +20,8 @@ from mitigate.corruptions import Corruption, DepthSensor, Key, Schedule, corrupt
 from mitigate.corruptions.schedule import drawn
 from mitigate.worlds.episodes import Episode
 
+FARTHEST = 100.0  # metres: half of an indoor frame's readings are nearer (ours)
+
 
 class Expert:
     """Base class of a shortest-path oracle: what it knows of the current episode.
@@ -295,3 +297,14 @@ class _ExpertView(Expert):
 
     def __init__(self, expert: Any) -> None:
         take_over(self, expert, ("distance", "action", "counts"))
+
+
+def check_metres(depth: np.ndarray, whose: str, fix: str) -> None:
+    """Raise ValueError, with ``fix`` behind it, for ``depth`` (0: no reading) of ``whose`` frames
+    half of the readings are farther than ``FARTHEST``."""
+    known = depth[depth > 0]
+    if len(known) and float(np.median(known)) > FARTHEST:
+        middle = np.median(known)
+        raise ValueError(
+            f"Half of {whose} is farther than {middle:.0f} m: that is not metres. {fix}"
+        )

@@ -26,7 +26,7 @@ from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.recorded import Recording, open_recording
-from mitigate.worlds.recorded.steps import NONE, answered
+from mitigate.worlds.recorded.recording import NONE, answered
 
 T = 30
 

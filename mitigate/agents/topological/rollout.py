@@ -138,7 +138,13 @@ class LiveWalk:
             self.observation = self.world.step(action)
 
     def distance(self, xy: np.ndarray) -> float:
-        return self.expert.distance(xy)
+        metres = self.expert.distance(xy)
+        if np.isnan(metres):
+            raise ValueError(
+                "The world's expert knows no distance(xy) to the goal, which teaches an agent that "
+                "plans: give it that method (docs/bring-your-own.md)."
+            )
+        return metres
 
     def counts(self, metres: float) -> bool:
         return self.expert.counts(metres)

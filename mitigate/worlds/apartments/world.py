@@ -24,7 +24,6 @@ from mitigate.core.observation import (
 from mitigate.worlds import measures
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
-from mitigate.worlds.apartments.expert import GeodesicExpert
 from mitigate.worlds.apartments.labels import (
     ahead,
     column_labels,
@@ -33,7 +32,7 @@ from mitigate.worlds.apartments.labels import (
 )
 from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import shared_renderer
-from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.simulator import GeodesicExpert, Simulator
 from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_field
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World
