@@ -318,7 +318,7 @@ def detach_all(model: nn.Module) -> None:
 
 def moved_statistics(model: nn.Module) -> bool:
     """Whether the backbone's running statistics are other ones than when adapters came in."""
-    held = getattr(model, _STATISTICS, {})
+    held = vars(model).get(_STATISTICS, {})
     return any(not v.equal(held.get(name, v)) for name, v in _statistics(model).items())
 
 
