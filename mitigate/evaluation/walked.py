@@ -136,10 +136,11 @@ def _spec(world: World) -> str:
     """Return what the environment inside a world, if there is one, says it was made of: worlds of
     one class differ in it alone."""
     spec = getattr(_environment(world), "spec", None)  # gymnasium's, or of another library
-    if getattr(spec, "id", None) is None:
+    name = getattr(spec, "id", None)
+    if name is None:
         return ""
     made = json.dumps(getattr(spec, "kwargs", {}), sort_keys=True, default=lambda x: str(type(x)))
-    return f"{spec.id} {made}"
+    return f"{name} {made}"
 
 
 def _environment(layer: Any) -> Any:

@@ -57,6 +57,10 @@ class ScenePoses:
     seen: Tensor
 
 
+# folders name the class; those that earlier versions wrote have this name of it
+ScenePoses.__module__ = "mitigate.agents.topological.stored_walk"
+
+
 class Features:
     """Arrays of one scene: xy [n, 2], views float16 [n, 12, F], waypoints [n, 6, 2] (metres 0 =
     none), seen uint64 [n, 12] (bit i: thing i shows in the middle of the view)."""
