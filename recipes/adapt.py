@@ -16,8 +16,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mitigate.agents.adapter_layers import FrameGate
 from mitigate.agents.adapters import adapted, backbone_sha, scale_adapters, trainable_share
-from mitigate.agents.gate import FrameGate
 from mitigate.core.progress import say
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import Distil, DistilViews

@@ -16,6 +16,7 @@ from typing import Any
 
 import torch
 
+from mitigate.agents.agent import as_agent
 from mitigate.core.files import write_bytes
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
@@ -37,7 +38,7 @@ class Dagger(Imitate):
 
     @classmethod
     def misfit(cls, agent: Any) -> str:
-        if getattr(agent, "plain_walks", True):
+        if as_agent(agent).plain_walks:
             return super().misfit(agent)
         return (
             "its walks are no plain data, so none can be kept. Choose recipe=imitation, or "

@@ -19,8 +19,8 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mitigate.agents.adapter_layers import Gate
 from mitigate.agents.adapters import backbone_sha
-from mitigate.agents.tokens import Gate
 from mitigate.core import checkpoint
 from mitigate.core.pictures import side_by_side
 from mitigate.core.progress import Progress

@@ -14,7 +14,7 @@ from typing import Any
 
 from torch import Tensor
 
-from mitigate.agents.agent import Decisions, Output
+from mitigate.agents.agent import Decisions, Output, as_agent
 from mitigate.corruptions import Schedule
 from mitigate.training import limits
 from mitigate.training.parts import train_only
@@ -117,13 +117,13 @@ def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, flo
     if not isinstance(given or {}, Mapping):
         raise ValueError(f"recipe.losses={given} must be weights by name, as {{distance: 0.3}}.")
     limits.check_weights(**{f"losses.{name}": value for name, value in (given or {}).items()})
-    return {**getattr(agent, "loss_weights", {}), **(given or {})}
+    return {**as_agent(agent).loss_weights, **(given or {})}
 
 
 def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
     """Raise ValueError for weights of a loss that ``agent`` neither returned in ``out`` nor names
     itself."""
-    known = [*out.losses, *(n for n in getattr(agent, "loss_weights", {}) if n not in out.losses)]
+    known = [*out.losses, *(n for n in as_agent(agent).loss_weights if n not in out.losses)]
     for name in weights:
         if name not in known:
             raise ValueError(

@@ -20,7 +20,7 @@ import torch
 from hydra import compose, initialize_config_dir
 from tqdm import tqdm
 
-from mitigate.agents.concepts import THINGS
+from mitigate.agents.text import THINGS
 from mitigate.core import conf
 from mitigate.core.markdown import markdown_table
 from mitigate.core.names import name_of

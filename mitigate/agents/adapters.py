@@ -1,12 +1,12 @@
 """Zero-initialised residual adapters for any frozen torch encoder.
 
 ``insert_adapters(model, target_modules=...)`` puts ``x + up(act(down(x)))`` behind named modules,
-as PEFT does for attention: the backbone's own weights keep their names and values, and nothing
-changes until ``up`` has learned. Behind a module that gives maps it is convolutional, behind one
-that gives tokens (``tokens.py``) it is linear. A *ring* adapter (``ring.py``) also sees the
-neighbours of each view of a panorama, so that what one view has lost can come from the views that
-overlap it. A *gate* (``gate.py``) lets the adapters of an encoder correct only the frames that it
-takes for corrupted.
+as PEFT does for attention: the backbone's own weights keep their names and values, its ``forward``
+is not touched, and nothing changes until ``up`` has learned. Each adapter is a child of its module,
+called by a forward hook. The layers are in ``adapter_layers.py``: convolutional behind a module
+that returns maps, linear behind one that returns tokens, a *ring* adapter that also sees the
+neighbours of each view of a panorama, and a *gate* that lets the adapters of an encoder correct
+only the frames that it judges to be corrupted.
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents import attachment
-from mitigate.agents.attachment import NAME, adapted, adapters_of
-from mitigate.agents.conv import ConvAdapter
-from mitigate.agents.gate import FrameGate
-from mitigate.agents.ring import RingAdapter
-from mitigate.agents.sites import MAP, Run, Site, channels_of, inputs_of, listed, look, named
-from mitigate.agents.tokens import TokenAdapter
+from mitigate.agents.adapter_layers import (
+    Adapter,
+    ConvAdapter,
+    FrameGate,
+    RingAdapter,
+    TokenAdapter,
+)
+from mitigate.agents.sites import MAP, Run, Site, channels_of, first, inputs_of, listed, look, named
 from mitigate.core import checkpoint
 from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.json_files import read_json
@@ -34,6 +35,8 @@ from mitigate.core.names import short
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
+NAME = checkpoint.ADAPTER.strip(".")  # of the submodule that a target module gets
+_STATISTICS = "_statistics_before_adapters"
 
 
 def insert_adapters(
@@ -76,14 +79,14 @@ def insert_adapters(
     cannot be told or that has a child called "adapter", a gate that nothing follows, or a model
     that has adapters; the model is then as it was.
     """
-    attachment.refuse_adapted(model)
+    refuse_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
     gated = named(model, listed("gates", gates))
     if not target_modules + ring:
         raise ValueError("target_modules names no module: give at least one, such as 'layer[1-4]'.")
     plain, ringed = named(model, target_modules), named(model, ring)
     sites = None if run is None else look(model, run)
-    made: dict[str, nn.Module] = {}
+    made: dict[str, Adapter] = {}
     for name, module in model.named_modules():
         if name in gated:
             made[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
@@ -93,8 +96,8 @@ def insert_adapters(
             made[name] = RingAdapter(channels_of(name, module), ring_reduction, kernel, views, hfov)
         elif name in plain:
             made[name] = _plain(name, module, sites, reduction, kernel, gate, middle)
-    attachment.check_gates(made)
-    attachment.attach_all(model, made)
+    check_gates(made)
+    attach_all(model, made)
     return list(made)
 
 
@@ -106,7 +109,7 @@ def _plain(
     kernel: int,
     gate: bool,
     middle: int | None,
-) -> nn.Module:
+) -> Adapter:
     """The adapter that fits behind a module."""
     if sites is None:
         return ConvAdapter(channels_of(name, module), reduction, kernel, gate, middle)
@@ -121,7 +124,7 @@ def _plain(
 def remove_adapters(model: nn.Module) -> None:
     """Take all adapters out; the backbone computes what it did before they came in. It stays
     frozen: ``model.requires_grad_(True)`` lets it train again."""
-    attachment.detach_all(model)
+    detach_all(model)
 
 
 def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
@@ -144,7 +147,7 @@ def scale_adapters(model: nn.Module, strength: float) -> None:
         raise ValueError(f"strength={strength} is a share of the adapters' correction: 0 to 1.")
     if not adapted(model):
         raise ValueError("There are no adapters to scale: call insert_adapters(model, ...) first.")
-    layers = [getattr(a, name) for a in adapters_of(model) for name in getattr(a, "corrects", ())]
+    layers = [a.get_submodule(name) for a in adapters_of(model) for name in a.corrects]
     with torch.no_grad():
         for parameter in (p for layer in layers for p in layer.parameters()):
             parameter.mul_(strength)
@@ -160,10 +163,10 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     """Write the adapters alone: ``adapters.safetensors`` and ``adapters.json`` (names, shapes of
     the bottlenecks, sha256 of the backbone). Returns the folder. Raises ValueError if there are
     none; warns if the backbone's running statistics are not those of when they were inserted."""
-    names, folder = adapted(model), Path(folder)
-    if not names:
+    adapters, folder = _attached(model), Path(folder)
+    if not adapters:
         raise ValueError("There are no adapters to save: call insert_adapters(model, ...) first.")
-    if attachment.moved_statistics(model):
+    if moved_statistics(model):
         warnings.warn(
             "The backbone's running statistics (BatchNorm) have changed since the adapters were "
             "inserted, so these adapters fit this backbone only: save it, too. To keep them, train "
@@ -171,11 +174,11 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
             stacklevel=2,
         )
     make_folder(folder)
-    modules = nn.ModuleDict({_key(n): getattr(model.get_submodule(n), NAME) for n in names})
+    modules = nn.ModuleDict({_key(name): adapter for name, adapter in adapters.items()})
     checkpoint.save_weights(modules, folder / WEIGHTS)
     settings = {
         "backbone_sha256": backbone_sha(model),
-        "adapters": {n: getattr(model.get_submodule(n), NAME).settings for n in names},
+        "adapters": {name: adapter.settings for name, adapter in adapters.items()},
     }
     with atomic_text(folder / SETTINGS) as file:
         json.dump(settings, file, indent=2)
@@ -191,7 +194,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     another backbone (or this one in another dtype), or for modules that ``model`` does not have.
     """
     folder = Path(folder)
-    attachment.refuse_adapted(model)
+    refuse_adapted(model)
     for file in (folder / WEIGHTS, folder / SETTINGS):
         if not file.is_file():
             raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
@@ -214,7 +217,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
         raise ValueError(f"This model has no module called {', '.join(missing)}.")
-    made: dict[str, nn.Module] = {}
+    made: dict[str, Adapter] = {}
     try:
         owners = tuple(f"{_key(name)}." for name in shapes)
         for name in tensors:
@@ -228,11 +231,11 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         cause = " ".join(str(error).split())[:300]
         raise ValueError(f"The adapters in {folder} are damaged ({cause}).") from error
     checkpoint.check_finite(nn.ModuleList(made.values()), f"The adapters in {folder}")
-    attachment.attach_all(model, made)
+    attach_all(model, made)
     return list(shapes)
 
 
-def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> nn.Module:
+def _made(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adapter:
     """Return the adapter of ``settings`` with the weights ``tensors``. Raises TypeError or
     RuntimeError if they do not fit, or are not as an adapter of that kind writes them; no memory is
     taken for what does not."""
@@ -261,3 +264,132 @@ def backbone_sha(model: nn.Module) -> str:
 def _key(name: str) -> str:
     """A module's name as a ModuleDict's key, which may hold no dot."""
     return name.replace(".", "/")
+
+
+def adapted(model: nn.Module) -> list[str]:
+    """Names of the modules of ``model`` that have an adapter."""
+    return [*_attached(model)]
+
+
+def adapters_of(model: nn.Module) -> list[Adapter]:
+    """The adapters and gates themselves, in the model's order."""
+    return [*_attached(model).values()]
+
+
+def _attached(model: nn.Module) -> dict[str, Adapter]:
+    """Adapters by the name of the module that has them."""
+    return {
+        name: child
+        for name, module in model.named_modules()
+        for own, child in module.named_children()
+        if own == NAME and isinstance(child, Adapter)
+    }
+
+
+def refuse_adapted(model: nn.Module) -> None:
+    if adapted(model):
+        raise ValueError("This model has adapters already; remove_adapters(model) takes them out.")
+
+
+def attach_all(model: nn.Module, made: dict[str, Adapter]) -> None:
+    """Freeze ``model`` and attach ``made``, all or none."""
+    taken = [name for name in made if hasattr(model.get_submodule(name), NAME)]
+    if taken:
+        raise ValueError(
+            f"{', '.join(taken)} has something called {NAME!r} of its own, the name that an "
+            "adapter takes. Choose other target modules."
+        )
+    model.requires_grad_(False)
+    like = next(model.parameters(), torch.zeros(()))
+    for name, adapter in made.items():
+        _attach(model.get_submodule(name), adapter, like)
+    _follow(made)
+    setattr(model, _STATISTICS, _statistics(model))
+
+
+def detach_all(model: nn.Module) -> None:
+    """Take all adapters out, and their hooks."""
+    for name, adapter in _attached(model).items():
+        if adapter.hook is not None:
+            adapter.hook.remove()
+            adapter.hook = None
+        delattr(model.get_submodule(name), NAME)
+
+
+def moved_statistics(model: nn.Module) -> bool:
+    """Whether the backbone's running statistics are other ones than when adapters came in."""
+    held = vars(model).get(_STATISTICS, {})
+    return any(not v.equal(held.get(name, v)) for name, v in _statistics(model).items())
+
+
+def _adapter_of(module: nn.Module) -> Adapter:
+    adapter = module.get_submodule(NAME)
+    assert isinstance(adapter, Adapter)
+    return adapter
+
+
+def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
+    """``usual``: whose device and dtype it gets where ``module`` has no weights."""
+    like = next(module.parameters(), usual)
+    module.add_module(NAME, adapter.to(like.device, like.dtype))
+    if isinstance(adapter, FrameGate):
+        adapter.hook = module.register_forward_pre_hook(_look)
+    elif type(module).forward is not nn.Sequential.forward:  # that runs its new child by itself
+        adapter.hook = module.register_forward_hook(_adapt)
+
+
+def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
+    """Forward hook: the adapter of ``module`` on its output, or on the first item of it."""
+    adapter = _adapter_of(module)
+    if isinstance(output, (tuple, list)):
+        rest = (adapter(first(output)), *output[1:])
+        # a named tuple takes its parts one by one
+        return output._make(rest) if hasattr(output, "_make") else type(output)(rest)
+    return adapter(output)
+
+
+def _look(module: nn.Module, inputs: Any) -> None:
+    """Forward pre-hook: the gate of ``module`` on what goes into it."""
+    gate = _adapter_of(module)
+    assert isinstance(gate, FrameGate)
+    gate.look(inputs[0])
+
+
+def _follow(made: dict[str, Adapter]) -> None:
+    """Tell each adapter of the gate in front of it."""
+    for name, gate in _gates_of(made).items():
+        made[name].gates = [made[gate]]
+
+
+def check_gates(made: dict[str, Adapter]) -> None:
+    """Raise ValueError for a gate that would open and close for nothing."""
+    used = set(_gates_of(made).values())
+    idle = [name for name, m in made.items() if isinstance(m, FrameGate) and name not in used]
+    if idle:
+        raise ValueError(
+            f"The gate at {idle[0]} has no adapter of maps behind it to open for (those of tokens "
+            "take none). Leave it out of gates, or choose other target modules."
+        )
+
+
+def _gates_of(made: dict[str, Adapter]) -> dict[str, str]:
+    """By adapter, the gate in front of it: the one in the same encoder."""
+    corrects = [n for n, m in made.items() if isinstance(m, (ConvAdapter, RingAdapter))]
+    held: dict[str, tuple[str, str]] = {}  # by adapter: the module around both, and the gate
+    for name, gate in made.items():
+        if not isinstance(gate, FrameGate):
+            continue
+        around, behind = name, list[str]()
+        while around and not behind:
+            around = around.rpartition(".")[0]
+            behind = [n for n in corrects if not around or n.startswith(f"{around}.")]
+        for n in behind:
+            if n not in held or len(around) > len(held[n][0]):
+                held[n] = (around, name)
+    return {name: gate for name, (_, gate) in held.items()}
+
+
+def _statistics(model: nn.Module) -> dict[str, Tensor]:
+    """Copies of the running means and variances of the backbone's normalisations."""
+    found = {n: b for n, b in model.named_buffers() if n.rpartition(".")[2].startswith("running_")}
+    return {name: torch.clone(buffer).float().cpu() for name, buffer in found.items()}

@@ -1,13 +1,18 @@
-"""What evaluation and recipes ask of an agent.
+"""The contract of agents: what evaluation and training expect of one.
 
-An agent hears an instruction and acts on observations; it knows no world. A *trainable* agent also
-says what its decisions are made of, and recipes train it from that alone. How to bring one:
-``docs/bring-your-own.md``.
+An agent receives an instruction and acts on observations; it is independent of worlds. A
+*trainable* agent also exposes its decisions as batches, and objectives train it from these alone.
+How to bring one: ``docs/bring-your-own.md``.
+
+A class that builds on :class:`Agent` inherits the defaults of everything optional. An object of any
+other class works, too: :func:`as_agent` fills in what it lacks.
 """
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
@@ -15,44 +20,140 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mitigate.agents.adapters import remove_adapters
+from mitigate.core.contracts import lacking, take_over
+
 if TYPE_CHECKING:
     from mitigate.worlds.episodes import Episode
     from mitigate.worlds.world import World
 
 
-class Agent(Protocol):
-    """What can be evaluated: any object that turns observations into low-level actions.
+class Agent:
+    """Base class of agents. A subclass defines ``reset`` and ``act``; the rest has defaults.
 
-    An agent that works with a prompt has it in an attribute ``system_prompt``, read at ``reset``.
-    ``views`` (attribute, optional): 12 for a panorama, 1 for a camera ahead; worlds that show
-    another number are refused.
-    ``tasks`` (attribute, optional): of what episode lists call ``info["task"]`` ("vln", a route;
-    "ogn", an object), those that it can do; an evaluation warns of others. Without it, all.
-    ``taken(action, metres, radians)`` (optional): somebody else drives; since the agent's last
-    answer that took it ``metres`` ahead and ``radians`` to the left, which is most like ``action``
-    (-1: like none). What the agent planned is forgotten.
-    ``aim`` (attribute, optional): the point [2] of the plan that it is walking to, or None.
+    Attributes:
+        views: 12 for a panorama, 1 for a camera ahead; worlds with another number are rejected.
+            None: any number.
+        sensors: the entries of observations that it reads; a training draws no corruption of frames
+            that are not among them. None: it may read all.
+        tasks: which episodes it can do, by ``info["task"]`` of episode lists ("vln": a route,
+            "ogn": an object); an evaluation warns of others. None: all.
+        system_prompt: of an agent that works with a prompt, which it reads at ``reset``.
+        aim: the point [2] of the plan that it is walking to, or None.
+        together: how many episodes it can walk at once; more than 1 needs ``begin`` and
+            ``act_all``.
+        encoders: names of the parts that read a sensor, by sensor. labels: what they are taught by
+            a world's ``truth()``, by sensor. Both belong to ``see`` (:class:`Seeing`).
+        loss_weights: of its auxiliary losses by name; 1 where it names none.
+        frozen: names of modules that never train, such as a borrowed backbone; adapters in them do.
+        plain_walks: whether what ``collect`` returns is plain data (dicts, lists, texts, numbers
+            and tensors), which DAgger keeps on disk.
+        own_config_only: constructor arguments that name code or files, which no config that came
+            with weights may set.
     """
 
-    def reset(self, instruction: str) -> None: ...
-    def act(self, observation: Mapping[str, np.ndarray]) -> int: ...
+    views: int | None = None
+    sensors: Sequence[str] | None = None
+    tasks: Sequence[str] | None = None
+    system_prompt: str | None = None
+    aim: np.ndarray | None = None
+    together: int = 1
+    encoders: Mapping[str, tuple[str, ...]] = {}
+    labels: Mapping[str, str] = {}
+    loss_weights: Mapping[str, float] = {}
+    frozen: Sequence[str] = ()
+    plain_walks: bool = True
+    own_config_only: Sequence[str] = ()
 
+    def reset(self, instruction: str) -> None:
+        """Start an episode."""
+        raise NotImplementedError(f"{type(self).__name__} defines no reset(instruction)")
 
-@runtime_checkable
-class SideBySide(Protocol):
-    """An agent that can walk several episodes at once, which costs less than one after the other.
+    def act(self, observation: Mapping[str, np.ndarray]) -> int:
+        """Return the next low-level action."""
+        raise NotImplementedError(f"{type(self).__name__} defines no act(observation)")
 
-    together: how many, at most. ``begin(instruction)`` returns what it must remember of an episode;
-    ``act_all`` answers an observation of each of n episodes, n actions, and changes their memories.
-    No answer depends on the other episodes, nor on how many there are.
-    """
+    def begin(self, instruction: str) -> Any:
+        """Return what it must remember of an episode, of up to ``together`` at once."""
+        raise NotImplementedError(f"{type(self).__name__} defines no begin(instruction)")
 
-    together: int
-
-    def begin(self, instruction: str) -> Any: ...
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
-    ) -> list[int]: ...
+    ) -> list[int]:
+        """Return an action for the observation of each of n episodes, and change their memories.
+
+        No answer depends on the other episodes, nor on how many there are.
+        """
+        raise NotImplementedError(f"{type(self).__name__} defines no act_all(...)")
+
+    def taken(self, action: int, metres: float, radians: float) -> None:
+        """Learn that another driver acts: since the agent's last answer the driver moved ``metres``
+        ahead and ``radians`` to the left, which is most like ``action`` (-1: like none). What the
+        agent planned is forgotten."""
+
+    def remembering(self) -> AbstractContextManager:
+        """A context within which equal frames are encoded once; no action depends on it."""
+        return nullcontext()
+
+    def precompute(self, piece: Any, *, clean: bool) -> Any:
+        """Return a piece of ``collect`` with what no trained weight changes computed; worker
+        processes call it. ``clean`` asks for what ``decide(clean=True)`` needs."""
+        return piece
+
+    def as_teacher(self) -> Any:
+        """Return a copy without what was added to make it robust: its adapters."""
+        return _without_adapters(self)
+
+
+# what :func:`as_agent` takes over from an object once; ``system_prompt`` and ``aim`` may change
+OPTIONAL = (
+    *("views", "sensors", "tasks", "together", "encoders", "labels", "loss_weights", "frozen"),
+    *("plain_walks", "own_config_only", "begin", "act_all", "taken", "remembering", "precompute"),
+    "as_teacher",
+)
+
+
+def as_agent(agent: Any) -> Agent:
+    """Return ``agent``, or a view of it with the defaults of :class:`Agent` if its class does not
+    build on that. The agent itself is not changed, and is what a fingerprint is taken of."""
+    return agent if isinstance(agent, Agent) else _AgentView(agent)
+
+
+class _AgentView(Agent):
+    """An object of a user's class as an :class:`Agent`."""
+
+    def __init__(self, agent: Any) -> None:
+        self._agent = agent
+        take_over(self, agent, OPTIONAL)
+        if lacking(agent, ("begin", "act_all")):
+            self.together = 1
+
+    @property
+    def system_prompt(self) -> str | None:
+        return getattr(self._agent, "system_prompt", None)  # may be set later
+
+    @system_prompt.setter
+    def system_prompt(self, text: str | None) -> None:
+        self._agent.system_prompt = text
+
+    @property
+    def aim(self) -> np.ndarray | None:  # type: ignore[override]
+        return getattr(self._agent, "aim", None)  # changes from step to step
+
+    def reset(self, instruction: str) -> None:
+        self._agent.reset(instruction)
+
+    def act(self, observation: Mapping[str, np.ndarray]) -> int:
+        return self._agent.act(observation)
+
+    def as_teacher(self) -> Any:
+        return _without_adapters(self._agent)
+
+
+def _without_adapters(agent: Any) -> Any:
+    copied = copy.deepcopy(agent)
+    remove_adapters(copied)
+    return copied
 
 
 @dataclass
@@ -104,20 +205,7 @@ class Decisions(Protocol):
 
 @runtime_checkable
 class Trainable(Protocol):
-    """An ``nn.Module`` that the recipes train, beside :class:`Agent`.
-
-    ``loss_weights`` (attribute, optional): of its auxiliary losses by name; 1 where it names none.
-    ``sensors`` (attribute, optional): the entries of observations that it reads; a training draws
-    no corruption of frames that are not among them. Without it, it may read all.
-    ``frozen`` (attribute, optional): names of modules that never train, such as a borrowed
-    backbone; adapters in them do.
-    ``plain_walks`` (attribute, optional): False if what :meth:`collect` returns is no plain data
-    (dicts, lists, texts, numbers and tensors), which DAgger keeps on disk.
-    ``precompute(piece, *, clean)`` (optional): the piece with what no trained weight changes
-    computed, called on worker processes; ``clean`` asks for what ``decide(clean=True)`` needs.
-    ``as_teacher()`` (optional): a copy without what was added to make it robust; by default a copy
-    without its adapters.
-    """
+    """An ``nn.Module`` that objectives train, beside :class:`Agent`."""
 
     def parts(self) -> dict[str, nn.Module]:
         """What may be frozen, trained and adapted, by name; together all parameters."""

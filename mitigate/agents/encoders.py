@@ -1,8 +1,10 @@
-"""Per-view encoders: small residual CNNs with GroupNorm, one for RGB and one for depth.
+"""Encoders of views: small residual CNNs with GroupNorm, one for RGB and one for depth.
 
-Their ``stages`` are the places where adapters go. Both take what the sensor gives (uint8 RGB,
+Their ``stages`` are the places where adapters go. All take what the sensor gives (uint8 RGB,
 float32 metres, square views of any size), and resize and normalise inside, so no caller can do
-either wrongly.
+either wrongly. ``RGBEncoder`` and ``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and
+``CameraDepth`` read one camera and say what shows in each of its four columns: an agent with one
+camera steers by where in the view a thing is. The losses that teach them are at the end.
 """
 
 from __future__ import annotations
@@ -11,11 +13,17 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.agents.concepts import CONCEPTS
+from mitigate.agents.agent import Output
+from mitigate.agents.text import CONCEPTS, THINGS
+from mitigate.core.observation import DEPTH
 
 SIZE = 64  # pixels of a view that the shipped agents are trained on
 DEPTH_RANGE = 5.0  # metres; beyond it nothing matters for steps of at most 3 m
 GRID = 4  # rows and columns of the last feature map at 64 pixels
+DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25  # of the free space ahead: over 90 degrees, of metres
+CAMERA_ENCODERS = {"rgb": ("rgb_encoder",), "depth": ("depth_encoder",)}
+CAMERA_LABELS = {"rgb": "concepts", "depth": "free"}
+POSITIVE = 2.0  # weight of what is there against what is not: most concepts are not
 
 
 class Block(nn.Module):
@@ -130,3 +138,108 @@ class DepthEncoder(Encoder):
     def forward(self, depth: Tensor) -> Tensor:
         x = self.maps(depth_channels(self.sized(depth)))
         return F.gelu(self.embed(F.relu(self.rows(x)).flatten(1)))
+
+
+def presence_loss(logits: Tensor, truth: Tensor) -> Tensor:
+    """Mean binary cross-entropy of logits against labels in {0, 1} of the same shape."""
+    return F.binary_cross_entropy_with_logits(
+        logits.float(), truth, pos_weight=torch.tensor(POSITIVE, device=logits.device)
+    )
+
+
+def f1(logits: Tensor, targets: Tensor) -> Tensor:
+    """Micro F1 at probability 0.5."""
+    predicted, true = logits > 0, targets > 0.5
+    return 2 * (predicted & true).sum() / torch.clamp(predicted.sum() + true.sum(), min=1)
+
+
+def free_loss(logits: Tensor, target: Tensor) -> Tensor:
+    """Mean binary cross-entropy of logits ``[..., directions, distances]`` of free space."""
+    return F.binary_cross_entropy_with_logits(logits.float(), target)
+
+
+def agreement(logits: Tensor, target: Tensor) -> Tensor:
+    """Intersection over union of predicted and true free cells."""
+    predicted, true = logits > 0, target > 0.5
+    return (predicted & true).sum() / torch.clamp((predicted | true).sum(), min=1)
+
+
+def taught(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
+    """The output of ``see``: features "views"; with the truth the loss "labels" and figures."""
+    out = Output(features={"views": views})
+    if truth is None:
+        return out
+    if sensor == DEPTH:
+        out.losses = {"labels": free_loss(logits, truth)}
+        out.figures = {"iou": agreement(logits, truth)}
+    else:
+        out.losses = {"labels": presence_loss(logits, truth)}
+        out.figures = {
+            "f1": f1(logits[..., THINGS], truth[..., THINGS]),
+            "f1_all": f1(logits, truth),
+        }
+    return out
+
+
+class CameraRGB(Encoder):
+    """uint8 ``[n, H, W, 3]`` to features ``[n, 4, width]`` of the columns of each view, and logits
+    ``[n, 4, C]`` of what shows in them."""
+
+    def __init__(
+        self,
+        stem: int = 32,
+        widths: tuple[int, ...] = (48, 96, 160),
+        width: int = 96,
+        size: int = SIZE,
+    ) -> None:
+        super().__init__(3, stem, tuple(widths), size, "area")
+        last = widths[-1]
+        self.gather = nn.Conv2d(last, 2 * last, (GRID, 1), groups=last)
+        self.embed = nn.Linear(2 * last, width)
+        self.concepts = nn.Linear(width, len(CONCEPTS))
+
+    def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
+        x = F.gelu(self.gather(self.maps(self.sized(rgb) / 127.5 - 1)))
+        features = F.gelu(self.embed(x.squeeze(2).transpose(1, 2)))
+        return features, self.concepts(features)
+
+
+class CameraDepth(Encoder):
+    """float32 metres ``[n, H, W, 1]`` to features ``[n, 4, width]`` of the columns of each view,
+    and logits ``[n, 30, 12]`` of where the agent can go straight: by angle, from 45 degrees left to
+    45 right, and by distance, 0.25 to 3 m."""
+
+    def __init__(
+        self,
+        stem: int = 24,
+        widths: tuple[int, ...] = (32, 64, 96),
+        width: int = 64,
+        size: int = SIZE,
+    ) -> None:
+        super().__init__(2, stem, tuple(widths), size, "nearest-exact")
+        self.rows = nn.Conv2d(widths[-1], widths[-1], (GRID, 1))
+        self.embed = nn.Linear(widths[-1], width)
+        self.free = nn.Sequential(
+            nn.Linear(GRID * width, 160), nn.GELU(), nn.Linear(160, DIRECTIONS * DISTANCES)
+        )
+
+    def forward(self, depth: Tensor) -> tuple[Tensor, Tensor]:
+        x = F.relu(self.rows(self.maps(depth_channels(self.sized(depth)))))
+        features = F.gelu(self.embed(x.squeeze(2).transpose(1, 2)))
+        return features, self.free(features.flatten(1)).unflatten(1, (DIRECTIONS, DISTANCES))
+
+
+def free_metres(logits: Tensor) -> Tensor:
+    """Metres ``[n, 30]`` that the way is expected to be free, of logits ``[n, 30, 12]``."""
+    return STEP * logits.sigmoid().cumprod(-1).sum(-1)
+
+
+def see_camera(
+    encoder: CameraRGB | CameraDepth, sensor: str, frames: Tensor, truth: Tensor | None
+) -> Output:
+    """As ``agents/agent.py`` says of ``see``; the features are those of all columns with what the
+    encoder predicts there (RGB: concepts; depth: free metres)."""
+    features, logits = (x.unflatten(0, frames.shape[:2]) for x in encoder(frames.flatten(0, 1)))
+    predicted = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)
+    views = torch.cat([features.flatten(-2), predicted], -1)
+    return taught(views, logits, sensor, truth)

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from mitigate.agents.agent import as_agent
 from mitigate.agents.text import UNKNOWN, Vocabulary
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
@@ -26,15 +27,16 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
     """Raise ValueError if the world with these sensors, called ``world``, shows no RGB or no depth
     though ``agent`` says that it reads it (``sensors``), or another number of views than it says
     that it takes (``views``)."""
-    reads = getattr(agent, "sensors", ())
-    lacking = [name for name in (RGB, DEPTH) if name not in sensors]
-    for name in lacking if isinstance(reads, Sequence) else ():
-        if name in reads:
+    contract = as_agent(agent)
+    reads = contract.sensors
+    read = reads if isinstance(reads, Sequence) else ()
+    for name in (RGB, DEPTH):
+        if name in read and name not in sensors:
             raise ValueError(
                 f"{type(agent).__name__} reads {name}, which the world {world} does not show: it "
                 f"shows {', '.join(sensors)}. Choose another agent, or another world (env=...)."
             )
-    wanted = getattr(agent, "views", None)
+    wanted = contract.views
     if wanted not in (1, VIEWS):
         return
     for name, sensor in sensors.items():

@@ -14,7 +14,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.agent import Output, check_logits
+from mitigate.agents.agent import Agent, Output, check_logits
 from mitigate.core.observation import RGB, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
@@ -51,7 +51,7 @@ class StepDecisions:
         return replace(self, frames=frames, clean=clean, target=target, weight=weight)
 
 
-class StepwiseAgent(nn.Module):
+class StepwiseAgent(Agent, nn.Module):
     """Define ``forward``; set ``needs`` (entries of observations), ``actions`` (how many there are,
     0 is STOP) and ``limit`` (steps of a training rollout) where they are others.
 
@@ -70,7 +70,7 @@ class StepwiseAgent(nn.Module):
         raise NotImplementedError(f"{type(self).__name__} defines no forward(frames, texts)")
 
     @property
-    def sensors(self) -> tuple[str, ...]:
+    def sensors(self) -> tuple[str, ...]:  # type: ignore[override]
         """What it reads."""
         return self.needs
 

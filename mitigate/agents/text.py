@@ -1,7 +1,12 @@
-"""Words to ids: a small closed vocabulary with ``[MASK]`` and unknown words.
+"""The words that agents know: what a view can show, and the vocabulary of instructions.
 
-An agent's vocabulary is one of its settings, so it comes with the weights and counts towards the
-agent's identity: with equally many but other words, weights would load and misread.
+The RGB encoder predicts, for the central 36 degrees of each view, which concepts are there. The
+planner turns the probabilities into text embeddings of the concepts' words, so that views and
+instructions share one space from the start.
+
+A vocabulary is closed and small, with ``[MASK]`` and unknown words. It is one of an agent's
+settings, so it comes with the weights and is part of the agent's fingerprint: with other words of
+the same number, weights would load and be misread.
 """
 
 from __future__ import annotations
@@ -11,7 +16,23 @@ from collections.abc import Sequence
 
 import torch
 
-from mitigate.agents.concepts import CONCEPTS
+THING_NAMES = (
+    *("bed", "wardrobe", "sofa", "armchair", "tv", "bookshelf", "lamp", "plant", "painting"),
+    *("rug", "fridge", "stove", "sink", "toilet", "bathtub", "washing machine", "desk", "table"),
+    *("chair", "cabinet"),
+)
+COLOUR_NAMES = ("red", "orange", "yellow", "green", "blue", "purple", "brown", "white")
+ROOM_NAMES = ("bedroom", "bathroom", "kitchen", "living room", "office", "dining room")
+# visible things, things nearer than 2 m, colours of coloured things, kinds of the rooms seen
+CONCEPTS = (
+    *THING_NAMES,
+    *(f"near {name}" for name in THING_NAMES),
+    *COLOUR_NAMES,
+    *ROOM_NAMES,
+)
+THINGS = slice(0, len(THING_NAMES))
+NEAR = slice(len(THING_NAMES), 2 * len(THING_NAMES))
+
 
 SPECIAL = ("[PAD]", "[UNK]", "[MASK]")
 PAD, UNKNOWN, MASK = range(3)

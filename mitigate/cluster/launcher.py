@@ -60,7 +60,7 @@ def chosen(node: DictConfig) -> LauncherConfig:
     launcher = OmegaConf.to_object(node)
     assert isinstance(launcher, LauncherConfig)
     for name in ("cpus", "memory", "attempts", "processes", "minutes"):
-        value = getattr(launcher, name, None)
+        value = vars(launcher).get(name)
         if value is not None and not 0 < value < math.inf:
             raise ValueError(f"launcher.{name}={value:g} must be above 0, and no infinity.")
     if launcher.name != "local":

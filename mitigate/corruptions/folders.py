@@ -45,11 +45,11 @@ class Settings:
         check_name(self.corruption, ("clean", *known("rgb", "depth")))
         if self.corruption == "clean":
             raise ValueError("corruption=clean changes nothing: copy the folder instead.")
-        for name, allowed in (("episode", EPISODES), ("format", FORMATS)):
-            if getattr(self, name) not in allowed:
+        choices = (("episode", self.episode, EPISODES), ("format", self.format, FORMATS))
+        for name, value, allowed in choices:
+            if value not in allowed:
                 raise ValueError(
-                    f"{name}={getattr(self, name)} is not allowed: {name} is one of "
-                    f"{', '.join(allowed)}."
+                    f"{name}={value} is not allowed: {name} is one of {', '.join(allowed)}."
                 )
         if not 0.0 < self.unit < float("inf"):
             raise ValueError(

@@ -121,7 +121,7 @@ def _decode(path: Path) -> np.ndarray:
 def _load(path: Path) -> np.ndarray:
     try:
         mapped = np.load(path, mmap_mode="r", allow_pickle=False)  # no more than the file has
-        if math.prod(getattr(mapped, "shape", ())) > MOST_PIXELS:
+        if isinstance(mapped, np.ndarray) and mapped.size > MOST_PIXELS:
             raise ValueError(f"it has {mapped.shape} numbers")
         stored = np.array(mapped) if isinstance(mapped, np.ndarray) else mapped
     except Exception as error:  # as above

@@ -80,9 +80,10 @@ class Schedule:
                 f"A schedule needs at least one corruption and each only once, but names = "
                 f"{self.names}. Leave it out to draw from all of {', '.join(NAMES)}."
             )
-        for name in ("clean_share", "broad_share"):
-            if not 0.0 <= getattr(self, name) <= 1.0:
-                raise ValueError(f"{name} must be in [0, 1], but it is {getattr(self, name)!r}.")
+        shares = {"clean_share": self.clean_share, "broad_share": self.broad_share}
+        for name, share in shares.items():
+            if not 0.0 <= share <= 1.0:
+                raise ValueError(f"{name} must be in [0, 1], but it is {share!r}.")
         if self.mode == "clean" and self.broad_share > 0.0:
             raise ValueError(
                 "The mode clean corrupts nothing, so there is nothing that broad_share = "

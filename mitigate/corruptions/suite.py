@@ -201,11 +201,12 @@ def corrupt(
     if name not in registry.further():
         return record.apply(views, *given).reshape(frame.shape)
     made = record.apply(views.copy(), *given)
-    if getattr(made, "dtype", None) != views.dtype or made.shape != views.shape:
+    array = isinstance(made, np.ndarray)
+    if not array or made.dtype != views.dtype or made.shape != views.shape:
+        given_back = f"{made.dtype} {made.shape}" if array else type(made).__name__
         raise ValueError(
-            f"The corruption {name!r} gave {getattr(made, 'dtype', type(made).__name__)} "
-            f"{getattr(made, 'shape', '')} for {views.dtype} {views.shape}: its function must keep "
-            "shape and dtype."
+            f"The corruption {name!r} gave {given_back} for {views.dtype} {views.shape}: its "
+            "function must keep shape and dtype."
         )
     return made.reshape(frame.shape)
 

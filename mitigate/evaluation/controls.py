@@ -12,7 +12,7 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from omegaconf import DictConfig
@@ -31,9 +31,6 @@ from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
-
-if TYPE_CHECKING:  # nothing slow is imported before main() has checked the options
-    from mitigate.agents.agent import Agent
 
 OUT = "runs/controls"
 OPTIONS = ("env", "split", "episodes", "out")  # those of an evaluation that mean anything here
@@ -84,7 +81,7 @@ def _walked(world: World, split: str, chosen: Sequence[Episode], out: Path) -> l
     from mitigate.evaluation.episode import run_episode
 
     chance = RandomAgent()
-    controls: dict[str, Agent] = {"oracle": OracleAgent(world), "random": chance}
+    controls: dict[str, Any] = {"oracle": OracleAgent(world), "random": chance}
     held = {rows.identity(row): row for row in rows.read(out)} if out.exists() else {}
     found = []
     for name, agent in controls.items():

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from mitigate.agents.agent import Agent, SideBySide
+from mitigate.agents.agent import Agent, as_agent
 from mitigate.core.errors import said
 from mitigate.corruptions import (
     Corruption,
@@ -67,7 +67,7 @@ def action_of(answer: Any, agent: Any) -> int:
 
 
 def run_side_by_side(
-    agent: SideBySide,
+    agent: Agent,
     worlds: Sequence[World],
     jobs: Sequence[tuple[Episode, Corruption, int]],
     repaired: Mapping[str, str] | None = None,
@@ -138,7 +138,7 @@ class _Walk:
 
     def measures(self) -> dict[str, Any]:
         found = {**self.met.measures(), "decisions": self.met.looks}
-        plain = {n: v.item() if hasattr(v, "item") else v for n, v in found.items()}  # of numpy
+        plain = {n: v.item() if hasattr(v, "item") else v for n, v in found.items()}  # arrays
         found = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
         return {name: found.pop(name) for name in MEASURES if name in found} | found
 
@@ -164,15 +164,16 @@ def instructed(
     """Reset the agent with the instruction, and the prompt, that the corruption leaves it; within
     the block it has that prompt. ``repaired`` as :func:`run_episode`."""
     text, key = instruction(episode, corruption, seed), Key(seed, episode.episode_id)
-    prompt = getattr(agent, "system_prompt", None)
+    contract = as_agent(agent)
+    prompt = contract.system_prompt
     try:
         if "white_box" in parts(corruption.name):
             injected = inject_system_prompt(prompt, corruption.severity, key)
             if isinstance(injected, NotApplicable):
                 raise ValueError(f"'white_box' is not applicable: {injected.reason}.")
-            agent.system_prompt = injected  # type: ignore[attr-defined]
+            contract.system_prompt = injected
         agent.reset((repaired or {}).get(text, text))
         yield
     finally:
         if prompt is not None:
-            agent.system_prompt = prompt  # type: ignore[attr-defined]
+            contract.system_prompt = prompt

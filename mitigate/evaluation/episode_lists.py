@@ -73,7 +73,9 @@ def check_episodes(source: str, listed: Sequence[Episode]) -> None:
 def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) -> None:
     """Warn of episodes of a task that ``agent``, called ``name``, says it cannot do (``tasks`` in
     ``agents/agent.py``). split: the list to name in place of theirs, that of the agent's config."""
-    able: Sequence[str] | None = getattr(agent, "tasks", None)
+    from mitigate.agents.agent import as_agent
+
+    able = as_agent(agent).tasks
     asked = [str(episode.info["task"]) for episode in chosen if "task" in episode.info]
     other = [] if able is None else [task for task in asked if task not in able]
     if able is not None and other:

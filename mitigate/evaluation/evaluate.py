@@ -19,6 +19,7 @@ from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.cluster import launcher  # registers the kinds of conf/launcher
 from mitigate.core import conf, seeding
+from mitigate.core.contracts import lacking
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted, name_of
 from mitigate.evaluation.columns import changed, default_folder
@@ -208,10 +209,10 @@ def check_walks(agent: Any) -> None:
         raise ValueError(
             f"{agent.__name__} is a class and walks no episodes: give an object of it."
         )
-    lacking = [f"{n}()" for n in ("reset", "act") if not callable(getattr(agent, n, None))]
-    if lacking:
+    absent = [f"{name}()" for name in lacking(agent, ("reset", "act"))]
+    if absent:
         raise ValueError(
-            f"A {type(agent).__name__} walks no episodes: it has no {' and no '.join(lacking)}. "
+            f"A {type(agent).__name__} walks no episodes: it has no {' and no '.join(absent)}. "
             "Choose an agent that does (agent=..., docs/agents.md)."
         )
 

@@ -3,7 +3,7 @@
 An episode is run alone, so its result does not depend on how many run beside it; rows are written
 as they come, and an interrupted evaluation continues where it stopped. The conditions of an episode
 run in one process, which keeps what it rendered and what the agent encoded: equal frames give equal
-features, so no row depends on what was kept. An agent that can (``agents/agent.py``: SideBySide)
+features, so no row depends on what was kept. An agent that can (``together``, ``agents/agent.py``)
 walks several at once.
 """
 
@@ -21,7 +21,7 @@ from typing import Any, ClassVar
 
 import torch
 
-from mitigate.agents.agent import Agent, SideBySide
+from mitigate.agents.agent import Agent, as_agent
 from mitigate.agents.observation import check_fits
 from mitigate.agents.state import in_eval_mode, networks
 from mitigate.cluster.launcher import LauncherConfig, count, results
@@ -40,7 +40,7 @@ from mitigate.evaluation.known import Known
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.text.guard import Safeguard
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.world import World, remembering
+from mitigate.worlds.world import World, as_world
 
 WORTH = 40  # episodes that make a process worth its start (ours): 4 s of 0.1 s each
 LOCAL = LauncherConfig()  # workers of this machine
@@ -85,7 +85,7 @@ class EpisodeTask:
     def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
         """Rows of ``jobs``, which should be of one episode: frames and features are kept."""
         assert self.world is not None, "work() is called while ready()"
-        with remembering(self.agent), remembering(self.world):
+        with as_agent(self.agent).remembering(), as_world(self.world).remembering():
             told = [(episode, condition, label["seed"]) for episode, condition, label in jobs]
             measured = self._measures(self.world, told)
             for (_, _, label), measures in zip(jobs, measured, strict=True):
@@ -114,7 +114,7 @@ def _together(agent: Any, world: Any) -> int:
     """How many episodes the agent walks at once in such worlds."""
     # one that a class inherits, or that is passed on from a world inside, may make other worlds
     own = "beside" in vars(type(world))
-    return agent.together if isinstance(agent, SideBySide) and own else 1
+    return as_agent(agent).together if own else 1
 
 
 def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
@@ -237,7 +237,7 @@ def _jobs(
 
 def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Corruption]:
     """Return the conditions that the agent can meet, and warn of the others."""
-    if getattr(agent, "system_prompt", None):
+    if as_agent(agent).system_prompt:
         return conditions
     kept = [condition for condition in conditions if "white_box" not in parts(condition.name)]
     if len(kept) < len(conditions):

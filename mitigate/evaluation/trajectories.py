@@ -25,7 +25,7 @@ from mitigate.evaluation.sections import label
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.text.guard import Safeguard
 from mitigate.worlds.episodes import Episode, from_vlnce
-from mitigate.worlds.world import World, depth_sensor
+from mitigate.worlds.world import World, WorldWrapper, as_world, depth_sensor
 
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
 CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
@@ -97,7 +97,7 @@ def draw_trajectories(
         axes.set_title(title, fontsize=9)
     above.axis("off")
     below.axis("off")
-    getattr(world, "draw", _blank)(plan)
+    (as_world(world).draw or _blank)(plan)
     _draw_walks(plan, world.reset(episode)[POSE], episode, walks)
     figure.suptitle("\n".join(textwrap.wrap(episode.instruction.text, 100)), fontsize=11)
     return write_figure(out, figure, dpi=DPI, facecolor="white")
@@ -221,28 +221,22 @@ def walked(
         yield Walk(title, path, won, left, colour, name, met, measures)
 
 
-class Traced:
+class Traced(WorldWrapper):
     """A world that keeps where its agent was: ``path`` [n, 2], plan metres."""
 
     def __init__(self, world: World) -> None:
-        self.world = world
+        super().__init__(world)
         self.path: list[np.ndarray] = []
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.world, name)
 
     def reset(self, episode: Episode) -> Observation:
         self.path = []
-        return self._kept(self.world.reset(episode))
+        return super().reset(episode)
 
-    def step(self, action: int) -> Observation:
-        return self._kept(self.world.step(action))
-
-    def _kept(self, seen: Observation) -> Observation:
-        here = np.array(seen[POSE][:2], np.float64)
+    def _seen(self, met: Observation) -> Observation:
+        here = np.array(met[POSE][:2], np.float64)
         if not self.path or not np.array_equal(here, self.path[-1]):
             self.path.append(here)
-        return seen
+        return met
 
 
 def _blank(axes: Axes) -> None:

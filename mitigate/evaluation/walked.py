@@ -115,13 +115,13 @@ def _layers(world: World) -> Iterator[Any]:
         if layer is None:
             return
         yield layer
-        layer = getattr(layer, "env", None)
+        layer = _environment(layer)
 
 
 def name_of(world: World) -> str:
     """Return what a world is called: its class, or, of one of ours around an environment, the
     class of that."""
-    env = getattr(world, "env", None)
+    env = _environment(world)
     ours = type(world).__module__.startswith("mitigate.")
     inner = getattr(env, "unwrapped", env) if ours and env is not None else world
     return type(inner).__name__
@@ -161,9 +161,14 @@ def _sum(episode: Episode) -> str:
 def _spec(world: World) -> str:
     """Return what the environment inside a world, if there is one, says it was made of: worlds of
     one class differ in it alone."""
-    spec = getattr(getattr(world, "env", None), "spec", None)
+    spec = getattr(_environment(world), "spec", None)  # gymnasium's, or of another library
     name = getattr(spec, "id", None)
     if name is None:
         return ""
     made = json.dumps(getattr(spec, "kwargs", {}), sort_keys=True, default=lambda x: str(type(x)))
     return f"{name} {made}"
+
+
+def _environment(layer: Any) -> Any:
+    """The environment inside a world or a wrapper, None if there is none."""
+    return getattr(layer, "env", None)  # of any library

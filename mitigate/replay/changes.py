@@ -12,7 +12,7 @@ from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.replay.walk import Answers
 from mitigate.worlds.recorded import Recording
-from mitigate.worlds.recorded.steps import NONE
+from mitigate.worlds.recorded.recording import NONE
 
 FAR = 0.5  # metres, two steps (ours)
 FEW = 8  # runs of steps that are too few to be resampled (ours)

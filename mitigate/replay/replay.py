@@ -211,6 +211,7 @@ def replay(
 
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     """Why a corruption cannot be met here; empty if it can."""
+    from mitigate.agents.agent import as_agent
     from mitigate.corruptions.registry import parts
 
     lacking = [
@@ -221,7 +222,7 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     ]
     if lacking:
         return f"{lacking[0][1]} has no {lacking[0][0]} frames"
-    if "white_box" in parts(corruption.name) and not hasattr(agent, "system_prompt"):
+    if "white_box" in parts(corruption.name) and not as_agent(agent).system_prompt:
         return "the agent has no system prompt"
     return ""
 

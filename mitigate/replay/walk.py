@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.agents.agent import Agent
+from mitigate.agents.agent import Agent, as_agent
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.episode import action_of, instructed
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.frames.world import Restored
 from mitigate.worlds.recorded import RecordedWorld, Recording
-from mitigate.worlds.recorded.steps import answered
+from mitigate.worlds.recorded.recording import answered
 from mitigate.worlds.world import Corrupted, World
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
@@ -58,6 +58,7 @@ def walk(
     episode = world.episode()
     observation = met.reset(episode)
     actions, aims, seen = [], [], {}
+    contract = as_agent(agent)
     with instructed(agent, episode, corruption, seed):
         for step in range(len(recording.times)):
             try:
@@ -67,13 +68,13 @@ def walk(
                     f"{recording.name} does not fit {type(agent).__name__}: {error.args[0]}"
                 ) from error
             actions.append(action)
-            aim = getattr(agent, "aim", None)
+            aim = contract.aim
             aims.append((np.nan, np.nan) if aim is None else tuple(aim))
             if step in keep:
                 seen[step] = {name: np.asarray(observation[name]) for name in recording.frames}
-            if done is not None and hasattr(agent, "taken"):
+            if done is not None:
                 here = done.actions[step], done.metres[step], done.radians[step]
-                agent.taken(int(here[0]), float(here[1]), float(here[2]))
+                contract.taken(int(here[0]), float(here[1]), float(here[2]))
             observation = met.step(action)
     return Answers(np.array(actions), np.array(aims, np.float64), seen)
 

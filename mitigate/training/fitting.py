@@ -17,9 +17,11 @@ from typing import Any
 from omegaconf import DictConfig, OmegaConf, open_dict
 from torch import nn
 
+from mitigate.agents.agent import as_agent
 from mitigate.agents.observation import check_fits
 from mitigate.core.build import build, located, maker, plain
 from mitigate.core.conf import CONF
+from mitigate.core.contracts import lacking
 from mitigate.core.json_files import read_object
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
@@ -71,7 +73,7 @@ def nothing_to_do(stage: DictConfig, agent: nn.Module) -> str | None:
     sensor, parts, variants = (
         OmegaConf.select(stage, f"recipe.{key}") for key in ("modality", "train_parts", "variants")
     )
-    kind, encoders = type(agent).__name__, getattr(agent, "encoders", None)
+    kind, encoders = type(agent).__name__, as_agent(agent).encoders
     if sensor and encoders and sensor not in encoders:
         return f"{kind} has no {sensor} encoder"
     if variants and not hasattr(agent, "store"):
@@ -92,8 +94,8 @@ def _leave_out_views(cfg: DictConfig, agent: nn.Module) -> None:
     if all(getattr(kind, "misfit", lambda _: "")(agent) for kind in others):
         return
     for name in views:
-        lacking = [part for part in SEEING if not hasattr(agent, part)]
-        cause = f"{type(agent).__name__} has no {', '.join(lacking)}" if lacking else ""
+        absent = lacking(agent, SEEING)
+        cause = f"{type(agent).__name__} has no {', '.join(absent)}" if absent else ""
         if not cause and not isinstance(world := maker(held[name].recipe.world)(), Placeable):
             cause = f"{type(world).__name__} has no random poses (scenes, enter, point, put)"
         if cause:
@@ -159,18 +161,19 @@ def draw_what_is_read(cfg: DictConfig, agent: nn.Module) -> None:
 
     Raises ValueError if a schedule draws no others.
     """
-    own = getattr(agent, "sensors", (RGB, DEPTH))
-    lacking = [sensor for sensor in (RGB, DEPTH) if sensor not in own]
-    cause = f"{type(agent).__name__} reads no {' or '.join(lacking)}"
+    sensors = as_agent(agent).sensors
+    own = (RGB, DEPTH) if sensors is None else sensors
+    unread = [sensor for sensor in (RGB, DEPTH) if sensor not in own]
+    cause = f"{type(agent).__name__} reads no {' or '.join(unread)}"
     undrawn: dict[str, None] = {}  # in the schedules' order
-    for name, stage in cfg.stages.items() if lacking else ():
+    for name, stage in cfg.stages.items() if unread else ():
         node = None if stage is None else OmegaConf.select(stage, "recipe.schedule")
         if not isinstance(node, DictConfig):
             continue
         schedule = build(node)
         if not isinstance(schedule, Schedule) or schedule.mode == "clean":
             continue
-        kept = [n for n in schedule.names if modality(n) not in lacking]
+        kept = [n for n in schedule.names if modality(n) not in unread]
         if not kept:
             raise ValueError(
                 f"{cause}, and the schedule of the stage {name} draws only "
@@ -200,7 +203,8 @@ def check(cfg: DictConfig, agent: nn.Module, folder: Path, ranks: Ranks | None =
                 f"{type(agent).__name__} cannot be trained by the stage {name} of recipe="
                 f"{cfg.name}: {misfit}"
             )
-    if hasattr(agent, "views") or hasattr(agent, "sensors"):
+    contract = as_agent(agent)
+    if contract.views is not None or contract.sensors is not None:
         check_fits(agent, maker(cfg.env.world)().sensors, cfg.env.name)
     _check_folder(cfg, folder)
     _check_stages(cfg, agent, ranks or Ranks())

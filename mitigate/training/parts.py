@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import copy
 from collections.abc import Iterable, Sequence
 from typing import Any
 
 from torch import nn
 from torch.nn.modules.batchnorm import _NormBase
 
+from mitigate.agents.adapter_layers import FrameGate
 from mitigate.agents.adapters import WEIGHTS as ADAPTERS_FILE
-from mitigate.agents.adapters import adapter_parameters, adapters_of, remove_adapters
-from mitigate.agents.agent import Trainable
-from mitigate.agents.gate import FrameGate
+from mitigate.agents.adapters import adapter_parameters, adapters_of
+from mitigate.agents.agent import Trainable, as_agent
 from mitigate.core import checkpoint
+from mitigate.core.contracts import lacking
 from mitigate.core.files import find
 from mitigate.core.names import unknown
 
@@ -27,7 +27,7 @@ START = "start"  # as a teacher: the agent as it is when the stage begins
 
 def policy_parts(agent: Any) -> list[str]:
     """The names of an agent's parts that are not its encoders (``agents/agent.py``: Seeing)."""
-    encoders = {name for names in getattr(agent, "encoders", {}).values() for name in names}
+    encoders = {name for names in as_agent(agent).encoders.values() for name in names}
     return [name for name in agent.parts() if name not in encoders]
 
 
@@ -40,10 +40,10 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     for an agent that is not trainable.
     """
     if not isinstance(agent, Trainable):
-        lacking = [name for name in TRAINABLE if not hasattr(agent, name)]
+        absent = lacking(agent, TRAINABLE)
         raise ValueError(
             f"{type(agent).__name__} cannot be trained on episodes: it has no "
-            f"{', '.join(lacking)} (mitigate/agents/agent.py, docs/bring-your-own.md)."
+            f"{', '.join(absent)} (mitigate/agents/agent.py, docs/bring-your-own.md)."
         )
     own = agent.parts()
     parts = policy_parts(agent) if parts == POLICY else tuple(own if parts is None else parts)
@@ -78,7 +78,7 @@ def refuse_gates(module: nn.Module) -> None:
 
 def freeze(agent: nn.Module) -> None:
     """Freeze what an agent calls ``frozen``, but for adapters."""
-    for name in getattr(agent, "frozen", ()):
+    for name in as_agent(agent).frozen:
         module = agent.get_submodule(name)
         adapters = {id(p) for p in adapter_parameters(module)}
         for parameter in module.parameters():
@@ -136,11 +136,6 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
 
 
 def without_adapters(agent: nn.Module) -> nn.Module:
-    """A copy of ``agent`` without what was added to make it robust: ``agent.as_teacher()``, if it
-    has that."""
-    own = getattr(agent, "as_teacher", None)
-    if own is not None:
-        return own()
-    copied = copy.deepcopy(agent)
-    remove_adapters(copied)
-    return copied
+    """A copy of ``agent`` without what was added to make it robust: see ``as_teacher`` of
+    ``agents/agent.py``."""
+    return as_agent(agent).as_teacher()

@@ -10,6 +10,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from mitigate.core.contracts import lacking
 from mitigate.core.precision import computing
 from mitigate.training.parts import hold_statistics
 
@@ -36,8 +37,8 @@ class Recipe(nn.Module):
     def misfit(cls, agent: Any) -> str:
         """Return why this kind of recipe cannot train ``agent`` and what to do, "" if it can; asked
         before the first stage of a run begins."""
-        lacking = [name for name in cls.needs if not hasattr(agent, name)]
-        return f"it has no {', '.join(lacking)}. {cls.otherwise}" if lacking else ""
+        absent = lacking(agent, cls.needs)
+        return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
     def train(self, mode: bool = True) -> Self:
         """As a module's; frozen normalisations keep their statistics (``hold_statistics``)."""

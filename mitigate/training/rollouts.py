@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.agents.agent import Decisions
+from mitigate.agents.agent import Decisions, as_agent
 from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
@@ -104,8 +104,7 @@ class Rollouts:
             worlds, episodes, expert_share=self.expert_share, rngs=rngs, clean=self.clean
         )
         for teacher in self.teachers:
-            if hasattr(teacher, "precompute"):
-                made = teacher.precompute(made, clean=True)
+            made = as_agent(teacher).precompute(made, clean=True)
         return made, picture(worlds[0].last)
 
     def collate(self, pieces: list[tuple]) -> Decisions:

@@ -248,11 +248,12 @@ def written(node: DictConfig, agent: nn.Module) -> dict[str, Any]:
             return {k: data(v) for k, v in value.items() if not str(k).startswith("_")}
         return value
 
-    from mitigate.agents.loading import OWN_CONFIG_ONLY
     from mitigate.core.build import plain
 
     own: dict[str, Any] = getattr(agent, "settings", dict)()
-    barred = getattr(agent, OWN_CONFIG_ONLY, ())
+    from mitigate.agents.agent import as_agent
+
+    barred = as_agent(agent).own_config_only
     held = {name: value for name, value in data(plain(node)).items() if name not in barred}
     return {"_target_": node._target_, **held, **data(own)}
 

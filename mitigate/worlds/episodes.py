@@ -278,7 +278,7 @@ def _instruction_json(instruction: Instruction) -> dict[str, Any]:
 
 def _identifier(episode: Episode, key: str) -> int | str:
     """Return an id as the file had it, unless it was replaced since."""
-    text, original = str(getattr(episode, key)), episode.extra.get(key)
+    text, original = str(vars(episode)[key]), episode.extra.get(key)
     return original if isinstance(original, int) and str(original) == text else text
 
 

@@ -38,6 +38,7 @@ from mitigate.core.observation import (
 )
 from mitigate.worlds import measures
 from mitigate.worlds.episodes import Episode, from_vlnce
+from mitigate.worlds.world import Expert, World
 
 EYE = 1.25  # metres, the height of VLN-CE's cameras
 RADIUS, HEIGHT = 0.18, 1.5  # metres, of the agent
@@ -46,7 +47,7 @@ SNAP = 0.5  # metres that a start or goal may lie beside the navmesh (ours)
 NAVMESH = {"agent_radius": RADIUS, "agent_height": HEIGHT}
 
 
-class HabitatWorld:
+class HabitatWorld(World):
     """One agent in scenes of habitat-sim, which a process has one simulator of.
 
     Args:
@@ -99,7 +100,7 @@ class HabitatWorld:
     # episodes ---------------------------------------------------------------------------------
 
     @property
-    def done(self) -> bool:
+    def done(self) -> bool:  # type: ignore[override]
         return self.stopped or self.steps >= MAX_STEPS
 
     def reset(self, episode: Episode) -> Observation:
@@ -278,7 +279,7 @@ class HabitatWorld:
             self._sim, self._scene = None, ""
 
 
-class NavmeshExpert:
+class NavmeshExpert(Expert):
     """Distances by the navmesh, and the greedy follower of them: it turns to the heading whose
     step lowers the distance most."""
 

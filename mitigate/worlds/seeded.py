@@ -12,7 +12,7 @@ import numpy as np
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
 from mitigate.worlds.episodes import Episode, Instruction, is_seed
-from mitigate.worlds.metres import check_metres
+from mitigate.worlds.world import World, check_metres
 
 
 def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") -> list[Episode]:
@@ -50,7 +50,7 @@ class Ending:
 Success = str | Callable[[Ending], bool]  # an entry of the environment's report, or a function
 
 
-class SeededWorld:
+class SeededWorld(World):
     """A subclass sets ``_steps``, ``_reward`` and ``done`` as it goes, and says what it saw.
 
     Args: found: shape, dtype and greatest value of each entry of the environment's observations.
@@ -125,9 +125,6 @@ class SeededWorld:
         if self.limit is None:
             return found
         return found | {"cut": int(self._cut), "limit": self.limit}
-
-    def expert(self) -> None:
-        """Nobody: a subclass that knows what to do next returns somebody with ``action()``."""
 
     def _begin(self, episode: Episode) -> int:
         """Count from 0 again; the seed of an episode, ``info["seed"]`` or else made of its id."""

@@ -9,10 +9,9 @@ import torch
 from torch import nn
 
 from mitigate.agents import adapters
+from mitigate.agents.adapter_layers import ConvAdapter, FrameGate, textures
 from mitigate.agents.adapters import insert_adapters, load_adapters, remove_adapters, save_adapters
-from mitigate.agents.conv import ConvAdapter
 from mitigate.agents.encoders import RGBEncoder
-from mitigate.agents.gate import FrameGate, textures
 
 PLACES = {"target_modules": ["stages.0"], "ring": ["stages.[12]"], "gates": ["stem"]}
 

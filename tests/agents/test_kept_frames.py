@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.recurrent.learning import Walk
+from mitigate.agents.recurrent.rollout import TrainingWalk
 from mitigate.agents.stepwise import StepwiseAgent
 from mitigate.agents.topological.rollout import LiveWalk
 from mitigate.core.observation import DEPTH, FORWARD, POSE, RGB, VIEWS, Observation, cameras
@@ -72,7 +72,7 @@ def stepwise() -> list[dict[str, np.ndarray]]:
 
 
 def recurrent() -> list[dict[str, np.ndarray]]:
-    walk = Walk(Reusing(1), EPISODE, (RGB, DEPTH))
+    walk = TrainingWalk(Reusing(1), EPISODE, (RGB, DEPTH))
     for _ in range(3):
         walk.note({}, clean=True, frames=True)
         walk.observation = walk.world.step(FORWARD)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 import torch
 
-from mitigate.agents.ring import RingAdapter, neighbour_grid
+from mitigate.agents.adapter_layers import RingAdapter, neighbour_grid
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.simulator import apartment_of

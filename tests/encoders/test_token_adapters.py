@@ -10,9 +10,9 @@ from torch import nn
 from transformers import CLIPVisionConfig, CLIPVisionModel, ResNetConfig, ResNetModel
 
 from mitigate.agents import adapters
+from mitigate.agents.adapter_layers import TokenAdapter
 from mitigate.agents.adapters import ConvAdapter, insert_adapters, load_adapters, save_adapters
 from mitigate.agents.sites import choose, look
-from mitigate.agents.tokens import TokenAdapter
 from tests.encoders import shapes
 from tests.encoders.shapes import DdppoDepth, ListNet, OpenAIClip, TinyNet
 

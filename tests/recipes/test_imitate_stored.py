@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.topological import TopologicalAgent, scene_poses, stored
+from mitigate.agents.topological import TopologicalAgent, stored
 from mitigate.core import seeding
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate_stored import ImitateStored
@@ -32,7 +32,7 @@ def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -
 def few_poses():
     """A sixteenth of those that a training stores."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(scene_poses, "SPACING", 2.0)
+        patch.setattr(stored, "SPACING", 2.0)
         yield
 
 
@@ -116,7 +116,7 @@ def test_variants_are_known_by_what_makes_their_pixels(tmp_path, monkeypatch):
 
 
 def test_a_flare_in_a_stored_panorama_stands_at_any_yaw(tmp_path):
-    task = scene_poses.ScenesTask(
+    task = stored.ScenesTask(
         TopologicalAgent(16, SMALL),
         partial(ApartmentsWorld, 64, 1),
         Schedule.always("flare", 0.9),

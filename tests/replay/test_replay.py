@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from mitigate import cli
-from mitigate.agents.recurrent.odometer import Odometer
+from mitigate.agents.recurrent.policy import Odometer
 from mitigate.core.conf import load_config
 from mitigate.core.locks import FolderLock
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
@@ -26,7 +26,7 @@ from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, walk
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.recorded import Recording, open_recording
-from mitigate.worlds.recorded.steps import NONE, answered
+from mitigate.worlds.recorded.recording import NONE, answered
 
 T = 30
 

@@ -7,7 +7,7 @@ import torch
 from omegaconf import OmegaConf
 
 from mitigate.agents.loading import LORA, carried
-from mitigate.agents.topological import scene_poses
+from mitigate.agents.topological import stored
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
 from mitigate.core.checkpoint import load_tensors
@@ -38,7 +38,7 @@ RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
 
 @pytest.mark.parametrize("name", RECIPES)
 def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
-    monkeypatch.setattr(scene_poses, "SPACING", 2.0)  # few poses, of which to store features
+    monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, of which to store features
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)  # of walks whose success is measured
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
     options.append("workers=0")  # two a stage take longer to start than to work

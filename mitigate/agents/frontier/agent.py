@@ -8,24 +8,23 @@ action. ``begin`` and ``act_all`` do the same for several episodes side by side.
 from __future__ import annotations
 
 import copy
+import re
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents import camera
 from mitigate.agents import observation as checked
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Output
-from mitigate.agents.camera import CameraRGB
+from mitigate.agents.agent import Agent, Output
 from mitigate.agents.controller import Controller
-from mitigate.agents.encoders import SIZE
-from mitigate.agents.frontier import search
-from mitigate.agents.frontier.grid import CELL, Grid
-from mitigate.agents.frontier.planning import (
+from mitigate.agents.encoders import CAMERA_ENCODERS, CAMERA_LABELS, SIZE, CameraRGB, see_camera
+from mitigate.agents.frontier.grid import (
+    CELL,
+    Grid,
     Routes,
     clear_ahead,
     frontiers,
@@ -33,6 +32,7 @@ from mitigate.agents.frontier.planning import (
     routes,
 )
 from mitigate.agents.schema import SENSES
+from mitigate.agents.text import CONCEPTS, NEAR, ROOM_NAMES, THING_NAMES
 from mitigate.core.names import unknown
 from mitigate.core.observation import (
     DEPTH,
@@ -58,9 +58,20 @@ TRIES = 12  # plans in one instant
 NEAR_ENOUGH = 0.4  # probability that the object is near, at which it stops in front of it
 ARRIVED = 0.9  # metres from the object's cells within which it stops
 MIDDLE = 3.0  # metres of way that a metre nearer to the object's middle is worth (ours)
+# the agent's common sense: in which rooms a thing is likely. L3MVN asks a language model for it.
+LIKELY = {
+    "bedroom": ("bed", "wardrobe", "lamp", "rug"),
+    "bathroom": ("toilet", "bathtub", "sink", "washing machine"),
+    "kitchen": ("fridge", "stove", "sink", "cabinet", "table"),
+    "living room": ("sofa", "armchair", "tv", "bookshelf", "plant", "painting", "rug", "lamp"),
+    "office": ("desk", "chair", "bookshelf", "lamp"),
+    "dining room": ("table", "chair", "cabinet", "painting"),
+}
+ROOM_SHARE = 0.3  # what a likely room counts against the object itself (ours)
+_ROOMS = slice(len(CONCEPTS) - len(ROOM_NAMES), len(CONCEPTS))
 
 
-class FrontierAgent(nn.Module):
+class FrontierAgent(Agent, nn.Module):
     """Args: width: of the features of a column of the view. adapters: keyword arguments of
     ``insert_adapters``, for an encoder with adapters. blind: of "rgb", "depth" and "instruction",
     what is blanked before it enters (the ablations). size: pixels of a square view that it works
@@ -74,8 +85,9 @@ class FrontierAgent(nn.Module):
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)  # it finds objects, it follows no routes
     together = 8  # episodes side by side (ours): encoding one frame alone takes twice as long
-    encoders: ClassVar = {RGB: camera.ENCODERS[RGB]}
-    labels: ClassVar = {RGB: camera.LABELS[RGB]}
+    encoders = {RGB: CAMERA_ENCODERS[RGB]}
+    labels = {RGB: CAMERA_LABELS[RGB]}
+    _started = False
 
     def __init__(
         self,
@@ -106,8 +118,8 @@ class FrontierAgent(nn.Module):
         return {"rgb_encoder": self.rgb_encoder}
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """View features of RGB frames; see :func:`camera.see`."""
-        return camera.see(self.rgb_encoder, sensor, frames, truth)
+        """View features of RGB frames."""
+        return see_camera(self.rgb_encoder, sensor, frames, truth)
 
     # closed loop ------------------------------------------------------------------------------
 
@@ -116,13 +128,14 @@ class FrontierAgent(nn.Module):
         nothing that the agent knows."""
         if not isinstance(instruction, str):
             raise TypeError(f"An instruction is a string, not {type(instruction).__name__}.")
-        self.thing = None if "instruction" in self.blind else search.named(instruction)
+        self.thing = None if "instruction" in self.blind else named(instruction)
         if self.thing is None and "instruction" not in self.blind:
             warnings.warn(
                 f"The instruction {instruction[:60]!r} names no object that the agent knows, so it "
                 "explores until nothing is left.",
                 stacklevel=2,
             )
+        self._started = True
         self.grid: Grid | None = None
         self.controller = Controller()
         self.actions = self._planned = self._bumps = 0
@@ -148,7 +161,7 @@ class FrontierAgent(nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """One low-level action. Raises RuntimeError before the first ``reset``, and what
         ``agents/observation.py`` refuses."""
-        if not hasattr(self, "controller"):
+        if not self._started:
             raise RuntimeError("Start the episode first: agent.reset(instruction).")
         frame = checked.frame(observation, RGB, 1)
         return self._act(observation, self._recognise(frame[None])[0])
@@ -169,7 +182,7 @@ class FrontierAgent(nn.Module):
             self._before = None
 
     @property
-    def aim(self) -> np.ndarray | None:
+    def aim(self) -> np.ndarray | None:  # type: ignore[override]
         """Where the leg that it walks ends, plan metres [2], or None."""
         return self.controller.route[-1] if self.controller.route else None
 
@@ -184,10 +197,10 @@ class FrontierAgent(nn.Module):
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
         if self.thing is not None:
-            thing = search.seen(concepts, self.thing)
+            thing = shows(concepts, self.thing)
         depth = np.zeros_like(depth) if DEPTH in self.blind else depth
         self._near = float(thing[:, 1].max())
-        self.grid.add(depth, pose, thing, search.worth(concepts, self.thing))
+        self.grid.add(depth, pose, thing, worth(concepts, self.thing))
 
     def _bump(self, pose: np.ndarray, gone: float) -> None:
         """Take note of a step forward of ``gone`` metres: was something in the way?"""
@@ -287,3 +300,32 @@ class FrontierAgent(nn.Module):
             if np.isfinite(cost[nearest]) and WORTH * value - cost[nearest] > best:
                 best, found = WORTH * value - cost[nearest], group[nearest]
         return found
+
+
+def named(text: str) -> int | None:
+    """The index of the thing that is named last in ``text``, of ``THING_NAMES``; None if none is.
+    A route ends at what is named last; a plain "find a chair" names one thing alone."""
+    ends = [
+        (match.end(), len(name), i)
+        for i, name in enumerate(THING_NAMES)
+        for match in _finds(name, text)
+    ]
+    return max(ends)[2] if ends else None
+
+
+def _finds(name: str, text: str) -> list[re.Match]:
+    return list(re.finditer(rf"\b{re.escape(name)}s?\b", text.lower()))
+
+
+def shows(concepts: np.ndarray, thing: int) -> np.ndarray:
+    """Of the probabilities [n, C] of what columns show, those of ``thing`` and of it near."""
+    return concepts[:, [thing, NEAR.start + thing]]
+
+
+def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:
+    """How likely the thing is where columns look: [n], from it and from the rooms that show."""
+    if thing is None:
+        return np.zeros(len(concepts), np.float32)
+    name = THING_NAMES[thing]
+    rooms = np.array([float(name in LIKELY[room]) for room in ROOM_NAMES], np.float32)
+    return np.maximum(concepts[:, thing], ROOM_SHARE * (concepts[:, _ROOMS] * rooms).max(1))

@@ -17,21 +17,31 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
-from mitigate.agents import camera
 from mitigate.agents import observation as checked
 from mitigate.agents.adapters import insert_adapters
-from mitigate.agents.agent import Output, check_logits
-from mitigate.agents.camera import CameraDepth, CameraRGB
-from mitigate.agents.encoders import SIZE
-from mitigate.agents.recurrent import learning
-from mitigate.agents.recurrent.learning import Piece, WalkDecisions
-from mitigate.agents.recurrent.odometer import Odometer
-from mitigate.agents.recurrent.policy import ACTIONS, Policy, State, Text
+from mitigate.agents.agent import Agent, Output, check_logits
+from mitigate.agents.encoders import (
+    CAMERA_ENCODERS,
+    CAMERA_LABELS,
+    SIZE,
+    CameraDepth,
+    CameraRGB,
+    free_loss,
+    free_metres,
+    presence_loss,
+    see_camera,
+)
+from mitigate.agents.recurrent.policy import ACTIONS, Odometer, Policy, State, Text
+from mitigate.agents.recurrent.rollout import Piece, TrainingWalk, WalkDecisions, piece_of
 from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary, pad
 from mitigate.core.names import unknown
-from mitigate.core.observation import DEPTH, RGB
+from mitigate.core.observation import DEPTH, RGB, STOP
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
+
+LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
+LIMIT = 90  # steps of a training walk (heuristic): the expert takes 53 on average
+_SCALE = 5.0  # metres: the unit of the predicted distance
 
 
 @dataclass
@@ -43,7 +53,7 @@ class Walk:
     odometer: Odometer
 
 
-class RecurrentAgent(nn.Module):
+class RecurrentAgent(Agent, nn.Module):
     """Args:
     sensors: "rgb", "depth" or both; frames are [H, W, c] of one camera that looks ahead.
     rgb_width, depth_width: of the features of a column of the view. policy: keyword arguments of
@@ -56,10 +66,12 @@ class RecurrentAgent(nn.Module):
 
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"  # in published fingerprints
 
+    sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS
     together = 8  # episodes side by side (ours): a step of one costs 2.5 times as much alone
-    loss_weights = learning.LOSS_WEIGHTS
+    loss_weights = LOSS_WEIGHTS
+    _walk: Walk | None = None
 
     def __init__(
         self,
@@ -91,8 +103,8 @@ class RecurrentAgent(nn.Module):
         given |= {"sensors": list(sensors), "blind": list(blind), "adapters": adapters}
         self._settings = copy.deepcopy({**given, "size": size})
         self.sensors, self.blind = tuple(sensors), tuple(blind)
-        self.encoders = {name: camera.ENCODERS[name] for name in self.sensors}
-        self.labels = {name: camera.LABELS[name] for name in self.sensors}
+        self.encoders = {name: CAMERA_ENCODERS[name] for name in self.sensors}
+        self.labels = {name: CAMERA_LABELS[name] for name in self.sensors}
         self.vocabulary = Vocabulary(vocabulary)
         if RGB in sensors:
             self.rgb_encoder = CameraRGB(width=rgb_width, size=size)
@@ -117,32 +129,137 @@ class RecurrentAgent(nn.Module):
         rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
         return pad(rows).to(self.device)
 
-    # training (``learning.py``) -----------------------------------------------------------------
+    # training ---------------------------------------------------------------------------------
 
     def parts(self) -> dict[str, nn.Module]:
         """Its encoders and its policy by name."""
         return dict(self.named_children())
 
-    def collect(self, worlds: Sequence[World], episodes: Sequence[Episode], **how: Any) -> Piece:
-        """Walk episodes with the expert's answers; see :func:`learning.collect`."""
-        return learning.collect(self, worlds, episodes, **how)
+    @torch.no_grad()
+    def collect(
+        self,
+        worlds: Sequence[World],
+        episodes: Sequence[Episode],
+        *,
+        expert_share: float,
+        rngs: Sequence[np.random.Generator],
+        clean: bool = False,
+    ) -> Piece:
+        """Walk episodes with the expert's answers (``agents/agent.py``).
+
+        A walk ends where the expert's STOP is taken, or after ``LIMIT`` steps. The agent's own STOP
+        is not taken, so that what follows a wrong one is learned, too. The piece is plain data,
+        tensors and lists. Views of encoders that do not train are kept as features, in place of the
+        frames.
+        """
+        walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
+        text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
+        state, running = State.start(text), list(range(len(walks)))
+        frames_kept = self._trains_encoders()
+        for _ in range(LIMIT):
+            rows, here = torch.tensor(running, device=self.device), [walks[i] for i in running]
+            frames = {n: np.stack([walk.see()[n] for walk in here]) for n in self.sensors}
+            views = self._encode(frames)
+            moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in here]))
+            fresh = self.policy.step(
+                text.rows(rows), self.policy.look(views), moves.to(self.device), state.rows(rows)
+            )
+            state.put(rows, fresh)
+            logits = check_logits(self.policy.answer(fresh.hidden), self)
+            chances = logits.double().softmax(-1).cpu().numpy()
+            for row, i in enumerate(running):
+                kept = {} if frames_kept else {"views": views[row].float().cpu().numpy()}
+                walks[i].note(kept, clean, frames_kept)
+                walks[i].go(chances[row], expert_share, rngs[i])
+            running = [i for i in running if not worlds[i].done]
+            if not running:
+                break
+        return piece_of(walks)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """Features in place of frames; see :func:`learning.precompute`."""
-        return learning.precompute(self, piece, clean=clean)
+        """With ``clean``: features in place of the clean frames."""
+        names = {f"clean_{name}": name for name in self.sensors}
+        if clean and all(name in piece["seen"] for name in names):
+            frames = {own: piece["seen"].pop(name).numpy() for name, own in names.items()}
+            piece["seen"]["clean_views"] = self._encode(frames).float().cpu()
+        return piece
 
     def join(self, pieces: Sequence[Piece]) -> WalkDecisions:
-        """Pieces of :meth:`collect` as one batch."""
-        return learning.join(self, pieces)
+        """One batch of all walks of the pieces."""
+        lengths = [n for piece in pieces for n in piece["lengths"]]
+        names = [name for piece in pieces for name in piece["ids"]]
+        seen = {n: torch.cat([p["seen"][n] for p in pieces]) for n in pieces[0]["seen"]}
+        answer = torch.cat([piece["answer"] for piece in pieces])
+        return WalkDecisions(
+            walk=torch.repeat_interleave(torch.arange(len(lengths)), torch.tensor(lengths)),
+            time=torch.cat([torch.arange(n) for n in lengths]),
+            **{n: torch.cat([p[n] for p in pieces]) for n in ("moves", "weight", "metres")},
+            tokens=self.tokens([text for piece in pieces for text in piece["texts"]]),
+            target=F.one_hot(answer, self.actions).float(),
+            seen=seen,
+            episode_ids=[name for name, n in zip(names, lengths, strict=True) for _ in range(n)],
+        )
 
     def decide(self, decisions: WalkDecisions, *, clean: bool = False) -> Output:
-        """Logits over the actions; see :func:`learning.decide`."""
-        return learning.decide(self, decisions, clean=clean)
+        """Logits over the actions; features "views" [N, F] and "state" [N, width]."""
+        seen, prefix = decisions.seen, "clean_" if clean else ""
+        losses: dict[str, Tensor] = {}
+        views = seen.get(f"{prefix}views")
+        if views is None:
+            frames = {name: seen[f"{prefix}{name}"] for name in self.sensors}
+            views, losses = self._perceive(frames, {} if clean else seen)
+        text = self.policy.read(decisions.tokens)
+        made = self.policy(text, decisions.padded(views), decisions.padded(decisions.moves))
+        out = {name: value[decisions.walk, decisions.time] for name, value in made.items()}
+        known = torch.isfinite(decisions.metres)
+        if known.any():
+            wanted = decisions.metres[known] / _SCALE
+            losses["distance"] = F.smooth_l1_loss(out["distance"][known], wanted)
+        if "goal" in seen:
+            losses["grounding"] = presence_loss(out["grounding"], seen["goal"])
+        stop = decisions.target[:, STOP] > 0
+        chosen = out["logits"].argmax(-1) == STOP
+        figures = {
+            "stop_recall": (chosen & stop).sum() / stop.sum().clamp(min=1),
+            "false_stop": (chosen & ~stop).sum() / (~stop).sum().clamp(min=1),
+        }
+        return Output(out["logits"], None, {"views": views, "state": out["state"]}, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """View features of a sensor's frames; see :func:`camera.see`."""
+        """View features of a sensor's frames (``agents/agent.py``)."""
         encoder = self.rgb_encoder if sensor == RGB else self.depth_encoder
-        return camera.see(encoder, sensor, frames, truth)
+        return see_camera(encoder, sensor, frames, truth)
+
+    @torch.no_grad()
+    def _encode(self, frames: dict[str, np.ndarray]) -> Tensor:
+        """Features [N, F] of frames [N, H, W, c], without gradients."""
+        on = {name: torch.from_numpy(f).to(self.device) for name, f in frames.items()}
+        return self._perceive(on, {})[0]
+
+    def _perceive(
+        self, frames: dict[str, Tensor], truth: dict[str, Tensor]
+    ) -> tuple[Tensor, dict[str, Tensor]]:
+        """Features [N, F] of frames: of RGB its columns' features and what shows there, of depth
+        its columns' features and the metres that are free; with the truth the encoders' losses."""
+        parts, losses = [], {}
+        if RGB in self.sensors:
+            rgb = torch.zeros_like(frames[RGB]) if RGB in self.blind else frames[RGB]
+            features, logits = self.rgb_encoder(rgb)
+            parts += [features.flatten(-2), logits.sigmoid().flatten(-2)]
+            if "concepts" in truth:
+                losses["concepts"] = presence_loss(logits, truth["concepts"])
+        if DEPTH in self.sensors:
+            depth = torch.zeros_like(frames[DEPTH]) if DEPTH in self.blind else frames[DEPTH]
+            features, logits = self.depth_encoder(depth)
+            parts += [features.flatten(-2), free_metres(logits)]
+            if "free" in truth:
+                losses["free"] = free_loss(logits, truth["free"])
+        return torch.cat(parts, -1), losses
+
+    def _trains_encoders(self) -> bool:
+        """Whether any weight that makes view features is trained."""
+        encoders = (m for name, m in self.parts().items() if name != "policy")
+        return any(p.requires_grad for encoder in encoders for p in encoder.parameters())
 
     # closed loop ------------------------------------------------------------------------------
 
@@ -175,7 +292,7 @@ class RecurrentAgent(nn.Module):
             name: np.stack([checked.frame(seen, name, 1) for seen in observations])
             for name in self.sensors
         }
-        columns = self.policy.look(learning.encode(self, frames))
+        columns = self.policy.look(self._encode(frames))
         moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in walks]))
         text = Text(*map(torch.cat, zip(*(walk.text for walk in walks), strict=True)))
         state = State.join([walk.state for walk in walks])
@@ -195,10 +312,11 @@ class RecurrentAgent(nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """The likeliest action. Raises RuntimeError before the first ``reset``, and what
         ``agents/observation.py`` refuses."""
-        if not hasattr(self, "_walk"):
+        if self._walk is None:
             raise RuntimeError("Start the episode first: agent.reset(instruction).")
         return self._answers([observation], [self._walk], 1)[0]
 
     def taken(self, action: int, metres: float, radians: float) -> None:
         """Somebody else drives: count what was done in place of the last answer."""
+        assert self._walk is not None, "reset first"
         self._walk.odometer.correct(action, metres, radians)

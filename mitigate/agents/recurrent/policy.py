@@ -8,24 +8,63 @@ they speak of, a second cell keeps both. The attention over words also knows whe
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
 import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.attention import Layer
-from mitigate.agents.camera import DIRECTIONS
-from mitigate.agents.concepts import CONCEPTS, NEAR, THINGS
-from mitigate.agents.encoders import GRID
-from mitigate.agents.recurrent.odometer import MOVES
-from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
+from mitigate.agents.encoders import DIRECTIONS, GRID
+from mitigate.agents.text import CONCEPTS, MAX_WORDS, NEAR, PAD, THINGS, Vocabulary
+from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN_DEGREES
 
+MOVES = 5 + 4  # last action (none, or one of four); heading as sine and cosine, metres gone, steps
+_METRES, _STEPS = 5.0, 50.0  # units in which metres gone and steps taken are given
 ACTIONS = 4
 KEYS = 64  # width of the attention over words: what it costs in training
 REACH = 7  # words around the last ones that the attention sees at once, odd
+
+
+class Odometer:
+    """What an agent knows of its own motion: it counts the actions of an episode, and reads no
+    sensor."""
+
+    def __init__(self) -> None:
+        self.last = -1
+        self.heading = self.metres = 0.0
+        self.steps = 0
+
+    def add(self, action: int) -> None:
+        """Count an action."""
+        self.last, self.steps = action, self.steps + 1
+        self.heading += math.radians(TURN_DEGREES) * ((action == LEFT) - (action == RIGHT))
+        self.metres += FORWARD_METRES * (action == FORWARD)
+
+    def correct(self, action: int, metres: float, radians: float) -> None:
+        """Count in place of the last action another one, or none (-1), which went so far."""
+        self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
+        self.metres -= FORWARD_METRES * (self.last == FORWARD)
+        self.last = action
+        self.heading += radians
+        self.metres += max(0.0, metres)
+
+    def moves(self) -> np.ndarray:
+        """float32 [9]: which action was the last one (none, or one of four), sine and cosine of the
+        turns since the start, metres gone / 5, steps taken / 50."""
+        out = np.zeros(MOVES, np.float32)
+        out[1 + self.last] = 1.0
+        out[5:] = (
+            math.sin(self.heading),
+            math.cos(self.heading),
+            self.metres / _METRES,
+            self.steps / _STEPS,
+        )
+        return out
 
 
 class Text(NamedTuple):
@@ -65,7 +104,7 @@ class State:
     def put(self, index: Tensor, fresh: State) -> None:
         """Replace the rows ``index``, in place."""
         for name, value in vars(fresh).items():
-            getattr(self, name)[index] = value
+            vars(self)[name][index] = value
 
 
 def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
@@ -136,7 +175,7 @@ class Policy(nn.Module):
         return Text(self.keys(x), x, mask)
 
     def look(self, views: Tensor) -> Tensor:
-        """Features [..., F] of views, as ``learning.encode`` makes them, to columns [..., 4, w]."""
+        """Features [..., F] of views, as the agent encodes them, to columns [..., 4, width]."""
         rgb, concepts, depth, free = views.split(self.sizes, -1)
         x = self.column
         if self.sizes[0]:

@@ -11,43 +11,55 @@ import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from hashlib import blake2b
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import torch
+import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents import observation as checked
 from mitigate.agents.adapters import insert_adapters, remove_adapters
-from mitigate.agents.agent import Output, check_logits
+from mitigate.agents.agent import Agent, Output, check_logits
 from mitigate.agents.controller import Controller
-from mitigate.agents.encoders import SIZE, DepthEncoder, RGBEncoder
+from mitigate.agents.encoders import (
+    SIZE,
+    DepthEncoder,
+    RGBEncoder,
+    agreement,
+    f1,
+    free_loss,
+    presence_loss,
+    taught,
+)
 from mitigate.agents.schema import RGB_ENCODERS, SENSES
-from mitigate.agents.text import Vocabulary, pad
-from mitigate.agents.topological import learning
-from mitigate.agents.topological.imagenet import ImageNetEncoder
+from mitigate.agents.text import THINGS, Vocabulary, pad
 from mitigate.agents.topological.mapping import TopologicalMap
+from mitigate.agents.topological.perception import ImageNetEncoder, WaypointHead, select
 from mitigate.agents.topological.planner import Planner, collate
-from mitigate.agents.topological.rollout import Piece
-from mitigate.agents.topological.waypoints import WaypointHead, select
+from mitigate.agents.topological.rollout import LiveWalk, MapDecisions, Piece, join, roll_out
 from mitigate.core import names
 from mitigate.core.memory import Memory
-from mitigate.core.observation import DEPTH, POSE, RGB, STOP, VIEWS
+from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, POSE, RGB, STOP, VIEWS
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-if TYPE_CHECKING:  # tensordict, which only training needs, is as slow to import as torch
-    from mitigate.agents.topological.decisions import MapDecisions
+if TYPE_CHECKING:  # it imports tensordict, which is as slow to import as torch
     from mitigate.agents.topological.stored import Store
 
 MAX_DECISIONS = 15  # ETPNav: 15 in R2R-CE
-PARTS = ("rgb_encoder", "depth_encoder", "waypoint_head", "planner")
+PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
+PARTS = (*PERCEPTION, "planner")
+# of the planner (metres to the goal, which views show what the instruction ends at) and of the
+# perception (what views show, where one can go); chosen for the shipped agents
+LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
+_SCALE = 5.0  # metres: the planner's distance is in units of it
 OWN, IMAGENET = RGB_ENCODERS
 BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")  # what does not train of an encoder not ours
-FEATURES = 1 << 25  # bytes of features kept while remembering (ours): about 900 panoramas
+FEATURES = 1 << 25  # bytes of features kept while remembering (heuristic): about 900 panoramas
 
 
-class TopologicalAgent(nn.Module):
+class TopologicalAgent(Agent, nn.Module):
     """ETPNav's structure with about 2.5 M parameters.
 
     Args:
@@ -55,7 +67,7 @@ class TopologicalAgent(nn.Module):
         adapters: keyword arguments of ``insert_adapters``, for an agent with adapters.
         blind: sensors that are blanked before they enter (the ablations): of ``schema.SENSES``.
         size: pixels of a square view that it works on; frames of another size are resized.
-        encoder: of RGB: "own", or "efficientnet_lite0" (``imagenet.py``), which stays as it is
+        encoder: of RGB: "own", or "efficientnet_lite0" (``perception.py``), which stays as it is
         but for adapters and what reads its map; ``size`` is its alone then, depth stays at 64.
         vocabulary: the words it knows; None: those of the shipped agents.
     Raises ValueError for an unknown name in ``blind`` and a size that is no multiple of 16.
@@ -67,6 +79,7 @@ class TopologicalAgent(nn.Module):
 
     views, sensors = VIEWS, (RGB, DEPTH, POSE)
     rgb_encoder: RGBEncoder | ImageNetEncoder
+    _started = False
 
     def __init__(
         self,
@@ -154,11 +167,11 @@ class TopologicalAgent(nn.Module):
         rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
         return pad(rows).to(self.device)
 
-    # training (``learning.py``) -----------------------------------------------------------------
+    # training ---------------------------------------------------------------------------------
 
-    loss_weights = learning.LOSS_WEIGHTS
-    encoders: ClassVar = {"rgb": ("rgb_encoder",), "depth": ("depth_encoder", "waypoint_head")}
-    labels: ClassVar = {"rgb": "concepts", "depth": "free"}
+    loss_weights = LOSS_WEIGHTS
+    encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
+    labels = {RGB: "concepts", DEPTH: "free"}
     plain_walks = False
     stored_parts = ("planner",)  # what trains on stored features
 
@@ -170,7 +183,7 @@ class TopologicalAgent(nn.Module):
 
     def parts(self) -> dict[str, nn.Module]:
         """Its four modules by name."""
-        return {name: getattr(self, name) for name in PARTS}
+        return {name: self.get_submodule(name) for name in PARTS}
 
     def as_teacher(self) -> TopologicalAgent:
         """A copy without adapters and with plain means over views."""
@@ -179,27 +192,114 @@ class TopologicalAgent(nn.Module):
         teacher.planner.fusion = None
         return teacher
 
-    def collect(self, worlds: Sequence[World], episodes: Sequence[Episode], **how: Any) -> Piece:
-        """Roll out episodes with the oracle's answers; see :func:`learning.collect`."""
-        return learning.collect(self, worlds, episodes, **how)
+    def collect(
+        self,
+        worlds: Sequence[World],
+        episodes: Sequence[Episode],
+        *,
+        expert_share: float,
+        rngs: Sequence[np.random.Generator],
+        clean: bool = False,
+    ) -> Piece:
+        """Roll out episodes with the oracle's answers (``agents/agent.py``). Views of a perception
+        that does not train are kept as features, in place of the frames."""
+        trains = self._trains_perception()
+        labels = ("concepts", "free", "goal") if trains else ("goal",)
+        walks = [LiveWalk(w, e, labels, clean) for w, e in zip(worlds, episodes, strict=True)]
+
+        def look(here: list[LiveWalk]) -> list[tuple[np.ndarray, np.ndarray]]:
+            for walk in here:
+                walk.look()
+            frames = (np.stack([walk.looks[-1][name] for walk in here]) for name in (RGB, DEPTH))
+            views, waypoints = self._perceived(*frames)
+            return [(v, select(w)) for v, w in zip(views, waypoints, strict=True)]
+
+        traces = roll_out(
+            self.planner,
+            self.tokens([e.instruction.text for e in episodes]),
+            walks,
+            look,
+            follow_oracle=expert_share,
+            rngs=rngs,
+        )
+        looks = [look for walk in walks for look in walk.looks]
+        names = [name for name in looks[0] if trains or name not in (RGB, DEPTH)]
+        seen = {name: np.stack([look[name] for look in looks]) for name in names}
+        if not trains:
+            seen["views"] = np.stack([view for trace in traces for view in trace.views])
+        return Piece(traces, seen)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """Features in place of frames; see :func:`learning.precompute`."""
-        return learning.precompute(self, piece, clean=clean)
+        """With ``clean``: features in place of the clean frames."""
+        if clean and CLEAN_RGB in piece.seen:
+            views, _ = self._perceived(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
+            piece.seen["clean_views"] = views
+        return piece
 
     def join(self, pieces: Sequence[Piece]) -> MapDecisions:
         """Pieces of :meth:`collect` as one padded batch."""
-        from mitigate.agents.topological.decisions import join
-
         return join(pieces, self.tokens)
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
-        """Logits over [stop] and ghosts; see :func:`learning.decide`."""
-        return learning.decide(self, decisions, clean=clean)
+        """Logits over [stop] and ghosts; features "views" [P, 12, F], "nodes" [n, width]."""
+        views, losses, figures = self._perception(decisions, clean)
+        planner, choices = self.planner, decisions.choices
+        out = planner(planner.read(decisions.tokens), planner.look(views), choices)
+        distance = F.smooth_l1_loss(out["distance"], decisions.metres / _SCALE, reduction="none")
+        own = {"distance": (distance * choices.valid).sum() / choices.valid.sum()}
+        if decisions.goal is not None:
+            own["grounding"] = presence_loss(out["grounding"], decisions.goal)
+        features = {"views": views, "nodes": out["nodes"][choices.valid]}
+        figures |= _stops(out["logits"], decisions.target[:, 0])
+        return Output(out["logits"], choices.allowed, features, {**own, **losses}, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """View features of a sensor's frames; see :func:`learning.see`."""
-        return learning.see(self, sensor, frames, truth)
+        """View features of a sensor's frames (``agents/agent.py``); of RGB they hold the
+        probabilities of concepts."""
+        views = frames.shape[1]
+        if sensor == DEPTH:
+            features = self.depth_encoder(frames.flatten(0, 1)).unflatten(0, (-1, views))
+            logits = self.waypoint_head(features)
+        else:
+            features, logits = (
+                x.unflatten(0, (-1, views)) for x in self.rgb_encoder(frames.flatten(0, 1))
+            )
+            features = torch.cat([features, logits.sigmoid()], -1)
+        return taught(features, logits, sensor, truth)
+
+    def _trains_perception(self) -> bool:
+        """Whether any weight that makes view features is trained."""
+        parts = self.parts()
+        return any(p.requires_grad for name in PERCEPTION for p in parts[name].parameters())
+
+    @torch.no_grad()
+    def _perceived(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """View features and waypoint logits of panoramas, without gradients."""
+        frames = (torch.from_numpy(array).to(self.device) for array in (rgb, depth))
+        views, _, waypoints = self.perceive(*frames)
+        return views.float().cpu().numpy(), waypoints.float().cpu().numpy()
+
+    def _perception(
+        self, seen: MapDecisions, clean: bool
+    ) -> tuple[Tensor, dict[str, Tensor], dict[str, Tensor]]:
+        """View features [P, 12, F], and the perception's losses and figures where it trains."""
+        if clean:
+            if seen.clean_views is not None:
+                return seen.clean_views, {}, {}
+            assert seen.clean_rgb is not None and seen.clean_depth is not None
+            return self.perceive(seen.clean_rgb, seen.clean_depth)[0], {}, {}
+        if seen.views is not None:
+            return seen.views, {}, {}
+        assert seen.rgb is not None and seen.depth is not None
+        views, concepts, waypoints = self.perceive(seen.rgb, seen.depth)
+        losses, figures = {}, {}
+        if seen.concepts is not None:
+            losses["concepts"] = presence_loss(concepts, seen.concepts)
+            figures["f1"] = f1(concepts[..., THINGS], seen.concepts[..., THINGS])
+        if seen.free is not None:
+            losses["waypoints"] = free_loss(waypoints, seen.free)
+            figures["iou"] = agreement(waypoints, seen.free)
+        return views, losses, figures
 
     # closed loop ------------------------------------------------------------------------------
 
@@ -219,6 +319,7 @@ class TopologicalAgent(nn.Module):
         knows none of its words."""
         checked.instruction(instruction, self.vocabulary)
         self.map, self.controller = TopologicalMap(), Controller()
+        self._started = True
         self.decisions = 0
         self._views: list[Tensor] = []
         self._stop_scores: list[tuple[float, int]] = []
@@ -233,7 +334,7 @@ class TopologicalAgent(nn.Module):
         Raises RuntimeError before the first ``reset``, and what ``agents/observation.py`` refuses:
         KeyError, TypeError or ValueError for a missing entry, a wrong dtype, shape or unit.
         """
-        if not hasattr(self, "controller"):
+        if not self._started:
             raise RuntimeError("Start the episode first: agent.reset(instruction).")
         action = self.controller.action(checked.pose(observation))
         while action is None:
@@ -248,7 +349,7 @@ class TopologicalAgent(nn.Module):
         self.decisions, self._final = 0, False  # the limit is of its own walks
 
     @property
-    def aim(self) -> np.ndarray | None:
+    def aim(self) -> np.ndarray | None:  # type: ignore[override]
         """Where its route ends, plan metres [2], or None."""
         return self.controller.route[-1] if self.controller.route else None
 
@@ -312,3 +413,12 @@ class TopologicalAgent(nn.Module):
         node = max(self._stop_scores)[1]
         self.controller.follow(self.map.route_to_node(node))
         return True
+
+
+def _stops(logits: Tensor, stop: Tensor) -> dict[str, Tensor]:
+    """How many of the stops were taken, and how many decisions were wrongly ended by one."""
+    chosen = logits.argmax(-1) == 0
+    return {
+        "stop_recall": (chosen & (stop > 0)).sum() / stop.sum().clamp(min=1),
+        "false_stop": (chosen & (stop == 0)).sum() / (stop == 0).sum().clamp(min=1),
+    }

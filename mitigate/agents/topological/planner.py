@@ -8,7 +8,7 @@ text. The 12 views of the current panorama are given as further context (as DUET
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,8 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents.attention import Layer
-from mitigate.agents.concepts import CONCEPTS, NEAR, THINGS
 from mitigate.agents.fusion import weigher
-from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
+from mitigate.agents.text import CONCEPTS, MAX_WORDS, NEAR, PAD, THINGS, Vocabulary
 from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS, Decision
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
@@ -43,7 +42,7 @@ class DecisionBatch:
 
     def to(self, device: torch.device) -> DecisionBatch:
         """Return the batch on ``device``."""
-        return DecisionBatch(*(getattr(self, part.name).to(device) for part in fields(self)))
+        return DecisionBatch(*(tensor.to(device) for tensor in vars(self).values()))
 
 
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:

@@ -1,4 +1,6 @@
-"""Episodes in lock-step for imitation: the oracle over the map's ghosts, scheduled sampling.
+"""Episodes in lock-step for imitation, and the padded batch of all that was decided.
+
+The oracle answers over the map's ghosts; its share of the decisions is scheduled.
 
 A *walk* is where decisions take effect: ``LiveWalk`` in any world, ``StoredWalk`` (``stored.py``)
 between poses whose features are stored.
@@ -7,24 +9,27 @@ between poses whose features are stored.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 import numpy as np
 import torch
+from torch import Tensor
 
 from mitigate.agents import observation as checked
 from mitigate.agents.agent import check_logits
 from mitigate.agents.controller import Controller
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
-from mitigate.agents.topological.planner import Planner, collate
+from mitigate.agents.topological.planner import DecisionBatch, Planner, collate
 from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.world import World, counts, expert_of
+from mitigate.worlds.world import World, expert_of
 
 STOP_WITHIN = 1.0  # metres: the oracle stops here, where the world's rule counts it ...
 STOP_BEST = 1.75  # ... or here, if no ghost is nearer to the goal
 _TEMPERATURE = 0.3  # metres; ghosts about as good as the best share the target
+STOP_WEIGHT = 1.5  # one decision in about six is a stop
+FARTHEST = 25.0  # metres; the distance loss asks for no more
 _TRAVEL = 0.4  # weight of the metres to a ghost against the metres from it to the goal
 
 
@@ -113,9 +118,7 @@ class LiveWalk:
         if self.clean:
             before = checked.frames(self.observation.clean)
             kept |= dict(zip((CLEAN_RGB, CLEAN_DEPTH), before, strict=True))
-        truth: Mapping[str, np.ndarray] = (
-            getattr(self.world, "truth", dict)() if self.labels else {}
-        )
+        truth: Mapping[str, np.ndarray] = self.world.truth() if self.labels else {}
         kept |= {name: truth[name] for name in self.labels if name in truth}
         # copies: a world may reuse its arrays
         self.looks.append({name: np.array(value) for name, value in kept.items()})
@@ -135,16 +138,22 @@ class LiveWalk:
             self.observation = self.world.step(action)
 
     def distance(self, xy: np.ndarray) -> float:
-        return self.expert.distance(xy)
+        metres = self.expert.distance(xy)
+        if np.isnan(metres):
+            raise ValueError(
+                "The world's expert knows no distance(xy) to the goal, which teaches an agent that "
+                "plans: give it that method (docs/bring-your-own.md)."
+            )
+        return metres
 
     def counts(self, metres: float) -> bool:
-        return counts(self.expert, metres)
+        return self.expert.counts(metres)
 
 
 @torch.no_grad()
 def roll_out(
     planner: Planner,
-    tokens: torch.Tensor,
+    tokens: Tensor,
     walks: Sequence[Walk],
     look: Look,
     *,
@@ -162,7 +171,7 @@ def roll_out(
     graphs = [TopologicalMap() for _ in walks]
     traces = [Trace(walk.episode) for walk in walks]
     text = planner.read(tokens)
-    tokens_of: list[list[torch.Tensor]] = [[] for _ in walks]
+    tokens_of: list[list[Tensor]] = [[] for _ in walks]
     running = list(range(len(walks)))
     for _ in range(limit):
         seen = look([walks[i] for i in running])
@@ -198,7 +207,7 @@ def _planned(
     text: Any,
     own: list[int],
     traces: list[Trace],
-    tokens_of: list[list[torch.Tensor]],
+    tokens_of: list[list[Tensor]],
     rngs: Sequence[np.random.Generator],
 ) -> list[int]:
     offsets = np.cumsum([0, *(len(tokens_of[i]) for i in own)])[:-1]
@@ -216,3 +225,95 @@ def _planned(
 def _draw(probabilities: np.ndarray, rng: np.random.Generator) -> int:
     total = np.cumsum(probabilities.astype(np.float64))
     return int(min(np.searchsorted(total, rng.random() * total[-1], side="right"), len(total) - 1))
+
+
+@dataclass
+class MapDecisions:
+    """Padded decisions over [stop], nodes (N) and ghosts (G) of B decisions in E episodes, which
+    saw P panoramas (``planner.DecisionBatch`` has the first seven).
+
+    target, metres [B, 1 + N + G]; weight [B]; tokens int64 [E, L]. Seen: ``views`` and
+    ``clean_views`` are features [P, 12, F] where they are known, else there are frames; labels are
+    there where the world has them.
+    """
+
+    episode: Tensor
+    panorama: Tensor
+    nodes: Tensor
+    sightings: Tensor
+    geometry: Tensor
+    valid: Tensor
+    allowed: Tensor
+    target: Tensor
+    metres: Tensor
+    weight: Tensor
+    tokens: Tensor
+    episode_ids: list[str]
+    rgb: Tensor | None = None
+    depth: Tensor | None = None
+    clean_rgb: Tensor | None = None
+    clean_depth: Tensor | None = None
+    views: Tensor | None = None
+    clean_views: Tensor | None = None
+    concepts: Tensor | None = None
+    free: Tensor | None = None
+    goal: Tensor | None = None
+
+    def to(self, device: Any) -> MapDecisions:
+        """Return the decisions on ``device``."""
+        tensors = {n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)}
+        moved: dict[str, Any] = dict(tensors)
+        return replace(self, **moved)
+
+    @property
+    def choices(self) -> DecisionBatch:
+        """The decisions as the planner takes them."""
+        return DecisionBatch(
+            self.episode,
+            self.panorama,
+            self.nodes,
+            self.sightings,
+            self.geometry,
+            self.valid,
+            self.allowed,
+        )
+
+
+def join(pieces: Sequence[Piece], tokens: Callable[[list[str]], Tensor]) -> MapDecisions:
+    """Pad the decisions of all traces with their targets; ``tokens`` encodes instructions."""
+    traces = [trace for piece in pieces for trace in piece.traces]
+    steps = [(row, step) for row, trace in enumerate(traces) for step in trace.steps]
+    offsets = np.cumsum([0, *(len(trace.steps) for trace in traces)])
+    choices = collate(
+        [s.decision for _, s in steps],
+        [row for row, _ in steps],
+        [int(offsets[row]) for row, _ in steps],
+    )
+    target, metres = _answers(choices, [step for _, step in steps])
+    seen = {
+        name: torch.from_numpy(np.concatenate([piece.seen[name] for piece in pieces]))
+        for name in pieces[0].seen
+    }
+    return MapDecisions(
+        **vars(choices),
+        target=target,
+        metres=metres,
+        weight=1 + (STOP_WEIGHT - 1) * target[:, 0],
+        tokens=tokens([trace.episode.instruction.text for trace in traces]),
+        episode_ids=[trace.episode.episode_id for trace in traces],
+        **seen,
+    )
+
+
+def _answers(choices: DecisionBatch, steps: list[Step]) -> tuple[Tensor, Tensor]:
+    """Padded targets and metres, each float32 [B, 1 + N + G]."""
+    size, first = choices.valid.shape, 1 + choices.nodes.shape[1]
+    target, metres = np.zeros(size, np.float32), np.zeros(size, np.float32)
+    for index, step in enumerate(steps):
+        ghosts, nodes = len(step.decision.ghosts), len(step.decision.nodes)
+        target[index, 0], target[index, first : first + ghosts] = step.target[0], step.target[1:]
+        metres[index, : 1 + nodes], metres[index, first : first + ghosts] = (
+            step.metres[: 1 + nodes],
+            step.metres[1 + nodes :],
+        )
+    return torch.from_numpy(target), torch.from_numpy(np.minimum(metres, FARTHEST))

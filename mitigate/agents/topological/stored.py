@@ -1,45 +1,274 @@
-"""Stored features of a lattice of poses: training the planner without rendering.
+"""Features of whole scenes, stored once, so that training needs no rendering.
 
-``scene_poses.py`` makes them: poses lie about ``SPACING`` metres apart and look along heading 0.
-Headings are multiples of 30 degrees, where a panorama is the heading-0 one with its views rolled.
-Built once, resumable: each scene is a folder of memory-mapped arrays that is there whole or not at
-all, and that worker processes share. Beside the clean scene there may be *variants* of it, in each
-of which one corruption is kept.
+The features that an agent's encoders give are computed on a lattice of poses of each scene
+(``ScenesTask``, in worker processes), kept as memory-mapped folders that worker processes share
+(``Store``), and walked (``StoredWalk``). Beside the clean scene there may be *variants* of it, in
+each of which one corruption is kept. Only training imports this module: tensordict is as slow to
+import as torch. The agents here are :class:`TopologicalAgent`, whose module imports this one.
 """
 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
+from scipy.spatial import cKDTree
+from tensordict import tensorclass
+from torch import Tensor
 
+from mitigate.agents.topological.perception import COUNT, select
 from mitigate.agents.topological.rollout import Piece, roll_out
-from mitigate.agents.topological.scene_poses import ScenesTask
-from mitigate.agents.topological.stored_walk import Features, ScenePoses, StoredWalk, look
 from mitigate.core import precision
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.files import make_folder
-from mitigate.core.observation import RGB
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
+from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
 from mitigate.core.signals import unbroken
-from mitigate.corruptions import SUITE_VERSION, Schedule
+from mitigate.corruptions import SUITE_VERSION, Schedule, corrupt_observation
 from mitigate.corruptions.registry import BROAD, version
-from mitigate.worlds.episodes import Episode
+from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
+from mitigate.worlds.world import depth_sensor, expert_of
 
-if TYPE_CHECKING:
-    from mitigate.agents.topological.agent import TopologicalAgent
-
+SPACING = 0.5  # metres between poses
 # of a schedule, what says who meets a variant and not what it is of
 UNUSED: dict[str, Any] = {"success": None, "clean_share": 0.0, "alpha": 1.0, "floor": 1.0}
-WORTH = 4  # scenes that make a process worth its start (ours): some 5 s each
-ON_GPU = 8  # processes at most that encode on one GPU, each of which takes 0.5 GB of it for itself
+WORTH = 4  # scenes that make a process worth its start (heuristic): some 5 s each
+ON_GPU = 8  # processes at most that encode on one GPU, each of which takes 0.5 GB of it
+_BATCH = 16  # panoramas encoded at once
+
+Job = tuple[str, Sequence[int]]  # a scene, and which variants of it
+
+
+@tensorclass
+class ScenePoses:
+    """The poses of one scene as they are stored: the entries of :class:`Features`, tensors."""
+
+    xy: Tensor
+    views: Tensor
+    waypoints: Tensor
+    seen: Tensor
+
+
+# folders name the class; those that earlier versions wrote have this name of it
+ScenePoses.__module__ = "mitigate.agents.topological.stored_walk"
+
+
+class Features:
+    """Arrays of one scene: xy [n, 2], views float16 [n, 12, F], waypoints [n, 6, 2] (metres 0 =
+    none), seen uint64 [n, 12] (bit i: thing i shows in the middle of the view)."""
+
+    def __init__(self, poses: ScenePoses) -> None:
+        self.xy, self.views = poses.xy.numpy(), poses.views.numpy()
+        self.waypoints, self.seen = poses.waypoints.numpy(), poses.seen.numpy().view(np.uint64)
+        self.tree = cKDTree(self.xy)
+
+    @torch.no_grad()
+    def blank(self, agent: Any, size: int) -> None:
+        """Replace what a blind agent cannot see by what it gets from blanked frames."""
+        rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
+        views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
+        blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
+        self.views, self.waypoints = self.views.copy(), self.waypoints.copy()
+        if "rgb" in agent.blind:
+            self.views[..., :-depth] = blanked[:, :-depth]
+        if "depth" in agent.blind:
+            self.views[..., -depth:] = blanked[:, -depth:]
+            found = select(logits[0].float().cpu().numpy())
+            self.waypoints[:] = 0
+            self.waypoints[:, : len(found)] = found
+
+
+class StoredWalk:
+    """A rollout by stored features: every move ends on the lattice pose nearest to its target.
+
+    ``shown`` holds, for each look, which views show the goal's landmark: float32 [12]. Nothing
+    counts its steps, so it is never ``done``.
+    """
+
+    done = False
+
+    def __init__(self, episode: Episode, features: Features, world: Any) -> None:
+        self.episode, self.features = episode, features
+        world.reset(episode)
+        self.expert = expert_of(world)
+        self.index = int(features.tree.query(from_vlnce(episode.start_position))[1])
+        self.turn = _turns(heading_of(episode.start_rotation))
+        self.landmarks = np.uint64(sum(1 << i for i in world.landmarks(episode)))
+        self.shown: list[np.ndarray] = []
+
+    def look(self) -> tuple[np.ndarray, np.ndarray]:
+        """Views and waypoints from here."""
+        held = self.features
+        waypoints = held.waypoints[self.index]
+        waypoints = waypoints[waypoints[:, 1] > 0].copy()
+        waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (
+            2 * np.pi
+        )
+        shows = (held.seen[self.index] & self.landmarks) > 0
+        self.shown.append(np.roll(shows.astype(np.float32), self.turn))
+        return np.roll(held.views[self.index].astype(np.float32), self.turn, 0), waypoints
+
+    def pose(self) -> np.ndarray:
+        turned = np.radians(VIEW_STEP_DEGREES) * self.turn
+        return np.array([*self.features.xy[self.index], turned])
+
+    def go(self, route: list[np.ndarray]) -> None:
+        before = route[-2] if len(route) > 1 else self.features.xy[self.index]
+        self.index = int(self.features.tree.query(route[-1])[1])
+        dx, dy = route[-1] - before
+        self.turn = _turns(float(np.arctan2(-dx, dy)))
+
+    def distance(self, xy: np.ndarray) -> float:
+        return self.expert.distance(xy)
+
+    def counts(self, metres: float) -> bool:
+        return self.expert.counts(metres)
+
+
+def look(walks: Sequence[StoredWalk]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Stored views and waypoints of where each walk is."""
+    return [walk.look() for walk in walks]
+
+
+def _turns(heading: float) -> int:
+    """Heading in steps of 30 degrees, counter-clockwise."""
+    return int(np.round(np.degrees(heading) / VIEW_STEP_DEGREES)) % VIEWS
+
+
+@dataclass
+class ScenesTask:
+    """Makes scenes (``mitigate/core/workers.py``): of each job, (variant, the entries of
+    ``ScenePoses`` by name) of each variant; variant 0 is the clean one, ``schedule`` draws the
+    corruption of the others by ``seed``. kind: the precision that the encoders compute in."""
+
+    agent: Any
+    make_world: Callable[[], Any]
+    schedule: Schedule | None
+    seed: int
+    kind: str
+    world: Any = None
+    preload: ClassVar[str] = "mitigate.agents.topological.stored"
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "world": None}
+
+    @contextmanager
+    def ready(self) -> Iterator[None]:
+        """One thread for torch, whoever calls: features are the same in any number of processes."""
+        threads = torch.get_num_threads()
+        torch.set_num_threads(1)
+        self.agent.eval()
+        self.world = self.world or self.make_world()
+        try:
+            with computing(self.kind, self.agent.device):
+                yield
+        finally:
+            torch.set_num_threads(threads)
+
+    def work(self, jobs: Sequence[Job]) -> Iterator[list[tuple[int, dict[str, np.ndarray]]]]:
+        """What is stored of the variants of each scene."""
+        for scene, variants in jobs:
+            yield list(self._poses(scene, variants))
+
+    def name(self, job: Job) -> str:
+        return f"scene {job[0]}"
+
+    @torch.no_grad()
+    def _poses(
+        self, scene: str, variants: Sequence[int]
+    ) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
+        self.world.enter(scene)
+        points = self.world.points()
+        xy = points[lattice(points)]
+        clean = [_frames(self.world, p) for p in xy]
+        known = _features(self.agent, clean)
+        for variant in variants:
+            frames = clean if not variant else self._corrupted(clean, f"{scene}-{variant}")
+            made = {**known, **_features(self.agent, frames, clean)}
+            views = np.concatenate([made["rgb"], made["depth"]], -1)
+            kept = {"views": views, "waypoints": made["waypoints"], "seen": made["seen"]}
+            yield variant, {"xy": xy, **kept}
+
+    def _corrupted(self, frames: list[tuple], name: str) -> list[tuple]:
+        """Frames of all poses under the corruption of the variant ``name``."""
+        assert self.schedule is not None
+        schedule, sensor = replace(self.schedule, clean_share=0.0), depth_sensor(self.world.sensors)
+        made = []
+        for number, (rgb, depth, seen) in enumerate(frames):
+            drawn = schedule.draw(self.seed, name, number)
+            shot = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}  # a flare has a yaw
+            found = corrupt_observation(shot, *drawn, sensor)
+            made.append((found[RGB], found[DEPTH], seen))
+        return made
+
+
+def lattice(points: np.ndarray) -> np.ndarray:
+    """Indices of the points [n, 2] on a ``SPACING`` lattice: the nearest to each lattice point."""
+    key = np.floor(points / SPACING).astype(int)
+    middle = np.abs(points / SPACING - key - 0.5).sum(1)
+    order = np.lexsort((middle, key[:, 1], key[:, 0]))
+    first = np.ones(len(order), bool)
+    first[1:] = (np.diff(key[order], axis=0) != 0).any(1)
+    return np.sort(order[first])
+
+
+def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """RGB, depth and, for each view, which things show (bits of a uint64)."""
+    frames, truth = world.put(xy, 0.0)
+    seen = truth["seen"]
+    bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(
+        1, dtype=np.uint64
+    )
+    return frames[RGB], frames[DEPTH], bits
+
+
+def _features(
+    agent: Any, frames: list[tuple], known: list[tuple] | None = None
+) -> dict[str, np.ndarray]:
+    """Features of frames by what made them; those of frames that ``known`` holds are left out."""
+    seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch maps no uint64
+    found = {"seen": seen}
+    rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
+    same_rgb, same_depth = (
+        known is not None and all(a[i] is b[i] for a, b in zip(frames, known, strict=True))
+        for i in (0, 1)
+    )
+    if not same_rgb:
+        found["rgb"] = np.concatenate([_rgb(agent, part) for part in _parts(agent, rgb)])
+    if not same_depth:
+        views, logits = zip(*(_depth(agent, part) for part in _parts(agent, depth)), strict=True)
+        found["depth"] = np.concatenate(views)
+        found["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
+        for row, grid in enumerate(np.concatenate(logits)):
+            chosen = select(grid)
+            found["waypoints"][row, : len(chosen)] = chosen
+    return found
+
+
+def _parts(agent: Any, frames: list[np.ndarray]) -> Iterator[Tensor]:
+    for first in range(0, len(frames), _BATCH):
+        yield torch.from_numpy(np.stack(frames[first : first + _BATCH])).to(agent.device)
+
+
+def _rgb(agent: Any, frames: Tensor) -> np.ndarray:
+    """float16 [n, 12, rgb + concepts]."""
+    features, concepts = agent.encode_rgb(frames)
+    return torch.cat([features, concepts.sigmoid()], -1).half().cpu().numpy()
+
+
+def _depth(agent: Any, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
+    """float16 [n, 12, depth] and waypoint logits."""
+    features, logits = agent.encode_depth(frames)
+    return features.half().cpu().numpy(), logits.float().cpu().numpy()
 
 
 class Store:
@@ -54,7 +283,7 @@ class Store:
 
     def __init__(
         self,
-        agent: TopologicalAgent,
+        agent: Any,
         world: Callable[[], Any],
         root: Path | str,
         schedule: Schedule | None = None,

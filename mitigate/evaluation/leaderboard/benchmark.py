@@ -13,6 +13,7 @@ from typing import Any
 from hydra.errors import HydraException
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.agents.agent import as_agent
 from mitigate.agents.loading import agent_option
 from mitigate.agents.observation import check_fits
 from mitigate.agents.state import in_eval_mode
@@ -104,7 +105,7 @@ def benchmark(
         with FolderLock(file.parent):
             walked.keep(file.parent, first, made_by, split, chosen)
             rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
-    shown = sensors_of(first.sensors, getattr(agent, "sensors", None))
+    shown = sensors_of(first.sensors, as_agent(agent).sensors)
     return entry_of(rows, name, severity=severity, sensors=shown, file=_relative(file), **told)
 
 

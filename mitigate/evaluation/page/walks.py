@@ -25,7 +25,7 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
 from mitigate.evaluation.trajectories import Walk, first_sight, walked
 from mitigate.worlds.episodes import Episode, from_vlnce
-from mitigate.worlds.world import World, remembering
+from mitigate.worlds.world import World, as_world
 
 AGREED = ("success", "spl", "steps")
 CLOSE = 1e-6  # of a measure that rows round to six digits
@@ -64,7 +64,7 @@ def walk_again(
         )
     index = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r for r in own}
     for episode_id, corruption in chosen:
-        with remembering(world):
+        with as_world(world).remembering():
             episode = known[episode_id]
             walks = list(walked(agents, world, episode, corruption, seed))
             views = [_jpeg(sight) for sight in first_sight(world, episode, corruption, seed)[1]]
@@ -132,7 +132,7 @@ def _points(path: Any) -> list[list[float]]:
 def _plan(world: World) -> dict[str, Any]:
     """Return the plan as a PNG, where the world draws one, and its corners [x0, y0, x1, y1] in
     metres."""
-    draw = getattr(world, "draw", None)
+    draw = as_world(world).draw
     if draw is None:
         return {"plan": None, "corners": None}
     from matplotlib.figure import Figure

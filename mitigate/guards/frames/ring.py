@@ -13,7 +13,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor
 
-from mitigate.agents.ring import neighbour_grid
+from mitigate.agents.adapter_layers import neighbour_grid
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
 STEPS = (1, 2)  # views away that still overlap: of 90 degrees, 30 and 60 apart

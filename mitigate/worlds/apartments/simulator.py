@@ -23,6 +23,8 @@ from mitigate.core.observation import (
 from mitigate.worlds.apartments.apartment import apartment_of
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
+from mitigate.worlds.measures import Rule
+from mitigate.worlds.world import Expert
 
 NEAR = 0.5  # metres from a free cell that a start or goal may lie (ours): furniture may be a goal
 
@@ -117,3 +119,29 @@ class Simulator:
     def distance_to_goal(self, xy: np.ndarray | None = None) -> float:
         """Geodesic metres from a position (default: the agent's) to the nearest goal."""
         return float(self.field[self.space.cell_of(self.xy if xy is None else xy)])
+
+
+class GeodesicExpert(Expert):
+    """Distances and the greedy follower of a geodesic ``field``: it turns to the heading whose step
+    lowers the distance most, and stops within what ``rule`` counts."""
+
+    def __init__(self, simulator: Simulator, rule: Rule, field: np.ndarray) -> None:
+        self.simulator, self.rule, self.field = simulator, rule, field
+
+    def distance(self, xy: np.ndarray) -> float:
+        return float(self.field[self.simulator.space.cell_of(xy)])
+
+    def counts(self, metres: float) -> bool:
+        return self.rule.met(metres, True)
+
+    def action(self) -> int:
+        simulator = self.simulator
+        if self.distance(simulator.xy) < self.rule.stop_within:
+            return STOP
+        turns = sorted(range(-12, 13), key=abs)
+        headings = [simulator.heading + np.radians(TURN_DEGREES) * turn for turn in turns]
+        ends = [
+            simulator.space.move(simulator.xy, heading, FORWARD_METRES)[0] for heading in headings
+        ]
+        best = turns[int(np.argmin([self.distance(end) for end in ends]))]
+        return FORWARD if best == 0 else LEFT if best > 0 else RIGHT

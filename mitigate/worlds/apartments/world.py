@@ -24,7 +24,6 @@ from mitigate.core.observation import (
 from mitigate.worlds import measures
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
-from mitigate.worlds.apartments.expert import GeodesicExpert
 from mitigate.worlds.apartments.labels import (
     ahead,
     column_labels,
@@ -33,9 +32,10 @@ from mitigate.worlds.apartments.labels import (
 )
 from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import shared_renderer
-from mitigate.worlds.apartments.simulator import Simulator
+from mitigate.worlds.apartments.simulator import GeodesicExpert, Simulator
 from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_field
 from mitigate.worlds.episodes import Episode, from_vlnce
+from mitigate.worlds.world import World
 
 KEPT = 1 << 26  # bytes of rendered frames kept while remembering (ours)
 LARGEST = 2048  # pixels of a view (ours)
@@ -43,7 +43,7 @@ APART = 0.5  # metres between the way that a file says and the measured, to warn
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 
 
-class ApartmentsWorld:
+class ApartmentsWorld(World):
     """One agent in one apartment; all of a process draw through one renderer.
 
     Args: size: pixels of a square view. layouts: how many training layouts ``scenes`` names.
@@ -100,7 +100,7 @@ class ApartmentsWorld:
     # episodes ---------------------------------------------------------------------------------
 
     @property
-    def done(self) -> bool:
+    def done(self) -> bool:  # type: ignore[override]
         return self.simulator.done
 
     def reset(self, episode: Episode) -> Observation:

@@ -6,12 +6,10 @@ from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
-from mitigate.worlds.recorded.bags import Bag
+from mitigate.worlds.recorded.bags import Bag, Topics
 from mitigate.worlds.recorded.folders import Frames, is_drive, open_folder
-from mitigate.worlds.recorded.recording import RecordedWorld, Recording, kinds, load
+from mitigate.worlds.recorded.recording import Driven, RecordedWorld, Recording, Step, kinds, load
 from mitigate.worlds.recorded.source import NARROW, WIDE, Source
-from mitigate.worlds.recorded.steps import Driven, Step
-from mitigate.worlds.recorded.topics import Topics
 
 __all__ = [
     "Driven",

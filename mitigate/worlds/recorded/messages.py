@@ -50,10 +50,15 @@ def stamp(raw: bytes, ros2: bool) -> float:
     return seconds + nano / 1e9
 
 
+def camera_matrix(message: Any) -> np.ndarray:
+    """The 3x3 matrix of a CameraInfo, flat: ``K`` in ROS 1, ``k`` in ROS 2."""
+    return np.asarray(message.k if hasattr(message, "k") else message.K).reshape(-1)
+
+
 def lens(kind: str, message: Any, path: Path) -> Lens:
-    """The lens that a CameraInfo (``K`` in ROS 1, ``k`` in ROS 2) states. Raises ValueError if it
+    """The lens that a CameraInfo states. Raises ValueError if it
     has none."""
-    matrix = np.asarray(getattr(message, "k", getattr(message, "K", None)), np.float64).reshape(-1)
+    matrix = camera_matrix(message).astype(np.float64)
     if matrix.shape != (9,) or not (matrix[0] > 0 and matrix[4] > 0 and np.isfinite(matrix).all()):
         raise ValueError(f"{path}: its CameraInfo has no focal lengths ({matrix.tolist()[:9]}).")
     size = (int(message.width), int(message.height))

@@ -7,10 +7,11 @@ import warnings
 import numpy as np
 import pytest
 
-from mitigate.agents.agent import Seeing, SideBySide, Trainable
-from mitigate.agents.concepts import CONCEPTS, THING_NAMES
-from mitigate.agents.frontier import FrontierAgent, planning, search
-from mitigate.agents.frontier.grid import CELL, Grid
+from mitigate.agents.agent import Seeing, Trainable
+from mitigate.agents.frontier import FrontierAgent
+from mitigate.agents.frontier.agent import LIKELY, named
+from mitigate.agents.frontier.grid import CELL, Grid, frontiers, object_cells, routes
+from mitigate.agents.text import CONCEPTS, THING_NAMES
 from mitigate.core.observation import LEFT, MAX_STEPS, RGB
 from mitigate.evaluation.episode_lists import warn_of_tasks
 from mitigate.worlds.apartments.tasks import load_episodes
@@ -49,7 +50,7 @@ def test_routes_go_around_what_is_occupied():
     grid.known[:] = True
     row, column = grid.cell(np.zeros(2))
     grid.occupied[row + 10, column - 20 : column + 5] = 3.0
-    ways = planning.routes(grid, np.zeros(2))
+    ways = routes(grid, np.zeros(2))
     goal = np.array([row + 20, column])
     path = ways.to(goal)
     assert tuple(path[0]) == (row, column) and tuple(path[-1]) == tuple(goal)
@@ -59,7 +60,7 @@ def test_routes_go_around_what_is_occupied():
 
 def test_a_frontier_lies_between_known_and_unknown():
     grid = looked(*[(wall(3.0), np.zeros(3))] * 3)
-    groups = planning.frontiers(grid)
+    groups = frontiers(grid)
     assert groups
     for group in groups:
         assert grid.known[group[:, 0], group[:, 1]].all()
@@ -73,23 +74,23 @@ def test_looks_from_two_sides_place_the_object():
     ahead = np.array([[0.02, 0.02], [0.95, 0.3], [0.02, 0.02], [0.02, 0.02]], np.float32)
     for _ in range(3):
         grid.add(wall(3.0), np.zeros(3), ahead, np.zeros(4))
-    spread = len(planning.object_cells(grid, 1.0))
+    spread = len(object_cells(grid, 1.0))
     side = np.array([-1.5, 1.5, 0.0])
     for _ in range(3):
         grid.add(wall(1.5), side, np.roll(ahead, 1, 0), np.zeros(4))
-    assert 0 < len(planning.object_cells(grid, 1.0)) < spread
+    assert 0 < len(object_cells(grid, 1.0)) < spread
 
 
 def test_the_thing_named_last_is_searched():
-    assert THING_NAMES[search.named("Find a washing machine.")] == "washing machine"
-    assert THING_NAMES[search.named("Go past the sofa and stop at the blue chairs!")] == "chair"
-    assert THING_NAMES[search.named("an armchair")] == "armchair"
-    assert search.named("walk to the piano") is None
+    assert THING_NAMES[named("Find a washing machine.")] == "washing machine"
+    assert THING_NAMES[named("Go past the sofa and stop at the blue chairs!")] == "chair"
+    assert THING_NAMES[named("an armchair")] == "armchair"
+    assert named("walk to the piano") is None
 
 
 def test_every_likely_thing_and_room_is_known():
-    assert set(search.LIKELY) <= set(CONCEPTS)
-    assert {name for names in search.LIKELY.values() for name in names} <= set(THING_NAMES)
+    assert set(LIKELY) <= set(CONCEPTS)
+    assert {name for names in LIKELY.values() for name in names} <= set(THING_NAMES)
 
 
 def test_it_finds_what_it_recognises():
@@ -156,7 +157,7 @@ def test_the_map_is_as_large_as_the_agent_can_walk():
 
 def test_side_by_side_every_episode_goes_as_it_does_alone():
     made, episodes = FrontierAgent(size=16).eval(), load_episodes("val_seen", "ogn")[:3]
-    assert isinstance(made, SideBySide)
+    assert made.together > 1
     worlds = [ApartmentsWorld(16, 2, 1) for _ in episodes]
     seen = [world.reset(episode) for world, episode in zip(worlds, episodes, strict=True)]
     memories = [made.begin(episode.instruction.text) for episode in episodes]

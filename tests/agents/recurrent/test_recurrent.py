@@ -10,8 +10,9 @@ import pytest
 import torch
 
 from mitigate.agents.agent import Seeing, Trainable
-from mitigate.agents.recurrent import RecurrentAgent, learning
+from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.agents.recurrent.policy import State
+from mitigate.agents.recurrent.rollout import INFLECTION
 from mitigate.core.observation import DEPTH, FORWARD, RGB, STOP
 from mitigate.core.seeding import generator, seed_everything
 from mitigate.corruptions import CLEAN, Corruption
@@ -115,7 +116,7 @@ def test_steps_at_which_the_expert_turns_count_more():
     changes = np.flatnonzero(np.diff(piece["answer"].numpy())) + 1
     heavy = np.flatnonzero(piece["weight"].numpy() > 1)
     assert np.array_equal(heavy, [0, *changes])
-    assert piece["weight"][0] == pytest.approx(learning.INFLECTION)
+    assert piece["weight"][0] == pytest.approx(INFLECTION)
 
 
 def test_with_rgb_alone_depth_does_not_matter(monkeypatch):

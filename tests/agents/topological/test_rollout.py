@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from functools import partial
 
 import numpy as np
@@ -9,12 +10,9 @@ import pytest
 import torch
 
 from mitigate.agents.text import Vocabulary, pad
-from mitigate.agents.topological.learning import collect
+from mitigate.agents.topological.perception import select
 from mitigate.agents.topological.rollout import STOP_BEST, LiveWalk, roll_out
-from mitigate.agents.topological.scene_poses import SPACING
-from mitigate.agents.topological.stored import Store
-from mitigate.agents.topological.stored_walk import StoredWalk
-from mitigate.agents.topological.waypoints import select
+from mitigate.agents.topological.stored import SPACING, ScenePoses, Store, StoredWalk
 from mitigate.core.observation import VIEWS
 from mitigate.corruptions import CLEAN
 from mitigate.worlds.apartments import simulator
@@ -116,7 +114,7 @@ def test_a_rollout_ends_with_its_episode(monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 12)
     worlds, episodes = [ApartmentsWorld(SIZE) for _ in range(3)], load_episodes("val_seen")[:3]
     rngs = [np.random.default_rng(n) for n in range(3)]
-    piece = collect(wanderer(), worlds, episodes, expert_share=0.5, rngs=rngs)
+    piece = wanderer().collect(worlds, episodes, expert_share=0.5, rngs=rngs)
     assert [world.measures()["steps"] for world in worlds] == [12, 12, 12]
     for trace in piece.traces:
         assert len(trace.views) == len(trace.steps) > 0
@@ -212,3 +210,17 @@ def test_a_world_without_an_expert_says_so():
     with pytest.raises(ValueError, match="Unguided has no expert"):
         world = Corrupted(Unguided(SIZE), CLEAN, 0)  # the message names the user's own world
         LiveWalk(world, load_episodes("val_seen")[0])
+
+
+def test_stored_folders_name_the_class_as_earlier_versions_did(tmp_path):
+    """tensordict writes the name of the class into the folder and looks it up when it loads."""
+    arrays = {
+        "xy": torch.rand(2, 2),
+        "views": torch.rand(2, VIEWS, 4).half(),
+        "waypoints": torch.rand(2, 6, 2),
+        "seen": torch.zeros(2, VIEWS, dtype=torch.int64),
+    }
+    ScenePoses(**arrays, batch_size=[2]).memmap(tmp_path, num_threads=0)
+    name = json.loads((tmp_path / "meta.json").read_text())["_type"]
+    assert name == "<class 'mitigate.agents.topological.stored_walk.ScenePoses'>"
+    assert torch.equal(ScenePoses.load_memmap(tmp_path).xy, arrays["xy"])

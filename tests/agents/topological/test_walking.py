@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mitigate.agents.controller import Controller
-from mitigate.agents.topological.waypoints import (
+from mitigate.agents.topological.perception import (
     ANGLES,
     COUNT,
     LONGEST,

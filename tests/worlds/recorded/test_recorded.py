@@ -19,11 +19,10 @@ from rosbags.typesys import Stores, get_typestore
 from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, STOP
 from mitigate.replay.export_drive import TOPICS, messages, write_bag, write_frames
 from mitigate.worlds.recorded import RecordedWorld, Step, load, open_recording
+from mitigate.worlds.recorded.bags import IMAGES, INFO, Topics, chosen
 from mitigate.worlds.recorded.messages import stamp
-from mitigate.worlds.recorded.recording import square
+from mitigate.worlds.recorded.recording import NONE, driven, square
 from mitigate.worlds.recorded.source import Lens, placed
-from mitigate.worlds.recorded.steps import NONE, driven
-from mitigate.worlds.recorded.topics import IMAGES, INFO, Topics, chosen
 
 SIZE = 32
 

@@ -1,0 +1,136 @@
+"""Training walks of the recurrent agent: what was seen and done, and the batch made of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mitigate.agents import observation as checked
+from mitigate.agents.recurrent.policy import Odometer
+from mitigate.core.observation import DEPTH, POSE, RGB, STOP, Observation
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.world import World, as_world, expert_of
+
+INFLECTION = 3.2  # weight of a step at which the expert changes its action (VLN-CE)
+_FARTHEST = 25.0  # metres; the distance loss asks for no more
+Piece = dict[str, Any]
+
+
+@dataclass
+class WalkDecisions:
+    """All N steps of E walks: walk, time int64 [N] place each; moves [N, MOVES]; tokens [E, L];
+    target [N, 4]; weight [N]; metres [N] to the goal, NaN where unknown.
+
+    seen: what was seen, by name: features "views" and "clean_views" [N, F], or frames "rgb", ...,
+    "clean_rgb", ... [N, H, W, c]; and the world's labels.
+    """
+
+    walk: Tensor
+    time: Tensor
+    moves: Tensor
+    tokens: Tensor
+    target: Tensor
+    weight: Tensor
+    metres: Tensor
+    seen: dict[str, Tensor]
+    episode_ids: list[str]
+
+    def to(self, device: Any) -> WalkDecisions:
+        """Return the steps on ``device``."""
+        moved: dict[str, Any] = {
+            n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)
+        }
+        return replace(self, **moved, seen={n: v.to(device) for n, v in self.seen.items()})
+
+    def padded(self, flat: Tensor) -> Tensor:
+        """[N, ...] to [E, T, ...], zeros behind the end of a walk."""
+        size = (len(self.tokens), int(self.time.max()) + 1)
+        return flat.new_zeros(*size, *flat.shape[1:]).index_put((self.walk, self.time), flat)
+
+
+class TrainingWalk:
+    """One training walk: what was seen and done at each step, and the expert's answers."""
+
+    def __init__(self, world: World, episode: Episode, sensors: Sequence[str]) -> None:
+        self.world, self.episode, self.sensors = as_world(world), episode, sensors
+        self.observation: Observation = world.reset(episode)
+        self.expert, self.odometer = expert_of(world), Odometer()
+        self.steps: list[dict[str, Any]] = []
+        self.before = -1
+
+    def see(self) -> dict[str, np.ndarray]:
+        """The frames here, in arrays that the world may use again."""
+        return self._frames(self.observation)
+
+    def _frames(self, observation: Observation) -> dict[str, np.ndarray]:
+        return {n: checked.frame(observation, n, 1) for n in self.sensors}
+
+    def note(self, kept: dict[str, np.ndarray], clean: bool, frames: bool) -> None:
+        """Write a step down, with the expert's answer to it."""
+        action = int(self.expert.action())
+        seen = {n: np.array(f) for n, f in self.see().items()} if frames else {}
+        seen |= kept
+        if clean:
+            before = self._frames(self.observation.clean)
+            seen |= {f"clean_{n}": np.array(f) for n, f in before.items()}
+        truth: Mapping[str, np.ndarray] = self.world.truth()
+        labels = (*(labels_of(self.sensors) if frames else ()), "goal")
+        seen |= {name: np.array(truth[name]) for name in labels if name in truth}
+        weight = INFLECTION if action != self.before else 1.0
+        metres = self._metres()
+        self.steps.append(
+            {
+                "seen": seen,
+                "moves": self.odometer.moves(),
+                "answer": action,
+                "weight": weight,
+                "metres": metres,
+            }
+        )
+        self.before = action
+
+    def _metres(self) -> float:
+        if POSE not in self.observation:
+            return float("nan")
+        place = np.asarray(self.observation[POSE], np.float64)[:2]
+        return min(float(self.expert.distance(place)), _FARTHEST)
+
+    def go(self, chances: np.ndarray, expert_share: float, rng: np.random.Generator) -> None:
+        """Take the expert's step, or one of the agent's own."""
+        action = self.steps[-1]["answer"]
+        if rng.random() >= expert_share:
+            total = np.cumsum(chances)
+            own = int(min(np.searchsorted(total, rng.random() * total[-1]), len(total) - 1))
+            action = action if own == STOP else own
+        self.observation = self.world.step(action)
+        self.odometer.add(action)
+
+
+def labels_of(sensors: Sequence[str]) -> tuple[str, ...]:
+    """Labels of the world's truth that encoders of the sensors are taught by."""
+    return tuple(name for sensor, name in ((RGB, "concepts"), (DEPTH, "free")) if sensor in sensors)
+
+
+def piece_of(walks: Sequence[TrainingWalk]) -> Piece:
+    """Plain data, tensors and lists, of some walks."""
+    steps = [step for walk in walks for step in walk.steps]
+
+    def column(name: str) -> Tensor:
+        return torch.from_numpy(np.array([step[name] for step in steps], np.float32))
+
+    return {
+        "texts": [walk.episode.instruction.text for walk in walks],
+        "ids": [walk.episode.episode_id for walk in walks],
+        "lengths": [len(walk.steps) for walk in walks],
+        "answer": torch.tensor([step["answer"] for step in steps]),
+        **{name: column(name) for name in ("moves", "weight", "metres")},
+        "seen": {
+            name: torch.from_numpy(np.stack([step["seen"][name] for step in steps]))
+            for name in steps[0]["seen"]
+        },
+    }
