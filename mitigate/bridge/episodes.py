@@ -106,4 +106,5 @@ def _point(value: Any) -> bool:
 
 
 def _wrong(name: str, value: Any, wanted: str) -> ValueError:
-    return ValueError(f"{name} = {value!r:.80}: it must be {wanted}")
+    shown = name if name.isidentifier() and len(name) <= 60 else short(name)
+    return ValueError(f"{shown} = {value!r:.80}: it must be {wanted}")
