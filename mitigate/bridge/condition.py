@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption, Key
-
-if TYPE_CHECKING:
-    from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import NO_GUARDS, Guards
 
 
 @dataclass
@@ -18,8 +16,8 @@ class Condition:
     """What a command meets: the corruption, its seed, and how it is applied.
 
     repeat: number of this run of the same condition; part of the keys where it is not 0. missing:
-    metres that a hole reads. turn: where a growing yaw turns. restorer: goes over all frames
-    behind the corruption. observers: told of every episode
+    metres that a hole reads. turn: where a growing yaw turns. guards: change words and
+    frames behind the corruption. observers: told of every episode
     and frame, before its corruption (``recording.py``).
     """
 
@@ -30,7 +28,7 @@ class Condition:
     missing: float = 0.0
     turn: str = "left"
     keep: Callable[[list[str], int], list[int]] | None = None
-    restorer: Restorer | None = None
+    guards: Guards = NO_GUARDS
     observers: list[Any] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:

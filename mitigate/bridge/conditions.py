@@ -6,7 +6,6 @@ import json
 import shlex
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from omegaconf import DictConfig
 
@@ -20,9 +19,8 @@ from mitigate.bridge.subset import Subset
 from mitigate.bridge.words import Words
 from mitigate.corruptions import Corruption
 from mitigate.corruptions.language.text import is_english
-
-if TYPE_CHECKING:
-    from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import Guards
+from mitigate.guards.opening import open_guards
 
 
 def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list[Cell]:
@@ -37,7 +35,11 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
         cfg.severity,
         cfg.severity_depth,
     )
-    words, environment, restorer = _words(cfg, out), _environment(cfg), _restorer(cfg)
+    words = _words(cfg)
+    environment = _environment(cfg)
+    guards = open_guards(cfg.safeguard, cfg.restore, log=out / "safeguard.jsonl")
+    _check_guards(guards)
+    restored = guards.frames_hash()
     chosen = None if cfg.episodes is None else Subset(cfg.episodes, out)
     keep = None if chosen is None else chosen.keep
     wanted = [(found[0], n) for n in range(cfg.repeats)] + [(c, 0) for c in found[1:]]
@@ -47,7 +49,7 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
         own = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
         own += f"-again{repeat}" if repeat else ""
         condition = Condition(
-            corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep, restorer=restorer
+            corruption, cfg.seed, words, repeat, cfg.missing, cfg.turn, keep, guards=guards
         )
         recording = None if cfg.record is None else Path(cfg.record) / own
         if recording is not None:
@@ -60,9 +62,9 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
                 tuple(command),
                 out / "conditions" / own,
                 condition,
-                label_of(cfg, text, name, restorer, adapters),
+                label_of(cfg, text, name, restored, adapters),
                 cfg.rule,
-                settings_of(cfg, text, corruption, restorer, adapters),
+                settings_of(cfg, text, corruption, restored, adapters),
                 cfg.patience,
                 environment,
                 clean=made[0].folder if made else None,
@@ -74,24 +76,21 @@ def cells(cfg: DictConfig, command: Sequence[str], out: Path, name: str) -> list
     return made
 
 
-def _restorer(cfg: DictConfig) -> Restorer | None:
-    if cfg.restore is None:
-        return None  # without a wait for torch
-    from mitigate.guards.frames.restorer import restorer_of
+def _check_guards(guards: Guards) -> None:
+    """Raise ValueError for a guard that changes the agent, which runs in another process."""
+    if guards.adapts:
+        raise ValueError(
+            f"The guard {guards.label} adapts the agent itself, and the agent of another program "
+            "cannot be reached through the bridge: leave restore= out, or name a guard that "
+            "changes frames or instructions only."
+        )
 
-    return restorer_of(cfg.restore)
 
-
-def _words(cfg: DictConfig, out: Path) -> Words:
+def _words(cfg: DictConfig) -> Words:
     from mitigate.bridge.words import tokenizer_of
-    from mitigate.guards.text.guard import open_safeguard
 
-    guard = open_safeguard(cfg.safeguard, log=out / "safeguard.jsonl")
-    return Words(
-        None if cfg.tokenizer is None else tokenizer_of(cfg.tokenizer),
-        None if guard is None else lambda text: guard.canonicalise(text).text,
-        cfg.token_length,
-    )
+    tokenizer = None if cfg.tokenizer is None else tokenizer_of(cfg.tokenizer)
+    return Words(tokenizer, cfg.token_length)
 
 
 def _environment(cfg: DictConfig) -> dict[str, str]:

@@ -9,7 +9,7 @@ import os
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from omegaconf import DictConfig
 
@@ -17,9 +17,7 @@ from mitigate.bridge.recording import plain
 from mitigate.core.files import sha256
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
-
-if TYPE_CHECKING:
-    from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.opening import labels
 
 SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length")  # as they are
 LARGEST = 1 << 30  # bytes of a file of the command that is hashed; of a larger one its size counts
@@ -29,13 +27,13 @@ def settings_of(
     cfg: DictConfig,
     command: str,
     corruption: Corruption,
-    restorer: Restorer | None,
+    restored: str | None,
     adapters: str | None,
 ) -> dict[str, Any]:
     """What a condition's result depends on, by which a finished one is known again."""
     told = {name: cfg[name] for name in SETTINGS}
     told |= met(corruption)
-    told |= {"restore": None if restorer is None else restorer.hash, "adapters": adapters}
+    told |= {"restore": restored, "adapters": adapters}
     return {"command": command, **told, "safeguard": _guard(cfg), "watch": watched(cfg)}
 
 
@@ -71,13 +69,13 @@ def _watch(cfg: DictConfig) -> str | None:
 
 
 def label_of(
-    cfg: DictConfig, command: str, name: str, restorer: Restorer | None, adapters: str | None
+    cfg: DictConfig, command: str, name: str, restored: str | None, adapters: str | None
 ) -> dict[str, Any]:
     """What the rows say of the agent: with a restorer, a safeguard, adapters or what is watched it
     is another one, by their hashes."""
     sha = _digest(command)
     guard = None if cfg.safeguard == "none" else _guard(cfg)
-    for part in (restorer and restorer.hash, guard, adapters, _watch(cfg)):
+    for part in (restored, guard, adapters, _watch(cfg)):
         sha = sha if part is None else _digest(f"{sha} {part}")
     return {"agent": sha, "name": _column(cfg, name), "split": cfg.split, "seed": cfg.seed}
 
@@ -136,15 +134,8 @@ def _named(command: Sequence[str]) -> Iterator[Path]:
 
 
 def _column(cfg: DictConfig, name: str) -> str:
-    """The column of the table: the command's name, and what stands in front of the agent."""
-    from mitigate.guards.frames.choices import label as restoring
-
-    parts = [name]
-    if cfg.safeguard != "none":
-        from mitigate.guards.text.choices import label
-
-        parts.append(label(cfg.safeguard))
-    parts += [restoring(cfg.restore)] if cfg.restore is not None else []
+    """The column of the table: the command's name, and the labels of guards."""
+    parts = [name, *labels(cfg.safeguard, cfg.restore)]
     parts += ["adapters"] if cfg.adapters is not None else []
     return "+".join(parts)
 

@@ -1,14 +1,15 @@
-"""What an agent is told: its instruction and tokens as a corruption and a safeguard leave them."""
+"""What an agent is told: its instruction and tokens as a corruption and guards leave them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from mitigate.corruptions import Corruption, Key, corrupt_instruction
 from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
+from mitigate.guards.guard import NO_GUARDS, EpisodeStart, Guards
 from mitigate.worlds.episodes import read_extras
 
 NO_TOKENIZER = (
@@ -24,15 +25,19 @@ class Words:
     """Changes the words of episodes.
 
     tokenizer: for agents that read tokens; None: an agent with tokens is refused where its words
-    change, since it would read the old ones. repair: a safeguard's answer to a text; None: none.
-    length: of padded tokens; None: as the episode's own.
+    change, since it would read the old ones. length: of padded tokens; None: as the episode's own.
     """
 
     tokenizer: Tokenizer | None = None
-    repair: Callable[[str], str] | None = None
     length: int | None = None
 
-    def heard(self, told: Mapping[str, Any], corruption: Corruption, key: Key) -> dict[str, Any]:
+    def heard(
+        self,
+        told: Mapping[str, Any],
+        corruption: Corruption,
+        key: Key,
+        guards: Guards = NO_GUARDS,
+    ) -> dict[str, Any]:
         """Return ``text`` and ``tokens`` of an episode as the agent is to have them; empty where
         they stay as they are. Raises ValueError where an agent would not hear the change.
         """
@@ -55,8 +60,7 @@ class Words:
         made = text
         for part in spoken if is_english(told.get("language")) else ():
             made = corrupt_instruction(made, part.name, part.severity, key, mask_token=self._mask())
-        if self.repair is not None:
-            made = self.repair(made)
+        made = guards.begin(EpisodeStart(key, made))
         if made == text:
             return {}
         return {"text": made, "tokens": self._tokens(made, tokens)}

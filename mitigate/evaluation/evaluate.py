@@ -129,22 +129,20 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     from mitigate.core import build
     from mitigate.evaluation import making, walked
     from mitigate.evaluation.evaluator import evaluate
-    from mitigate.guards.frames.restorer import restorer_of
+    from mitigate.guards.opening import open_guards
     from mitigate.guards.text import choices
-    from mitigate.guards.text.guard import open_safeguard
 
     agent = load(cfg.agent, cfg.checkpoint, cfg.seed, overrides)
     check_walks(agent)
     world, name = build.maker(cfg.env.world), _column(cfg, overrides)
     first, made_by = making.first(world)
-    restorer = restorer_of(cfg.restore, first.sensors)
     check_sensors(met, first.sensors, cfg.env.name)
     choices.check(cfg.safeguard)
     out = Path(cfg.out or default_folder(cfg, name))
+    guards = open_guards(cfg.safeguard, cfg.restore, first.sensors, log=out / DECISIONS)
     with FolderLock(out) as lock:
         walked.keep(out, first, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
         lock.expect(out / ROWS, *walked.notes(out, cfg.split))
-        safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {cfg.checkpoint or name} on {cfg.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
@@ -163,8 +161,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             seed=cfg.seed,
             workers=cfg.workers,
             launcher=where,
-            safeguard=safeguard,
-            restorer=restorer,
+            guards=guards,
             version=cfg.version,
         )
         write_table([out / ROWS], out, rows)
@@ -172,20 +169,12 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 
 
 def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
-    """The table's column: the weights, what options change of the agent, and what stands before
-    it."""
+    """The table's column: the weights, what options change of the agent, and its guards."""
+    from mitigate.guards.opening import labels
+
     usual = name_of(cfg.checkpoint or cfg.agent._target_.rpartition(".")[2])
     own = [cfg.name or usual, *changed(overrides)]
-    return "+".join([*own, *fronts(cfg.safeguard, cfg.restore)])
-
-
-def fronts(safeguard: str | None, restore: str | None) -> list[str]:
-    """Return the short names of what stands in front of an agent, as parts of a column's name."""
-    from mitigate.guards.frames import choices as restorers
-    from mitigate.guards.text import choices as safeguards
-
-    found = [safeguards.label(safeguard or "none"), restorers.label(restore or "none")]
-    return [name for name in found if name != "none"]
+    return "+".join([*own, *labels(cfg.safeguard, cfg.restore)])
 
 
 def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:

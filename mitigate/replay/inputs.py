@@ -9,6 +9,8 @@ from typing import Any
 
 from omegaconf import DictConfig
 
+from mitigate.guards.guard import NO_GUARDS, Guards
+
 
 def load_agents(weights: Sequence[str]) -> dict[str, Any]:
     """The agents of folders of weights, by names that differ."""
@@ -24,10 +26,10 @@ def load_agents(weights: Sequence[str]) -> dict[str, Any]:
 
 
 def load_recordings(
-    cfg: DictConfig, paths: Sequence[str], views: set[int], restorer: Any = None
+    cfg: DictConfig, paths: Sequence[str], views: set[int], guards: Guards = NO_GUARDS
 ) -> dict[int, list[Any]]:
     """Every drive, for agents with a panorama (12) and for those with one camera (1). Raises
-    ValueError for a drive of which ``restorer`` restores nothing, before any frame is read."""
+    ValueError for a drive of which ``guards`` change no frame, before any frame is read."""
     from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
 
     topics, step = Topics(**cfg.topics), Step(**cfg.step)
@@ -35,8 +37,8 @@ def load_recordings(
     how["cameras"] = None if cfg.cameras is None else list(cfg.cameras)
     found: dict[int, list[Any]] = {count: [] for count in views}
     sources = [source for path in paths for source in open_recording(path, **how)]
-    for source, count in product(sources if restorer is not None else [], views):
-        restorer.check_shown(kinds(source, count), source.name)
+    for source, count in product(sources if guards else [], views):
+        guards.check_shown(kinds(source, count), source.name)
     for source, count in product(sources, views):
         drive = load(source, views=count, size=cfg.size, step=step)
         words = cfg.instruction or drive.instruction

@@ -26,6 +26,7 @@ from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import short
 from mitigate.core.options import paths_and_overrides
+from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.replay.inputs import load_agents, load_recordings
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
@@ -97,23 +98,23 @@ def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
     if not others or cfg.severity == 0:
         raise ValueError("Clean walks alone have nothing to compare: name a corruption.")
     met = conditions(["clean", *others], cfg.severity, cfg.severity_depth)
-    from mitigate.guards.frames.restorer import restorer_of
+    from mitigate.guards.opening import open_guards
 
-    restorer = restorer_of(cfg.restore)
+    guards = open_guards(None, cfg.restore)
     agents = load_agents(list(cfg.agents))
     out = Path(cfg.out or f"{cfg.runs}/replay/{_name(paths)}-s{cfg.severity:g}")
     settings = _settings(cfg, paths, agents)
-    settings["restorer"] = None if restorer is None else restorer.hash
+    settings["restorer"] = guards.frames_hash()
     _check_earlier(out, settings)
     views = {agent.views for agent in agents.values()}
-    recordings = load_recordings(cfg, paths, views, restorer)
+    recordings = load_recordings(cfg, paths, views, guards)
     with FolderLock(out):
         for name, corruption in product(agents, met):  # of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
         with atomic_text(out / SETTINGS) as file:
             json.dump(settings, file, indent=1)
         return replay(
-            agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, restorer=restorer
+            agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, guards=guards
         )
 
 
@@ -161,10 +162,10 @@ def replay(
     *,
     severity: float,
     seed: int,
-    restorer: Any = None,
+    guards: Guards = NO_GUARDS,
 ) -> Path:
     """Walk ``agents`` (by name) along ``recordings`` (by their number of views) under the
-    corruptions ``met``, clean first, behind ``restorer`` if there is one; write the report into
+    corruptions ``met``, clean first, behind ``guards`` if there are any; write the report into
     ``out`` and return it."""
     from mitigate.core.progress import Progress
     from mitigate.replay import changes, report
@@ -188,7 +189,7 @@ def replay(
                 for drive in drives:
                     clean = answers["clean"].get(drive.name)
                     here[drive.name] = walk(
-                        agent, drive, corruption, seed, clean=clean, restorer=restorer
+                        agent, drive, corruption, seed, clean=clean, guards=guards
                     )
                     told = {"agent": name, "condition": corruption.name}
                     told |= {"severity": corruption.severity, "seed": seed}
@@ -197,10 +198,8 @@ def replay(
                     progress.advance(note=f"{name}, {corruption.name}")
             known = answers["clean"]
             found[name] = {n: changes.compare(drives, known, a) for n, a in answers.items()}
-            pictures += _picture(
-                name, agent, drives, met, found[name], answers, seed, out, restorer
-            )
-    text = report.table(found, severity, sum(steps), len(steps), restorer)
+            pictures += _picture(name, agent, drives, met, found[name], answers, seed, out, guards)
+    text = report.table(found, severity, sum(steps), len(steps), guards)
     with atomic_text(out / TABLE) as table:
         table.write(text)
     print(text.partition("\nFalse stops")[0])
@@ -236,7 +235,7 @@ def _picture(
     answers: Mapping[str, Mapping[str, Any]],
     seed: int,
     out: Path,
-    restorer: Any,
+    guards: Guards,
 ) -> list[Path]:
     """A picture of decisions that the worst corruption of frames changed, if it changed any."""
     from mitigate.replay import report
@@ -255,7 +254,7 @@ def _picture(
     if not steps:
         return []
     clean = answers["clean"][drive.name]
-    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, restorer=restorer)
+    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, guards=guards)
     path = _picture_file(out, name, worst.name)
     return [report.picture(drive, worst, clean, again, path)]
 

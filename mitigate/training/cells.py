@@ -243,6 +243,6 @@ def _check_fronts(node: DictConfig) -> None:
     """Raise ValueError or FileNotFoundError for a safeguard or a restorer that there is not."""
     choices.check(node.safeguard)
     if node.restore is not None:
-        from mitigate.guards.frames.restorer import restorer_of
+        from mitigate.guards.opening import open_restorer
 
-        restorer_of(node.restore, build.maker(node.env.world)().sensors)
+        open_restorer(node.restore, build.maker(node.env.world)().sensors)

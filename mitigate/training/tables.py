@@ -191,9 +191,8 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     has no cell."""
     from mitigate.agents import loading
     from mitigate.evaluation import rows
-    from mitigate.evaluation.trajectories import Front, write_pictures
-    from mitigate.guards.frames.restorer import restorer_of
-    from mitigate.guards.text.guard import open_safeguard
+    from mitigate.evaluation.trajectories import write_pictures
+    from mitigate.guards.opening import open_guards
 
     held = {cell.column: cell for cell in cells(cfg) if cell.seed == cfg.seeds[0]}
     missing = [column for column in cfg.walks if column not in held]
@@ -211,8 +210,8 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
     }
     env = next(iter(nodes.values())).env
     world, chosen = build.maker(env.world)(), episodes(env, cfg.split, cfg.episodes)
-    fronts = {
-        name: Front(open_safeguard(node.safeguard), restorer_of(node.restore, world.sensors))
+    guards = {
+        name: open_guards(node.safeguard, node.restore, world.sensors)
         for name, node in nodes.items()
     }
     drawn = {episode.episode_id for episode in chosen}
@@ -224,7 +223,7 @@ def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
         and row["episode_id"] in drawn
     ]
     folder, seed = out / "pictures", cfg.seeds[0]
-    return write_pictures(agents, world, chosen, found, folder, seed=seed, fronts=fronts)
+    return write_pictures(agents, world, chosen, found, folder, seed=seed, guards=guards)
 
 
 def costs(out: Path) -> dict[str, dict[str, float]]:

@@ -30,14 +30,13 @@ from mitigate.evaluation import evaluate as evaluation
 from mitigate.evaluation import making, walked
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
-from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate, front_of
+from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.known import Known
 from mitigate.evaluation.leaderboard.checks import check_texts
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
 from mitigate.evaluation.rows import ROWS
-from mitigate.guards.frames.restorer import restorer_of
-from mitigate.guards.text.guard import open_safeguard
+from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.world import Corrupted, World
 
@@ -81,7 +80,8 @@ def benchmark(
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
             the corruptions. workers: processes; None: one a core if there is work. More than one
             read the script again, which keeps its call under ``if __name__ == "__main__":``.
-        safeguard, restore: what stands in front of the agent: "rules", "checkpoints/restorer".
+        safeguard, restore: guards in front of the agent: "rules", "checkpoints/restorer",
+            "module:callable".
         options: of its kind and the world: "agent=recurrent", "env.views=1", "--config-dir=mine".
         world, listed: makes a world of your own, and its episodes (or their file), in place of
             those of ``options``; a world of another class than theirs needs both.
@@ -91,20 +91,22 @@ def benchmark(
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
     told = {"training_data": training_data, "link": link}
-    agent, name = _agent(agent, name, cfg, seed, evaluation.fronts(safeguard, restore))
+    agent, name = _agent(agent, name, cfg, seed, labels(safeguard, restore))
     check_texts(name=name, **told)
     made = world or maker(cfg.env.world)
     first, made_by = _first_world(made, met, agent)
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    front = _front(safeguard, restore, first)
-    known = Known(agent, first.sensors, front_of(**front), version).check(file, name)
+    guards = open_guards(safeguard, restore, first.sensors)
+    known = Known(agent, first.sensors, guards.fingerprint(), version).check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
     with known:
         _tell(agent, made, chosen, met, workers)
         with FolderLock(file.parent):
             walked.keep(file.parent, first, made_by, split, chosen)
-            rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
+            rows = evaluate(
+                agent, made, chosen, met, out=file, workers=workers, guards=guards, **label
+            )
     shown = sensors_of(first.sensors, as_agent(agent).sensors)
     return entry_of(rows, name, severity=severity, sensors=shown, file=_relative(file), **told)
 
@@ -152,23 +154,15 @@ def _conditions(
 
 
 def _agent(
-    agent: Any, name: str | None, cfg: Any, seed: int, fronts: Sequence[str]
+    agent: Any, name: str | None, cfg: Any, seed: int, guards: Sequence[str]
 ) -> tuple[Any, str]:
-    """Return the agent itself, loaded if ``agent`` is a path, and its heading, with ``fronts``."""
+    """Return the agent, loaded if it is a path, and its heading with the labels ``guards``."""
     usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
         usual = evaluation.name_of(str(agent))
         agent = evaluation.load(cfg.agent, str(agent), seed)
     evaluation.check_walks(agent)
-    return agent, "+".join([name or usual, *fronts])
-
-
-def _front(safeguard: str | None, restore: str | None, world: World) -> dict[str, Any]:
-    """Return what stands in front of the agent, as ``evaluate`` takes it."""
-    return {
-        "safeguard": open_safeguard(safeguard or "none"),
-        "restorer": restorer_of(restore, world.sensors),
-    }
+    return agent, "+".join([name or usual, *guards])
 
 
 def _plain(name: str) -> str:
