@@ -50,7 +50,9 @@ else:
     raise AssertionError("weights without mitigate-weights")
 END
 "${pip[@]}" "$work"/wheels/mitigate_weights-*.whl
-mitigate train recipe=da_per_episode debug=smoke trainer.steps=2 workers=0 folder=run evaluation.enabled=false
+mitigate train recipe=da_per_episode debug=smoke trainer.steps=2 workers=0 rollouts=2 \
+  stages.perception_rgb.recipe.panoramas=2 stages.perception_depth.recipe.panoramas=2 \
+  evaluation.enabled=false folder=run
 mitigate evaluate checkpoint=run/agent episodes=2 'conditions=[clean]' workers=1 out=rows
 mitigate export run mine --out hardened
 rm hardened/mine/program.pt2

@@ -353,6 +353,7 @@ class Dark(ApartmentsWorld):
         del self.sensors["rgb"]
 
 
+@pytest.mark.slow
 def test_benchmark_runs_in_a_script_as_the_page_has_it(tmp_path):
     """Without a guard around the call, of an agent that the script defines, or that is typed in."""
     script = (
