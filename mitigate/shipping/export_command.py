@@ -32,7 +32,7 @@ def main() -> None:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("run", type=Path, help="a finished run folder, such as runs/...")
+    parser.add_argument("run", type=Path, nargs="?", help="a finished run folder, such as runs/...")
     parser.add_argument("name", nargs="?", help="name of the folder to write")
     parser.add_argument(
         "overrides",
@@ -55,8 +55,11 @@ def main() -> None:
         "--programs", action="store_true", help="write program.pt2 of the hardened folder RUN"
     )
     given = vars(parser.parse_intermixed_args())
-    if given["programs"] != (given["name"] is None):
-        parser.error("give a run and a name, or a hardened folder and --programs.")
+    required = ("run",) if given["programs"] else ("run", "name")
+    if missing := [name for name in required if given[name] is None]:
+        parser.error(f"the following arguments are required: {', '.join(missing)}")
+    if given["programs"] and given["name"] is not None:
+        parser.error("--programs takes one hardened folder and no name.")
     from mitigate.agents import hardened
     from mitigate.shipping.export import add_programs, export
 
