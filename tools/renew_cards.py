@@ -34,6 +34,8 @@ def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
         page = draft / hardened.README
         page.write_text(readme(card), encoding="utf-8")
         card["files"][hardened.README] = sha256(page)
+        if not (draft / hardened.PROGRAM).exists():
+            card["files"].pop(hardened.PROGRAM, None)
         card["sha256"] = hardened.card_sha(card)
         text = json.dumps(card, indent=2, allow_nan=False) + "\n"
         (draft / hardened.CARD).write_text(text, encoding="utf-8")

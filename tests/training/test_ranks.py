@@ -82,6 +82,7 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
     )
 
 
+@pytest.mark.slow
 def test_two_ranks_end_with_the_weights_of_one_and_one_of_them_speaks(tmp_path, monkeypatch):
     monkeypatch.setattr("mitigate.training.trainer.choose", lambda *_: "fp32")
     done = torchrun(tmp_path, 2)
