@@ -1,8 +1,8 @@
-"""Write the README of hardened folders anew from their cards: python tools/renew_cards.py DIR...
+"""Write the README of hardened folders again from their cards: python tools/renew_cards.py DIR...
 
-For folders that an older version exported. Each is checked first; the new one is made aside and
-renamed into place, with the README's new sum in the card. Nothing else in it changes, but that
-``--rows FILE...`` adds to a card which agent those rows are of, where they are of its weights.
+For folders that an older version exported. Each folder is checked first; the new one replaces it
+by a rename. The card gets the new sum of the README and loses that of a missing ``program.pt2``.
+``--rows FILE...`` adds the agent of those rows to the card, if they are of its weights.
 """
 
 from __future__ import annotations
