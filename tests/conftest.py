@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from multiprocessing import forkserver
 
 import pytest
 
+from mitigate.cli import COMMANDS
 from mitigate.core.workers import context
 from mitigate.training.workers import PRELOAD
+
+for command in ("train", "evaluate", "table1", "table2", "sweep", "run", "replay", "export_drive"):
+    import_module(COMMANDS[command].module)  # registers the types of its options
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks

@@ -20,7 +20,7 @@ from mitigate.agents.text import SPECIAL, WORDS
 from mitigate.core import checkpoint, conf
 from mitigate.core.files import atomic_text
 from mitigate.evaluation.evaluate import load
-from mitigate.training.train import written
+from mitigate.training.plan import agent_config
 
 LIKE = {  # words of much the same use, where the first edition of the texts had some
     "after": "then next", "an": "a", "bear": "turn", "beside": "near by", "beyond": "past",
@@ -60,7 +60,7 @@ def main() -> None:
     new.load_state_dict({name: state[name] for name in wanted})
     file = checkpoint.save_weights(new, folder, half=True)
     with atomic_text(folder / "config.yaml") as text:
-        text.write(OmegaConf.to_yaml({"agent": written(node, new)}))
+        text.write(OmegaConf.to_yaml({"agent": agent_config(node, new)}))
     print(f"wrote {file}: {len(WORDS)} words, {len({*WORDS} - {*known})} of them new")
 
 

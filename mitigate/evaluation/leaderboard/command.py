@@ -20,6 +20,7 @@ from omegaconf import DictConfig
 from mitigate.core import conf
 from mitigate.core.build import located, maker
 from mitigate.core.files import find
+from mitigate.evaluation import config  # noqa: F401 - registers the options
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
 from mitigate.evaluation.leaderboard.from_rows import entry_of, left_out, sensors_of
