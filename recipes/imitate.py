@@ -98,13 +98,19 @@ def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, flo
     if not isinstance(given or {}, Mapping):
         raise ValueError(f"recipe.losses={given} must be weights by name, as {{distance: 0.3}}.")
     check_weights(**{f"losses.{name}": value for name, value in (given or {}).items()})
-    return {**getattr(agent, "loss_weights", {}), **(given or {})}
+    return {**_usual_weights(agent), **(given or {})}
+
+
+def _usual_weights(agent: Any) -> Mapping[str, float]:
+    """Return the agent's own weights of its auxiliary losses; it need not name any."""
+    weights: Mapping[str, float] = getattr(agent, "loss_weights", {})
+    return weights
 
 
 def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
     """Raise ValueError for weights of a loss that ``agent`` neither returned in ``out`` nor names
     itself."""
-    known = [*out.losses, *(n for n in getattr(agent, "loss_weights", {}) if n not in out.losses)]
+    known = [*out.losses, *(n for n in _usual_weights(agent) if n not in out.losses)]
     for name in weights:
         if name not in known:
             raise ValueError(

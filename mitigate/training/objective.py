@@ -21,7 +21,7 @@ from mitigate.core.build import arguments_of, located
 from mitigate.core.names import unknown
 from mitigate.core.precision import computing
 from mitigate.training.config import in_range, number_text
-from mitigate.training.parts import hold_statistics
+from mitigate.training.parts import hold_statistics, lacking
 
 if TYPE_CHECKING:
     from typing_extensions import Self
@@ -60,8 +60,8 @@ class Objective(nn.Module):
 
         The plan of a run asks before the first stage begins.
         """
-        lacking = [name for name in cls.needs if not hasattr(agent, name)]
-        return f"it has no {', '.join(lacking)}. {cls.otherwise}" if lacking else ""
+        missing = lacking(agent, cls.needs)
+        return f"it has no {', '.join(missing)}. {cls.otherwise}" if missing else ""
 
     def train(self, mode: bool = True) -> Self:
         """As a module's; frozen normalisations keep their statistics (``hold_statistics``)."""

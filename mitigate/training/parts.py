@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from torch import nn
@@ -25,9 +25,19 @@ OWN = "Choose an agent that has these (docs/agents.md), or give it these (docs/b
 START = "start"  # as a teacher: the agent as it is when the stage begins
 
 
+def lacking(agent: Any, names: Iterable[str]) -> list[str]:
+    """Return which of the attributes ``names`` an agent of any class lacks."""
+    return [name for name in names if not hasattr(agent, name)]
+
+
+def encoders_of(agent: Any) -> Mapping[str, Sequence[str]]:
+    """Return the names of the parts that read each sensor; agents need not name any."""
+    return getattr(agent, "encoders", {}) or {}
+
+
 def policy_parts(agent: Any) -> list[str]:
     """The names of an agent's parts that are not its encoders (``agents/agent.py``: Seeing)."""
-    encoders = {name for names in getattr(agent, "encoders", {}).values() for name in names}
+    encoders = {name for names in encoders_of(agent).values() for name in names}
     return [name for name in agent.parts() if name not in encoders]
 
 
@@ -40,10 +50,10 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     for an agent that is not trainable.
     """
     if not isinstance(agent, Trainable):
-        lacking = [name for name in TRAINABLE if not hasattr(agent, name)]
         raise ValueError(
             f"{type(agent).__name__} cannot be trained on episodes: it has no "
-            f"{', '.join(lacking)} (mitigate/agents/agent.py, docs/bring-your-own.md)."
+            f"{', '.join(lacking(agent, TRAINABLE))} (mitigate/agents/agent.py, "
+            "docs/bring-your-own.md)."
         )
     own = agent.parts()
     parts = policy_parts(agent) if parts == POLICY else tuple(own if parts is None else parts)

@@ -39,7 +39,7 @@ from mitigate.evaluation.evaluate import load
 from mitigate.training import states
 from mitigate.training.config import StageConfig, TrainConfig, check_values
 from mitigate.training.objective import Objective, ObjectiveSpec
-from mitigate.training.parts import POLICY, SEEING, policy_parts
+from mitigate.training.parts import POLICY, SEEING, encoders_of, lacking, policy_parts
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import MOST
 from mitigate.worlds.world import Placeable
@@ -231,10 +231,10 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
     """
     sensor = recipe.get("modality")
     kind = type(agent).__name__
-    encoders = getattr(agent, "encoders", None)  # optional: only agents that learn on views
+    encoders = encoders_of(agent)
     if sensor and encoders and sensor not in encoders:
         return f"{kind} has no {sensor} encoder"
-    if recipe.get("variants") and not hasattr(agent, "store"):
+    if recipe.get("variants") and lacking(agent, ["store"]):
         return f"{kind} stores no features"
     if recipe.get("train_parts") == POLICY and encoders and not policy_parts(agent):
         return f"nothing but encoders is learned in {kind}"
@@ -252,8 +252,8 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
     if all(_misfit(kind, agent) for kind in others):
         return
     for name in views:
-        lacking = [part for part in SEEING if not hasattr(agent, part)]
-        cause = f"{type(agent).__name__} has no {', '.join(lacking)}" if lacking else ""
+        missing = lacking(agent, SEEING)
+        cause = f"{type(agent).__name__} has no {', '.join(missing)}" if missing else ""
         if not cause:
             world = maker(config.active_stages[name].recipe["world"])()
             if not isinstance(world, Placeable):
@@ -293,17 +293,17 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
         ValueError: if a schedule draws no others.
     """
     sensors = getattr(agent, "sensors", (RGB, DEPTH))  # optional: without it an agent may read all
-    lacking = [sensor for sensor in (RGB, DEPTH) if sensor not in sensors]
-    cause = f"{type(agent).__name__} reads no {' or '.join(lacking)}"
+    unread = [sensor for sensor in (RGB, DEPTH) if sensor not in sensors]
+    cause = f"{type(agent).__name__} reads no {' or '.join(unread)}"
     dropped: dict[str, None] = {}  # in the schedules' order
-    for name, stage in config.active_stages.items() if lacking else ():
+    for name, stage in config.active_stages.items() if unread else ():
         node = stage.recipe.get("schedule")
         if not isinstance(node, dict):
             continue
         schedule = build(node)
         if not isinstance(schedule, Schedule) or schedule.mode == "clean":
             continue
-        kept = [n for n in schedule.names if modality(n) not in lacking]
+        kept = [n for n in schedule.names if modality(n) not in unread]
         if not kept:
             raise ValueError(
                 f"{cause}, and the schedule of the stage {name} draws only "
@@ -369,7 +369,7 @@ def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ra
         ValueError: for a world that shows another number of views, for a folder with another run,
             and for more ``ranks`` than a step has pieces.
     """
-    if hasattr(agent, "views") or hasattr(agent, "sensors"):  # both are optional
+    if len(lacking(agent, ["views", "sensors"])) < 2:  # each is optional
         check_fits(agent, maker(config.env.world)().sensors, config.env.name)
     check_folder(config, stages)
     check_stages(config.name, agent, stages, ranks)

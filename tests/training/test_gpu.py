@@ -7,7 +7,6 @@ from functools import partial
 
 import pytest
 import torch
-from tests.safeguard.conftest import write_tiny_model
 
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
@@ -17,6 +16,7 @@ from mitigate.evaluation.evaluator import evaluate
 from mitigate.training import train
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.guards.text.conftest import write_tiny_model
 
 pytestmark = [
     pytest.mark.gpu,

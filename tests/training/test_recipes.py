@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 import torch
 from omegaconf import OmegaConf
-from tests.safeguard.conftest import write_tiny_model
 
 from mitigate.agents.loading import LORA, carried
 from mitigate.agents.topological import scene_poses
@@ -14,6 +13,7 @@ from mitigate.core.build import build
 from mitigate.core.checkpoint import load_tensors
 from mitigate.training import states, train
 from mitigate.worlds.apartments import simulator
+from tests.guards.text.conftest import write_tiny_model
 
 TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
 OTHERS = (  # kinds of agent from shipped weights, each through a kind of recipe

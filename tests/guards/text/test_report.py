@@ -6,7 +6,6 @@ import json
 
 import pytest
 import torch
-from tests.safeguard.conftest import LORA
 
 from mitigate.core import conf
 from mitigate.core.files import ROOT
@@ -18,6 +17,7 @@ from mitigate.guards.text.language_models.model import LanguageModel
 from mitigate.training.config import read
 from mitigate.training.reports import safeguard as report
 from mitigate.worlds.apartments.world import ApartmentsWorld
+from tests.guards.text.conftest import LORA
 
 TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Stop by the piano."]
 
