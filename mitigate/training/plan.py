@@ -236,7 +236,7 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
     encoders = as_agent(agent).encoders
     if sensor and encoders and sensor not in encoders:
         return f"{kind} has no {sensor} encoder"
-    if recipe.get("variants") and not hasattr(agent, "store"):
+    if recipe.get("variants") and lacking(agent, ["store"]):
         return f"{kind} stores no features"
     if recipe.get("train_parts") == POLICY and encoders and not policy_parts(agent):
         return f"nothing but encoders is learned in {kind}"
