@@ -10,7 +10,7 @@ RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --ma
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install test-faults train evaluate sweep table report table1 table2 export test lint bench doctor clean
+.PHONY: help install test-faults train evaluate sweep table report table1 table2 export test test-all wheels lint bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /\1|/' \
@@ -59,8 +59,15 @@ export: $(VENV)/.stamp ## write a run's agent to checkpoints/hardened: RUN=runs/
 	$(BIN)/python -m mitigate.export $(RUN) $(NAME) $(ARGS)
 
 # bytecode is kept even where the environment says otherwise: each process of the tests reads the same modules
-test: $(VENV)/.stamp ## run the tests: ARGS="-k trainer"
-	PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist loadgroup $(ARGS)
+PYTEST = PYTHONDONTWRITEBYTECODE= OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 3 --dist loadgroup
+test: $(VENV)/.stamp ## run the tests but the slow ones: ARGS="-k trainer"
+	$(PYTEST) -m "not slow" $(ARGS)
+
+test-all: $(VENV)/.stamp ## run all tests; the slow ones alone: ARGS="-m slow"
+	$(PYTEST) $(ARGS)
+
+wheels: $(VENV)/.stamp ## build both wheels and use them in an empty folder
+	PYTHON=$(abspath $(BIN))/python tools/wheels.sh $(ARGS)
 
 test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
 	$(BIN)/python -m tools.faults $(ARGS)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from mitigate.agents.hardened import load_hardened
     from mitigate.agents.loading import load
-    from mitigate.evaluation.leaderboard.benchmark import benchmark
+    from mitigate.evaluation.benchmark import benchmark
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 
 # OpenMP reads this when torch is imported. By default a thread that waits for another one spins: as
@@ -24,7 +24,7 @@ __path__.append(os.path.join(os.path.dirname(__file__), "commands"))
 __all__ = ["LeaderboardEntry", "benchmark", "load", "load_hardened"]
 _HOMES = {
     "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
-    "benchmark": "mitigate.evaluation.leaderboard.benchmark",
+    "benchmark": "mitigate.evaluation.benchmark",
     "load": "mitigate.agents.loading",
     "load_hardened": "mitigate.agents.hardened",
 }

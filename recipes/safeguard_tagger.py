@@ -21,8 +21,7 @@ from mitigate.guards.text.learning.lessons import draw_lesson
 from mitigate.guards.text.metrics import token_f1
 from mitigate.guards.text.reader import Reader
 from mitigate.guards.text.tagger import Encoded, Tagger
-from mitigate.training import limits
-from mitigate.training.recipe import Recipe
+from mitigate.training.objective import Objective, check_weights
 from mitigate.training.reports.safeguard import voices
 
 IGNORED = -100
@@ -30,7 +29,7 @@ NAMES = ("acts", "before", "attack")  # what is taught of each word
 Taught = tuple[int, Encoded, tuple[list[int], ...]]  # a lesson: number, words, what is taught
 
 
-class SafeguardTagger(Recipe):
+class SafeguardTagger(Objective):
     """Args:
     agent: the tagger or reader, trained in place.
     texts: a step. micro_batch: of them at once, of like length. phrases: weight of their loss.
@@ -60,7 +59,7 @@ class SafeguardTagger(Recipe):
                 f"recipe.forget ({forget}) from 0 to below 1, recipe.attacked ({attacked}) from 0 "
                 "to 1."
             )
-        limits.check_weights(phrases=phrases)
+        check_weights(phrases=phrases)
         if banks not in (*trials.SPLITS, trials.ALL):
             raise ValueError(unknown("split of the banks", banks, (*trials.SPLITS, trials.ALL)))
         if isinstance(agent, Reader):

@@ -1,8 +1,8 @@
-"""Write the README of hardened folders anew from their cards: python tools/renew_cards.py DIR...
+"""Write the README of hardened folders again from their cards: python tools/renew_cards.py DIR...
 
-For folders that an older version exported. Each is checked first; the new one is made aside and
-renamed into place, with the README's new sum in the card. Nothing else in it changes, but that
-``--rows FILE...`` adds to a card which agent those rows are of, where they are of its weights.
+For folders that an older version exported. Each folder is checked first; the new one replaces it
+by a rename. The card gets the new sum of the README and loses that of a missing ``program.pt2``.
+``--rows FILE...`` adds the agent of those rows to the card, if they are of its weights.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
         page = draft / hardened.README
         page.write_text(readme(card), encoding="utf-8")
         card["files"][hardened.README] = sha256(page)
+        if not (draft / hardened.PROGRAM).exists():
+            card["files"].pop(hardened.PROGRAM, None)
         card["sha256"] = hardened.card_sha(card)
         text = json.dumps(card, indent=2, allow_nan=False) + "\n"
         (draft / hardened.CARD).write_text(text, encoding="utf-8")

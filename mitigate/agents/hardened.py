@@ -17,17 +17,17 @@ import torch
 
 from mitigate.agents import adapters, given, schema
 from mitigate.core import checkpoint, settings
-from mitigate.core.files import PACKAGE, ROOT, sha256
+from mitigate.core.files import places, sha256
 from mitigate.core.json_files import read_json, read_object
 from mitigate.core.names import short
 
 FORMAT = 1
 CARD, CONFIG, README = "card.json", "config.yaml", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
-FILES = (CONFIG, README, PROGRAM, INPUTS)  # besides the weights; of an agent of ours
+FILES = (CONFIG, README, INPUTS)  # besides the weights; of an agent of ours
 ONNX = ("perceive.onnx", "decide.onnx")
 # all that an export writes: none of these may lie in a folder whose card does not list it
-KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, *ONNX)
+KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)
 LONGEST = 255  # bytes of a file's name (Linux, NAME_MAX)
 LONGEST_PATH = 1000  # characters of the path of a base (ours; Linux reads 4095)
 ENTRIES = (
@@ -190,7 +190,9 @@ def adapters_only(folder: str | Path) -> bool:
 def check(folder: Path) -> dict[str, Any]:
     """Return the card of ``folder`` after comparing every file's sha256 with it.
 
-    Raises FileNotFoundError for a missing file, ValueError for a changed one or a damaged card.
+    ``program.pt2`` may be missing: nothing here reads it, and `mitigate export FOLDER --programs`
+    writes it again. Raises FileNotFoundError for another missing file, ValueError for a changed
+    one or a damaged card.
     """
     card = read_card(folder)
     files = card["files"]
@@ -211,6 +213,8 @@ def check(folder: Path) -> dict[str, Any]:
                 f"{folder / CARD} lists {short(name)}, which is no plain file name. Do not use "
                 "this folder: its card was not written by `make export`."
             )
+        if name == PROGRAM and not os.path.lexists(folder / name):
+            continue  # `mitigate export FOLDER --programs` writes it
         if not (folder / name).is_file():
             raise FileNotFoundError(f"{folder} is incomplete: {name} is missing. {_AGAIN}")
         if sha256(folder / name) != wanted:
@@ -280,9 +284,10 @@ def vocabulary_sha(agent: Any) -> str | None:
 
 
 def _base(folder: Path, reference: dict[str, str], given: str | Path | None) -> Path:
-    roots = (Path(), *folder.resolve().parents, ROOT, PACKAGE)
-    places = [root / reference["weights"] for root in roots] if given is None else [Path(given)]
-    files = [p if p.suffix == ".safetensors" else p / checkpoint.WEIGHTS for p in places]
+    near = [parent / reference["weights"] for parent in folder.resolve().parents]
+    here, *shipped = places(reference["weights"])
+    candidates = [here, *near, *shipped] if given is None else [Path(given)]
+    files = [p if p.suffix == ".safetensors" else p / checkpoint.WEIGHTS for p in candidates]
     found = [file for file in files if file.is_file()]
     for file in found:
         if sha256(file) == reference["sha256"]:

@@ -7,14 +7,14 @@ in the folder is run.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from inspect import signature
 from pathlib import Path
 from typing import Any
 
 import torch
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import OmegaConf
 from torch import nn
 
 from mitigate.agents import given, hardened
@@ -99,7 +99,9 @@ def refuse_what_ships_as_it_is(run: Path) -> None:
         )
 
 
-def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -> DictConfig:
+def settings_of(
+    node: Mapping[str, Any], weights: str, overrides: Sequence[str] = ()
+) -> dict[str, Any]:
     """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too).
 
     What the command line sets counts more (``overrides``: ``agent.blind=[rgb]``); ``agent=mine``
@@ -107,27 +109,24 @@ def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -
     """
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
-    known = OmegaConf.create(OmegaConf.to_container(node, resolve=True))  # open to further settings
-    found = OmegaConf.merge(known, carried(node, weights))
-    assert isinstance(found, DictConfig)
+    found = plain(OmegaConf.merge(plain(node), carried(node, weights)))
+    given = plain(node)
     for setting in named:
-        found[setting] = node[setting]
+        found[setting] = given[setting]
     return found
 
 
-def begun_from(node: DictConfig, weights: str | None) -> DictConfig:
+def begun_from(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
     """Return ``node`` with the settings that it leaves open (null, or not named: adapters, the
     vocabulary) as in the ``weights`` that a training begins from; None: as it is. Errors as of
     :func:`carried`."""
     if weights is None:
         return node
     open_ = {k: v for k, v in carried(node, weights).items() if node.get(k) is None}
-    merged = OmegaConf.merge(OmegaConf.create(plain(node)), open_)
-    assert isinstance(merged, DictConfig)
-    return merged
+    return plain(OmegaConf.merge(plain(node), open_))
 
 
-def carried(node: DictConfig, weights: str) -> dict[str, Any]:
+def carried(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     """Return the settings of the agent that ``weights`` belong to, none if they do not say.
 
     They come, as data, from ``config.yaml`` beside the weights. Raises ValueError if the weights
@@ -135,17 +134,17 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     that the agent takes (:func:`mitigate.core.settings.read_agent`).
     """
     weights = str(find(weights))
-    if (Path(weights) / LORA).is_file() and hasattr(located(node._target_), "load"):
+    if (Path(weights) / LORA).is_file() and hasattr(located(node["_target_"]), "load"):
         return {}  # a language model says itself whose adapter it takes
     file = hardened.config_of(Path(weights))
     if not file.is_file():
         return {}
-    if hardened.is_ours(node._target_):
-        return hardened.agent_settings(file, node._target_)
-    made = located(node._target_)
+    if hardened.is_ours(node["_target_"]):
+        return hardened.agent_settings(file, node["_target_"])
+    made = located(node["_target_"])
     names = {*signature(made).parameters, *map(str, node)} - {"_target_"}
     names -= set(getattr(made, OWN_CONFIG_ONLY, ()))
-    return settings.read_agent(file, node._target_, names)
+    return settings.read_agent(file, node["_target_"], names)
 
 
 def agent_option(options: Sequence[str], weights: str) -> list[str]:
@@ -170,12 +169,12 @@ def with_kind(options: Sequence[str]) -> list[str]:
 
 
 def build_agent(
-    node: DictConfig, *, weights: str | None, seed: int, parts: Sequence[str] | None = None
+    node: Mapping[str, Any], *, weights: str | None, seed: int, parts: Sequence[str] | None = None
 ) -> nn.Module:
     """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file;
     ``parts``: of its ``parts()``, those that are read; None: all."""
     weights = None if weights is None else str(find(weights))
-    if hardened.is_ours(node._target_):  # numbers that would take all memory, patterns for ever
+    if hardened.is_ours(node["_target_"]):  # numbers that would take all memory, patterns for ever
         hardened.check_own(plain(node))
     seeding.seed_everything(seed, "agent")
     agent = build(node)

@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import hydra
-from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING, DictConfig
 
 from mitigate.bridge import verdict
@@ -68,7 +67,7 @@ class RunConfig:
     suite: Any = MISSING
 
 
-ConfigStore.instance().store(name="run_schema", node=RunConfig)
+conf.register("run", RunConfig)
 
 
 def split_command(arguments: Sequence[str]) -> tuple[list[str], list[str]]:

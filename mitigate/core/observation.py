@@ -14,7 +14,7 @@ Plan frame to VLN-CE frame: ``x = x``, ``z = -y``, height ``y`` up.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -72,6 +72,26 @@ def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
         DEPTH: Sensor(DEPTH, (*shape, 1), "float32", "m", HFOV_DEGREES, yaws, 0, missing=0.0),
         POSE: Sensor(POSE, (3,), "float32", "m, m, rad"),
     }
+
+
+def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, ...]:
+    """Return one line per sensor of a world that an agent reads.
+
+    Args:
+        sensors: the sensors of the world.
+        read: ``sensors`` of the agent; all sensors count unless it names some of them.
+    """
+    names = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
+    lines = []
+    for name in [name for name in sensors if name in names]:
+        sensor = sensors[name]
+        several = len(sensor.yaws) > 1
+        views = f"{len(sensor.yaws)} views of " if several else ""
+        shape = " x ".join(map(str, sensor.shape[several:]))
+        unit = f", {sensor.unit}" if sensor.unit else ""
+        width = f", {sensor.hfov:g} degrees wide" if sensor.hfov else ""
+        lines.append(f"{name}: {views}{shape} {sensor.dtype}{unit}{width}")
+    return tuple(lines)
 
 
 class Observation(Mapping[str, Any]):

@@ -26,7 +26,7 @@ from mitigate.core.options import check_dashes, config_folder, without_config_fo
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import rows
+from mitigate.evaluation import config, rows  # noqa: F401 - config registers the options
 from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.worlds.episodes import Episode

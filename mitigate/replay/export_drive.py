@@ -17,7 +17,6 @@ from typing import Any
 import cv2
 import hydra
 import numpy as np
-from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
@@ -51,7 +50,7 @@ class DriveConfig:
     env: Any = MISSING
 
 
-ConfigStore.instance().store(name="export_drive_schema", node=DriveConfig)
+conf.register("export_drive", DriveConfig)
 
 
 def run(cfg: DictConfig, out: Path) -> list[Path]:

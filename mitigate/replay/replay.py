@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import hydra
-from hydra.core.config_store import ConfigStore
 from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import conf
@@ -75,7 +74,7 @@ class ReplayConfig:
     suite: Any = MISSING
 
 
-ConfigStore.instance().store(name="replay_schema", node=ReplayConfig)
+conf.register("replay", ReplayConfig)
 
 
 def run(cfg: DictConfig, paths: Sequence[str]) -> Path:

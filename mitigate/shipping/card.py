@@ -233,7 +233,8 @@ def _use(card: dict[str, Any]) -> str:
     return (
         f"## Use\n\n```python\nimport mitigate\n\nagent = {load})\n```\n\n"
         "Files are compared with the sha256 in `card.json` first. `program.pt2` runs a decision "
-        "without this code; `program.json` describes its inputs. Reloaded in a fresh process, "
+        "without this code; `program.json` describes its inputs. Where `program.pt2` is missing, "
+        "`mitigate export FOLDER --programs` writes it. Reloaded in a fresh process, "
         f"the outputs on a fixed probe were equal within {checked['reload_tolerance']:g} (agent) "
         f"and {checked['program_tolerance']:g} (program); float16 moved them by "
         f"{checked['float16']:.2g}.\n\nMilliseconds, fastest of {times['calls']} "

@@ -11,6 +11,7 @@ import copy
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -80,6 +81,40 @@ def export(
         _write(draft, run, cfg, agent, name, list(rows), onnx, walks)
         put_folder(draft, target, Path(aside) / "old")
     return target
+
+
+def add_programs(folder: Path) -> Path:
+    """Write ``program.pt2`` of the hardened ``folder`` again and list it in the card.
+
+    Returns:
+        The file, whose outputs on the probe are those of the agent.
+
+    Raises:
+        FileNotFoundError: if ``folder`` is not a whole hardened folder.
+        ValueError: also for an agent without programs, and for other outputs.
+    """
+    card = hardened.check(folder)
+    if not card.get("program", True):
+        raise ValueError(f"{folder} holds an agent of a class for which there are no programs.")
+    agent = hardened.load_hardened(folder)
+    size = json.loads((folder / hardened.INPUTS).read_text(encoding="utf-8"))["size"]
+    exported = programs.export_programs(agent, size)
+    probe = programs.probe(agent, size)
+    modules = {name: program.module() for name, program in exported.items()}
+    networks = programs.networks(agent)
+    gap = programs.difference(programs.outputs(networks, probe), programs.outputs(modules, probe))
+    if not gap <= EXPORTED:
+        raise ValueError(f"The programs differ by {gap:g}; at most {EXPORTED:g} is allowed.")
+    folder = folder.resolve()
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as aside:
+        draft = Path(shutil.copytree(folder, Path(aside) / folder.name))
+        programs.save_programs(exported, draft / hardened.PROGRAM)
+        card["files"][hardened.PROGRAM] = sha256(draft / hardened.PROGRAM)
+        card["sha256"] = hardened.card_sha(card)
+        _write_json(draft / hardened.CARD, card)
+        hardened.check(draft)
+        put_folder(draft, folder, Path(aside) / "old")
+    return folder / hardened.PROGRAM
 
 
 def _check_free(target: Path, overwrite: bool) -> None:

@@ -3,6 +3,9 @@
 ``checkpoints/hardened/<name>`` gets the weights (or adapters and a reference to their base),
 ``config.yaml``, ``program.pt2``, a card and a README. The folder is made aside, reloaded in a fresh
 process and renamed into place only if the outputs on a fixed probe are the same.
+
+``mitigate export checkpoints/hardened/harden --programs`` writes a missing ``program.pt2`` of such
+a folder.
 """
 
 from __future__ import annotations
@@ -15,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from mitigate.core import build, conf, settings
 from mitigate.core.options import paths_and_overrides
+from mitigate.evaluation import config as _options  # noqa: F401 - registers them
 from mitigate.evaluation.episode_lists import episodes
 
 if TYPE_CHECKING:  # nothing slow is imported before main() has read the command line
@@ -28,8 +32,8 @@ def main() -> None:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("run", type=Path, help="a finished run folder, such as runs/...")
-    parser.add_argument("name", help="name of the folder to write")
+    parser.add_argument("run", type=Path, nargs="?", help="a finished run folder, such as runs/...")
+    parser.add_argument("name", nargs="?", help="name of the folder to write")
     parser.add_argument(
         "overrides",
         nargs="*",
@@ -47,10 +51,24 @@ def main() -> None:
     parser.add_argument("--rows", nargs="+", default=[], help="row files of its evaluation")
     parser.add_argument("--overwrite", action="store_true", help="replace a folder of that name")
     parser.add_argument("--onnx", action="store_true", help="ONNX files too (extra `onnx`)")
+    parser.add_argument(
+        "--programs", action="store_true", help="write program.pt2 of the hardened folder RUN"
+    )
     given = vars(parser.parse_intermixed_args())
+    required = ("run",) if given["programs"] else ("run", "name")
+    if missing := [name for name in required if given[name] is None]:
+        parser.error(f"the following arguments are required: {', '.join(missing)}")
+    if given["programs"] and given["name"] is not None:
+        parser.error("--programs takes one hardened folder and no name.")
     from mitigate.agents import hardened
-    from mitigate.shipping.export import export
+    from mitigate.shipping.export import add_programs, export
 
+    if given.pop("programs"):
+        try:
+            print(f"wrote {add_programs(given['run'])}")
+        except (ValueError, OSError) as error:
+            sys.exit(f"error: {conf.said(error)}")
+        return
     overrides, configs = given.pop("overrides"), given.pop("config_dir")
     given["rows"], more = paths_and_overrides(given["rows"])
     try:

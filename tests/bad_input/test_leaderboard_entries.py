@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from mitigate.evaluation.leaderboard.entry import LARGEST, load
-from mitigate.evaluation.leaderboard.from_rows import entry_of
+from mitigate.evaluation.leaderboard.figures import entry_of
 from tests.evaluation.made_rows import column
 
 WRONG: list[tuple[str, Any]] = [

@@ -73,6 +73,7 @@ def test_bad_files_are_named(tmp_path, scene):
         gallery.read_frame(tmp_path / "rgb.png", tmp_path / "depth.npy")
 
 
+@pytest.mark.slow
 def test_the_page_holds_every_corruption_and_its_pictures(tmp_path, monkeypatch):
     monkeypatch.setattr(gallery, "PAGE_SIZE", 32)
     gallery.write_page(tmp_path, np.array([0.0, 0.5, 1.0]))

@@ -246,6 +246,7 @@ for folder in sys.argv[1:3]:
     assert python(code, *folders, *absent, cwd=tmp_path).split() == 2 * ["TopologicalAgent"]
 
 
+@pytest.mark.slow
 def test_the_program_runs_a_decision_without_our_code(place, tmp_path):
     code = """
 import json, sys
@@ -296,6 +297,9 @@ def test_a_changed_file_is_refused_by_name(copied, name, spoil):
         file.unlink()
     else:
         file.write_bytes(data if spoil == "flipped" else data[: len(data) // 2])
+    if (name, spoil) == ("program.pt2", "removed"):
+        hardened.load_hardened(copied)  # nothing reads it
+        return
     error = FileNotFoundError if spoil == "removed" else ValueError
     with pytest.raises(error, match=name.replace(".", r"\.")):
         hardened.load_hardened(copied)
@@ -328,7 +332,8 @@ def test_a_card_that_lacks_a_file_is_refused(copied, name):
     files = json.loads((copied / "card.json").read_text())["files"]
     del files[name]
     resign(copied, files=files)
-    with pytest.raises(ValueError, match=f"does not list {name}"):
+    part = "not listed in" if name == "program.pt2" else f"does not list {name}"
+    with pytest.raises(ValueError, match=part):
         hardened.load_hardened(copied)
 
 
@@ -496,6 +501,7 @@ def test_the_check_finds_other_outputs(place, tmp_path):
         export.check_outputs(str(place / "hardened/whole"), str(tmp_path / "other.safetensors"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("fusion", [{"rate": 4.0, "cap": 3.0}, {"learned": True}], ids=str)
 def test_the_programs_weigh_the_views_as_the_agent_does(fusion):
     agent = TopologicalAgent(**{**TINY, "planner": {**TINY["planner"], "fusion": fusion}}).eval()
@@ -665,13 +671,39 @@ SHIPPED = sorted(p.name for p in (ROOT / "checkpoints/hardened").glob("[!.]*"))
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_a_shipped_folder_is_whole_and_its_program_decides_as_the_agent_does(name):
+def test_load_hardened_loads_a_shipped_folder_without_its_program(name):
     folder = ROOT / "checkpoints/hardened" / name
-    agent = hardened.load_hardened(folder)
+    assert not (folder / hardened.PROGRAM).exists(), "the tree holds no programs"
+    assert hardened.load_hardened(folder).vocabulary
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["harden", "ts_distill"])  # adapters, and all weights
+def test_export_writes_the_program_of_a_shipped_folder(name, tmp_path, monkeypatch, capsys):
+    folder = tmp_path / name
+    shutil.copytree(ROOT / "checkpoints/hardened" / name, folder)
+    before = hardened.read_card(folder)
+    monkeypatch.setattr(sys, "argv", ["export", str(folder), "--programs"])
+    export_command.main()
+    assert f"wrote {folder / hardened.PROGRAM}" in capsys.readouterr().out
+    agent = hardened.load_hardened(folder, base=base_of(before))
+    card = hardened.read_card(folder)
+    assert card["agent"] == before["agent"] and hardened.PROGRAM in card["files"]
     given = programs.probe(agent, SIZE)
     program = programs.load_programs(folder / hardened.PROGRAM)
     wanted = programs.outputs(programs.networks(agent), given)
     assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
+
+
+def base_of(card):
+    return ROOT / card["base"]["weights"] if card["adapters_only"] else None
+
+
+def test_export_takes_no_name_with_programs(monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", ["export", "runs/a", "mine", "--programs"])
+    with pytest.raises(SystemExit):
+        export_command.main()
+    assert "--programs takes one hardened folder" in capsys.readouterr().err
 
 
 def test_the_hardened_agents_of_the_readme_are_shipped():

@@ -21,7 +21,9 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", ["frontier", pytest.param("recurrent_rgb", marks=pytest.mark.slow)]
+)
 def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     monkeypatch.setattr(others, "WALKS", 1)
     made, own = KINDS[kind]

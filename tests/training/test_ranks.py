@@ -12,15 +12,15 @@ import pytest
 import torch
 
 from mitigate.core.seeding import generator, seed_everything
+from mitigate.training.objective import Objective
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe
 from mitigate.training.trainer import Trainer
 
 ROOT = Path(__file__).parents[2]
 PIECES = 4
 
 
-class Regression(Recipe):
+class Regression(Objective):
     """Pieces of different lengths, a weight that nothing but the first rank's pieces use, and one
     that none uses, which must not decay."""
 
@@ -82,6 +82,7 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
     )
 
 
+@pytest.mark.slow
 def test_two_ranks_end_with_the_weights_of_one_and_one_of_them_speaks(tmp_path, monkeypatch):
     monkeypatch.setattr("mitigate.training.trainer.choose", lambda *_: "fp32")
     done = torchrun(tmp_path, 2)

@@ -34,9 +34,14 @@ LITTLE = {  # what a stage's recipe learns from, beside two rollouts a step
     "variants": 1,
 }
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
+QUICK = ("conv_adapter", "da_per_episode", "ts_distill")  # the others are slow, one by one
 
 
-@pytest.mark.parametrize("name", RECIPES)
+def some_slow(names, quick):
+    return [name if name in quick else pytest.param(name, marks=pytest.mark.slow) for name in names]
+
+
+@pytest.mark.parametrize("name", some_slow(RECIPES, QUICK))
 def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
     monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, of which to store features
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)  # of walks whose success is measured
@@ -73,6 +78,7 @@ def test_a_language_model_in_eight_bits_is_trained_without_a_line_a_product(tmp_
     checkpoint.load_agent(build(cfg.agent), folder / "agent")
 
 
+@pytest.mark.slow
 def test_a_language_model_goes_on_from_an_adapter(tmp_path):
     base = write_tiny_model(tmp_path / "tiny-llama")
     options = ["recipe=safeguard_lora", "debug=smoke", "evaluation.enabled=false", "workers=1"]
@@ -88,6 +94,7 @@ def test_a_language_model_goes_on_from_an_adapter(tmp_path):
         train.run(conf.load_config("train", [*options, "agent.lora.r=4"]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("agent,recipe,weights", OTHERS)
 def test_a_training_goes_on_with_the_words_and_adapters_of_its_weights(
     tmp_path, agent, recipe, weights

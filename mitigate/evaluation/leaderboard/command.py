@@ -10,141 +10,142 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, replace
-from itertools import zip_longest
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig
+import numpy as np
 
 from mitigate.core import conf
-from mitigate.core.build import located, maker
 from mitigate.core.files import find
+from mitigate.evaluation import config  # noqa: F401 - registers the options
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
-from mitigate.evaluation.leaderboard.from_rows import entry_of, left_out, sensors_of
-from mitigate.evaluation.leaderboard.page import render
+from mitigate.evaluation.leaderboard.figures import entry_of, left_out
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.command import told
+from mitigate.evaluation.page.report import report
 from mitigate.evaluation.rows import Row
 
 FOLDER = "docs/leaderboard"
 OUT = Path("runs/leaderboard.html")
-CLOSE = 1e-5  # of figures that entries round to six digits (ours)
-_OTHERS = re.compile(r"[^\w.-]+")  # signs that the name of an entry's file does not have
-
-
-def entries_of(paths: Sequence[Path | str] = ()) -> list[LeaderboardEntry]:
-    """Return the entries in files and folders; of none, those shipped in ``docs/leaderboard``.
-
-    Raises as ``entry.load``; FileNotFoundError if there is none.
-    """
-    return [load(file) for file in _files(paths)]
-
-
-def _files(paths: Sequence[Path | str]) -> list[Path]:
-    files: list[Path] = []
-    for path in [Path(path) for path in paths] or [find(FOLDER)]:
-        files += sorted(path.glob("*.json")) if path.is_dir() else [path]
-    if not files:
-        raise FileNotFoundError("There is no entry (*.json) in the folders named.")
-    return files
+NOT_COMPUTED = ("sensors", "training_data", "link", "version")
+CLOSE = 1e-5  # entries round figures to six digits
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
-    """Return the rows in the file that ``entry`` names, of other agents, too. Raises
-    FileNotFoundError if they are not at hand, ValueError if they are damaged or no file."""
+    """Return the rows in the file that ``entry`` names, also those of other agents.
+
+    Raises:
+        FileNotFoundError: if the file is not available.
+        ValueError: if it is damaged, or not a file.
+    """
     file = entry.rows["file"]
-    if not file or not find(file).exists():
+    path = find(file)
+    if file and path.exists() and not path.is_file():
+        raise ValueError(f"{entry.name} must name one file of rows, got {file}, not a file.")
+    if not file or not path.exists():
         raise FileNotFoundError(
-            f"The rows of {entry.name} are not at hand ({file or 'no file is named'}): fetch them "
-            f"to {file or 'a file'}, from the folder in which you run this."
+            f"The rows of {entry.name} are not available ({file or 'the entry names no file'}): "
+            f"copy them to {file or 'a file'}, below the folder in which you run this."
         )
-    if not find(file).is_file():
-        raise ValueError(
-            f"The rows of {entry.name} are said to be in {file}, which is "
-            f"{'a folder' if find(file).is_dir() else 'no plain file'}: an entry names one file "
-            "of rows. Name it with `mitigate leaderboard add`."
-        )
-    return result_rows.gather([find(file)])
+    return result_rows.gather([path])
 
 
 def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
-    """Return how ``entry`` differs from what ``rows`` say, a line each; none if it does not.
-
-    Of ``rows``, those of its agents, their seeds and its conditions count; a file may hold more.
-    Raises ValueError if they hold nothing of the entry.
-    """
-    agents = {(one["agent"], one["seed"]) for one in entry.agents}
-    own = [row for row in rows if (row["agent"], row["seed"]) in agents]
-    if not own:
-        told = ", ".join(f"{agent} with seed {seed}" for agent, seed in sorted(agents))
-        raise ValueError(f"The rows hold none of {told:.300}.")
+    """Return how ``entry`` differs from the figures of its rows, one line per difference."""
     again = entry_of(
-        [row for row in own if row["corruption"] in entry.SR],
+        _rows_behind(entry, rows),
         entry.name,
         severity=entry.severity,
         split=entry.split,
-        sensors=entry.sensors,
-        training_data=entry.training_data,
-        link=entry.link,
         file=entry.rows["file"],
     )
-    said, found = _figures(entry), _figures(again)
-    return [
-        f"{key} is {said.get(key)!r:.120}, but its rows say {found.get(key)!r:.120}"
-        for key in said | found
-        if key != "version" and not _same(said.get(key), found.get(key))
-    ]
+    found = []
+    for key, stated in asdict(entry).items():
+        computed = asdict(again)[key]
+        pairs = {key: (stated, computed)}
+        if isinstance(stated, dict):
+            names = stated | computed
+            pairs = {f"{key}, {n},": (stated.get(n), computed.get(n)) for n in names}
+        found += [
+            f"{place} is {one!r:.120}, but its rows say {other!r:.120}"
+            for place, (one, other) in pairs.items()
+            if key not in NOT_COMPUTED and not _equal(one, other)
+        ]
+    return found
 
 
-def _figures(entry: LeaderboardEntry) -> dict[str, Any]:
-    """Return the values of an entry by name, those of its mappings each by its own."""
-    held: dict[str, Any] = {}
-    for key, value in asdict(entry).items():
-        parts = value if isinstance(value, dict) else {}
-        held |= {f"{key}, {name},": own for name, own in parts.items()} or {key: value}
-    return held
-
-
-def _same(a: Any, b: Any) -> bool:
-    if isinstance(a, dict) and isinstance(b, dict):
-        return a.keys() == b.keys() and all(_same(a[key], b[key]) for key in a)
-    if isinstance(a, (list, tuple)) and isinstance(b, (list, tuple)):
-        return all(_same(x, y) for x, y in zip_longest(a, b))
-    if isinstance(a, float) and isinstance(b, float):
-        return abs(a - b) < CLOSE
-    return bool(a == b)
+def _equal(one: Any, other: Any) -> bool:
+    if not isinstance(one, list) or not isinstance(other, list):
+        return bool(one == other)
+    pair = np.array([one, other], float)  # None becomes NaN
+    return np.allclose(pair[0], pair[1], rtol=0, atol=CLOSE, equal_nan=True)
 
 
 def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
-    """Write the page of the entries in ``paths``; return its path. Errors as :func:`entries_of`
-    and ``document.check_out``."""
+    """Write the page of the entries in files and folders; return its path."""
     document.check_out(out)
-    return document.write(render(entries_of(paths)), out)
+    return document.write(render([load(file) for file in _files(paths)]), out)
+
+
+def render(entries: Sequence[LeaderboardEntry]) -> str:
+    """Return the report of the rows behind ``entries``, by falling mean SR.
+
+    Figures are computed from the rows, not taken from the entries. Raises as :func:`rows_of`.
+    """
+    files: dict[str, list[Row]] = {}
+    rows: list[Row] = []
+    notes = []
+    for entry in sorted(entries, key=lambda one: one.scores.get("Mean SR") or [-1], reverse=True):
+        file = entry.rows["file"]
+        files[file] = files.get(file) or rows_of(entry)
+        rows += _rows_behind(entry, files[file])
+        sensors = "; ".join(entry.sensors) or "not stated"
+        notes.append(
+            f"{entry.name} ({', '.join(one['agent'] for one in entry.agents)}): trained on "
+            f"{entry.training_data or 'not stated'}; sensors {sensors}; {entry.link}"
+        )
+    return report(rows, title="Leaderboard", notes=notes)
+
+
+def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
+    """Return the rows of the entry's agents, seeds and conditions. Raises ValueError if there are
+    none of its agents."""
+    agents = {(one["agent"], one["seed"]) for one in entry.agents}
+    mine = [row for row in rows if (row["agent"], row["seed"]) in agents]
+    if not mine:
+        names = ", ".join(f"{agent} with seed {seed}" for agent, seed in sorted(agents))
+        raise ValueError(f"The rows hold none of {names:.300}.")
+    mine = [row for row in mine if (row["name"], row["split"]) == (entry.name, entry.split)]
+    return [r for r in mine if r["corruption"] in entry.SR and r["severity"] in (0, entry.severity)]
+
+
+def _files(paths: Sequence[Path | str]) -> list[Path]:
+    """Return the files of entries in ``paths``; without paths, those of ``docs/leaderboard``."""
+    folders = [Path(path) for path in paths] or [find(FOLDER)]
+    files = [f for p in folders for f in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
+    if not files:
+        raise FileNotFoundError("There is no entry (*.json) in these folders.")
+    return files
 
 
 def check(paths: Sequence[Path | str] = ()) -> list[str]:
-    """Print of each entry whether its rows say the same and what of them it leaves out, and which
-    files are none; return what is wrong, a line each. Raises FileNotFoundError if there is none."""
+    """Print for each entry whether its rows give the same figures; return what is wrong."""
     wrong = []
     for file in _files(paths):
+        name, verdict, omitted = str(file), "not a valid entry", ""
         try:
             entry = load(file)
-        except (OSError, ValueError) as error:
-            print(f"{file}: NO entry", flush=True)
-            wrong.append(conf.said(error))
-            continue
-        try:
+            name, verdict = f"{file}: {entry.name}", "NOT as its rows say"
             rows = rows_of(entry)
-            found, unsaid = differences(entry, rows), left_out(entry, rows)
+            found, omitted = differences(entry, rows), left_out(entry, rows)
         except (OSError, ValueError) as error:
-            found, unsaid = [conf.said(error)], ""
-        named = f"{file}: {entry.name}"
-        print(f"{named}, {'NOT as' if found else 'as'} its rows say", flush=True)
-        if unsaid:
-            print(f"{named}, WARNING: its rows also hold {unsaid:.1000}", flush=True)
-        wrong += [f"{named}, {line}" for line in found]
+            found = [conf.said(error)]
+        print(f"{name}, {verdict if found else 'as its rows say'}", flush=True)
+        if omitted:
+            print(f"{name}, WARNING: its rows also hold {omitted:.1000}", flush=True)
+        wrong += [f"{name}, {line}" for line in found]
     return wrong
 
 
@@ -152,87 +153,44 @@ def add(
     paths: Sequence[Path | str],
     name: str,
     *,
-    severity: float = 0.6,
-    split: str | None = None,
-    training_data: str = "",
-    link: str = "",
-    options: Sequence[str] = (),
-    config_dir: Path | None = None,
     folder: Path | str = FOLDER,
     overwrite: bool = False,
+    **values: Any,
 ) -> Path:
-    """Write the entry of the column ``name`` of the rows in ``paths``; return its file.
+    """Write the entry of the agent ``name`` of the rows in ``paths``; return its file.
 
-    The sensors are those of the world of ``options`` (of ``mitigate evaluate``, with the user's
-    configs in ``config_dir``) that the kind of agent among them reads; none, and it is said so, if
-    the rows are of another world, by their split or rule. Raises ValueError if the file is there
-    already, and as ``entry_of``.
+    Args:
+        paths: row files or folders.
+        name: name of the agent in the rows.
+        folder: where to write the entry.
+        overwrite: replace an entry of that name.
+        **values: severity, split, sensors, training_data and link, as for ``entry_of``.
+
+    Raises:
+        ValueError: if the file exists, and as ``entry_of``.
     """
-    place = Path(folder) / f"{_OTHERS.sub('-', name).strip('.-') or 'entry'}.json"
-    if place.exists() and not overwrite:
+    stem = re.sub(r"[^\w.-]+", "-", name).strip(".-")
+    file = Path(folder) / f"{stem or 'entry'}.json"
+    if file.exists() and not overwrite:
         raise ValueError(
-            f"{place} exists already: replace it with --overwrite, or name another folder "
+            f"{file} exists already: replace it with --overwrite, or name another folder "
             "(--folder) if it is another agent's."
         )
-    cfg = conf.composed("evaluate", options, config_dir)
-    entry = entry_of(
-        result_rows.gather(paths),
-        name,
-        severity=severity,
-        split=split,
-        training_data=training_data,
-        link=link,
-        file=_named(paths),
-    )
-    replace(entry, sensors=_sensors(cfg, entry)).save(place)
-    load(place)
-    return place
-
-
-def _sensors(cfg: DictConfig, entry: LeaderboardEntry) -> tuple[str, ...]:
-    """A line for each sensor that the config's agent reads; none if its world is not the rows'."""
-    world = maker(cfg.env.world)()
-    if entry.split not in cfg.env.episodes or entry.rule != world.rule:
-        print(
-            f"The rows are not of {cfg.env.name} ({entry.split}, {entry.rule}), so the entry says "
-            "nothing of sensors. Name the world and the kind of agent: env=..., agent=..., of your "
-            "own with --config-dir.",
-            flush=True,
-        )
-        return ()
-    read = cfg.agent.get("sensors", getattr(located(cfg.agent._target_), "sensors", None))
-    return sensors_of(world.sensors, read)
-
-
-def _named(paths: Sequence[Path | str]) -> str:
-    """Return the one file of the rows, if it is one and lies below this folder."""
     files = [file for path in paths for file in result_rows.files(path)]
     inside = len(files) == 1 and not files[0].is_absolute() and ".." not in files[0].parts
-    return files[0].as_posix() if inside else ""
+    values["file"] = files[0].as_posix() if inside else ""
+    return entry_of(result_rows.gather(paths), name, **values).save(file)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status: 2 for a bad input, 1 for a wrong entry."""
-    parser = _parser()
-    given, more = parser.parse_known_args(argv)  # which leaves words behind an option, as of "add"
-    options = vars(given)
+    options = vars(_parser().parse_args(argv))
     what = options.pop("what")
-    if unknown := [word for word in more if word.startswith("-")]:
-        parser.error(f"unrecognized arguments: {' '.join(unknown)}")
-    options["paths"] += more
-    if what == "check":
-        wrong: list[str] = []
-        status = told("leaderboard", lambda: wrong.extend(check(options["paths"])))
-        print("\n".join(wrong), end="\n" * bool(wrong))
-        return status or int(bool(wrong))
-    if what == "show":
-        return told("leaderboard", lambda: show(**options))
-    words = options.pop("paths")
-    paths = [word for word in words if "=" not in word or Path(word).exists()]
-    own = [word for word in words if word not in paths]
-    if not paths:
-        parser.error(f"add: name a row file; there is none of {', '.join(own)}.")
-    return told("leaderboard", lambda: add(paths, options=own, **options))
+    wrong: list[str] = []
+    command: Any = {"show": show, "add": add, "check": lambda paths: wrong.extend(check(paths))}
+    status = told("leaderboard", lambda: command[what](**options))
+    print("\n".join(wrong), end="\n" * bool(wrong))
+    return status or int(bool(wrong))
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -248,21 +206,13 @@ def _parser() -> argparse.ArgumentParser:
         part.add_argument("paths", nargs="*", metavar="ENTRY", help=f"default: all in {FOLDER}")
     shown.add_argument("--out", type=Path, default=OUT, help=f"file to write (default {OUT})")
     added = parts.add_parser("add", help="write the entry of an agent's rows")
-    added.add_argument(
-        "paths",
-        nargs="+",
-        metavar="ROWS",
-        help="row file; words with = are options of mitigate evaluate that say what it sees, "
-        "such as env.views=1",
-    )
+    added.add_argument("paths", nargs="+", metavar="ROWS", help="row file or folder")
     added.add_argument("--name", required=True, help="the agent's name in the rows")
     added.add_argument("--severity", type=float, default=0.6, help="default 0.6")
     added.add_argument("--split", help="needed where the rows are of several")
     added.add_argument("--training-data", default="", help="what the agent was trained on")
     added.add_argument("--link", default="", help="where its weights or paper are")
-    added.add_argument(
-        "--config-dir", type=Path, help="folder of configs of your own, that env= and agent= name"
-    )
+    added.add_argument("--sensors", nargs="+", default=(), help="one text per sensor of the agent")
     added.add_argument("--folder", default=FOLDER, help=f"where to write (default {FOLDER})")
     added.add_argument("--overwrite", action="store_true", help="replace an entry of that name")
     return parser

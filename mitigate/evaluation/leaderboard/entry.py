@@ -1,119 +1,199 @@
-"""An entry of the leaderboard: what an agent reached, which rows say so, what it was trained on.
+"""An entry of the leaderboard: the results of an agent, and the rows that they come from.
 
-Entries are JSON files of strangers: nothing in one is believed but what :func:`load` has checked,
-and every figure can be computed again from the rows that it names.
+Entries are JSON files from strangers. :func:`load` checks the type, length and range of each value,
+and every figure can be computed again from the rows that the entry names.
 """
 
 from __future__ import annotations
 
 import json
 import re
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
-from pathlib import Path
-from typing import Any
+from pathlib import Path, PurePosixPath
+from typing import Annotated, Any, get_type_hints
+
+from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationError, with_config
+from typing_extensions import TypedDict
 
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
-from mitigate.core.names import counted
-from mitigate.evaluation.leaderboard.checks import problem
+from mitigate.core.names import counted, short
 from mitigate.evaluation.page.model import Numbers
 
 FORMAT = 2  # 2: with ``listed``
-LARGEST = 1 << 18  # bytes of an entry's file; one of 34 corruptions has 5,000 (ours)
-_AGAIN = "Write it anew with `mitigate leaderboard add`."
+LARGEST = 1 << 18  # bytes of an entry's file; one of 34 corruptions has 5,000
+GREATEST_PRS = 100.0  # a PRS is a ratio; it grows without bound where the clean value is near 0
+_REWRITE = "Write it again with `mitigate leaderboard add`."
 _NUMBERS = re.compile(r"\[\n\s+([\d\s.,eE+nul-]*?)\s*\n\s+\]")
+_STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
+
+
+def _is_printable(text: str) -> str:
+    if not text.isprintable() or text.isspace():
+        raise ValueError("it must be a line of printable signs")
+    return text
+
+
+def _is_inside(path: str) -> str:
+    if ".." in PurePosixPath(path).parts or "\\" in path or path.startswith(("/", "~")):
+        raise ValueError("it must be a path below this folder")
+    return path
+
+
+def _is_interval(numbers: Numbers) -> Numbers:
+    value, *bounds = numbers or [0.0]
+    known = [bound for bound in bounds if bound is not None]
+    if value is None or known != sorted(known):
+        raise ValueError("it must be [value, low, high] in order")
+    return numbers
+
+
+def _are_shares(rates: dict[str, Numbers]) -> dict[str, Numbers]:
+    if any(number is not None and number > 1 for row in rates.values() for number in row or ()):
+        raise ValueError("SR and SPL must be from 0 to 1")
+    return rates
+
+
+def _are_scores(scores: dict[str, Numbers]) -> dict[str, Numbers]:
+    if not {"Clean SR", "Clean SPL"} <= scores.keys():
+        raise ValueError("Clean SR and Clean SPL must be among the titles")
+    _are_shares({title: scores[title] for title in scores if not title.startswith("PRS")})
+    return scores
+
+
+def _have_clean(rates: dict[str, Numbers]) -> dict[str, Numbers]:
+    if "clean" not in rates:
+        raise ValueError("clean must be among the conditions")
+    return _are_shares(rates)
+
+
+Line = Annotated[str, Field(min_length=1, max_length=200), AfterValidator(_is_printable)]
+Text = Annotated[str, Field(max_length=2000), AfterValidator(_is_printable)]
+_Link = Annotated[Text, Field(max_length=200)]
+Count = Annotated[int, Field(ge=1, le=10**8)]
+_Number = Annotated[float, Field(ge=0, le=GREATEST_PRS)]
+_Numbers = Annotated[list[_Number | None], Field(min_length=3, max_length=3)]
+_Interval = Annotated[_Numbers | None, AfterValidator(_is_interval)]
+_Title = Annotated[str, Field(pattern=r"^((Clean|Mean) (SR|SPL)|PRS-(SR|SPL) \([\w ,]{1,40}\))$")]
+_Condition = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_.+-]{0,99}$")]
+_Conditions = Annotated[dict[_Condition, _Interval], Field(min_length=2, max_length=500)]
+_Rates = Annotated[_Conditions, AfterValidator(_have_clean)]
+
+
+@with_config(_STRICT)
+class Agent(TypedDict):
+    """Content hash of an agent (``agents/fingerprint.py``), and the seed of its rows."""
+
+    agent: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
+    seed: Annotated[int, Field(ge=-(2**63), le=2**63)]
+
+
+@with_config(_STRICT)
+class Source(TypedDict):
+    """File (relative to the current folder, or empty), sha256 and number of rows."""
+
+    file: Annotated[_Link, AfterValidator(_is_inside)]
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+    count: Count
 
 
 @dataclass(frozen=True)
 class LeaderboardEntry:
-    """What an agent reached on one split, suite, rule and severity.
+    """Results of an agent on one split, suite, success rule and severity.
 
-    name: a heading. agents: fingerprint (``agents/fingerprint.py``) of each training seed's agent,
-    and the seed of its rows. sensors: a line each. training_data, link: in words of who submits.
-    scores: clean, mean and PRS, [value, low, high] with 95 % intervals, None where it is undefined.
-    SR, SPL: the same of each condition. episodes: how many each condition has. listed: a hash of
-    their ids (``from_rows.listed_sha``), since a table compares entries over the same episodes.
-    rows: "file" (relative, or empty), "sha256" (``from_rows.rows_sha``) and "count" of
-    those that it was computed from.
+    Attributes:
+        name: heading.
+        agents: content hash (``agents/fingerprint.py``) of the agent of each training seed,
+            with the seed of its rows.
+        sensors: one line per sensor.
+        training_data: what the agent was trained on, in the words of the submitter.
+        episodes: number of episodes per condition.
+        listed: hash of the episode ids; a table compares entries over the same episodes.
+        scores: clean, mean and PRS values, [value, low, high] with 95 % intervals, or None.
+        SR, SPL: the same per condition.
+        rows: "file" (relative or empty), "sha256" and "count" of the rows behind the figures.
+        link: where the weights or the paper are.
     """
 
-    name: str
-    agents: tuple[dict[str, Any], ...]
-    sensors: tuple[str, ...]
-    training_data: str
-    split: str
-    suite: str
-    rule: str
-    severity: float
-    episodes: int
-    listed: str
-    scores: dict[str, Numbers]
-    SR: dict[str, Numbers]
-    SPL: dict[str, Numbers]
-    rows: dict[str, Any]
-    link: str = ""
-    version: str = field(default_factory=lambda: version("mitigate"))
-    format: int = FORMAT
+    __pydantic_config__ = _STRICT
+    name: Line
+    agents: Annotated[tuple[Agent, ...], Field(min_length=1, max_length=100)]
+    sensors: Annotated[tuple[Line, ...], Field(max_length=20)]
+    training_data: Text
+    split: Line
+    suite: Line
+    rule: Line
+    severity: Annotated[float, Field(ge=0, le=1)]
+    episodes: Count
+    listed: Annotated[str, Field(pattern="^[0-9a-f]{12}$")]
+    scores: Annotated[dict[_Title, _Interval], AfterValidator(_are_scores)]
+    SR: _Rates
+    SPL: _Rates
+    rows: Source
+    link: _Link = ""
+    version: Line = field(default_factory=lambda: version("mitigate"))
+    format: Annotated[int, Field(ge=FORMAT, le=FORMAT)] = FORMAT
 
     def save(self, path: Path | str) -> Path:
-        """Write the entry to ``path`` as JSON, atomically. Raises ValueError for what :func:`load`
-        would refuse."""
+        """Write the entry to ``path`` as JSON, atomically.
+
+        Raises:
+            ValueError: for an entry that :func:`load` would reject.
+        """
         text = json.dumps(asdict(self), indent=1, allow_nan=False)
-        _check(json.loads(text), path)
-        with atomic_text(path) as file:
-            file.write(_short_lines(text) + "\n")
+        _validated(_ADAPTER, text, f"{path}: ")
+        with atomic_text(path) as file:  # each list of numbers on one line
+            file.write(_NUMBERS.sub(lambda found: f"[{' '.join(found[1].split())}]", text) + "\n")
         return Path(path)
 
     def __str__(self) -> str:
-        """A line for each score, success rates in %."""
-        walked = f"{counted(self.episodes, 'episode')} of {self.split}"
-        head = f"{self.name}: {walked}, severity {self.severity:g}"
-        lines = (f"  {title}: {_words(title, found)}" for title, found in self.scores.items())
-        return "\n".join([f"{head} ({self.rule})", *lines])
+        """One line per score, success rates in %."""
+        size = f"{counted(self.episodes, 'episode')} of {self.split}"
+        lines = [f"{self.name}: {size}, severity {self.severity:g} ({self.rule})"]
+        for title, numbers in self.scores.items():
+            scale, digits, unit = (100, 1, " %") if title.endswith(" SR") else (1, 2, "")
+            shown = ["–" if x is None else f"{scale * x:.{digits}f}" for x in numbers or ()]
+            text = f"{shown[0]} [{shown[1]}, {shown[2]}]{unit}" if shown else "undefined"
+            lines.append(f"  {title}: {text}")
+        return "\n".join(lines)
 
 
 def load(path: Path | str) -> LeaderboardEntry:
-    """Return the entry in the JSON file ``path``, which may be of anybody.
+    """Return the entry in the JSON file ``path``, which may come from anyone.
 
-    Raises FileNotFoundError if there is none, ValueError, naming file and key, for a file over
-    :data:`LARGEST` bytes, a key too many or too few, and every value of a wrong type, length or
-    range.
+    Raises:
+        FileNotFoundError: if there is no such file.
+        ValueError: naming file and key, for a file over :data:`LARGEST` bytes, a missing or an
+            unknown key, and a value of a wrong type, length or range.
     """
     path = Path(path)
     if not path.is_file():
-        raise FileNotFoundError(f"There is no entry {path}. {_AGAIN}")
+        raise FileNotFoundError(f"There is no entry {path}. {_REWRITE}")
     if path.stat().st_size > LARGEST:
-        raise ValueError(f"{path} has more than {LARGEST} bytes, as no entry has. {_AGAIN}")
-    held = read_json(path, _AGAIN)
-    _check(held, path)
-    return LeaderboardEntry(**held | {n: tuple(held[n]) for n in ("agents", "sensors")})
+        raise ValueError(f"{path} has more than {LARGEST} bytes, too many for an entry. {_REWRITE}")
+    return _validated(_ADAPTER, json.dumps(read_json(path, _REWRITE)), f"{path}: ")
 
 
-def _check(held: Any, path: Path | str) -> None:
-    """Raise ValueError, naming file and key, if ``held`` is no entry."""
-    names = [one.name for one in fields(LeaderboardEntry)]
-    if not isinstance(held, dict) or sorted(held) != sorted(names):
+def check_texts(**texts: Any) -> None:
+    """Raise ValueError for a text (name=..., link=...) that an entry cannot hold."""
+    kinds = get_type_hints(LeaderboardEntry, include_extras=True)
+    for key, text in texts.items():
+        _validated(TypeAdapter(kinds[key], config=_STRICT), json.dumps(text), "", key)
+
+
+_ADAPTER = TypeAdapter(LeaderboardEntry)
+
+
+def _validated(adapter: TypeAdapter, text: str, where: str, key: str = "it") -> Any:
+    """Return the value in a JSON text; raise ValueError, naming the key, if it is not valid."""
+    try:
+        return adapter.validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key, *inside = [str(place) for place in first["loc"]] or [key]
+        place = ".".join(inside)
+        reason = ": ".join(filter(None, [place, first["msg"].removeprefix("Value error, ")]))
         raise ValueError(
-            f"{path} is no entry of the leaderboard: it needs exactly {', '.join(names)}. {_AGAIN}"
-        )
-    for name in names:
-        wrong = problem(name, held[name])
-        if wrong:
-            raise ValueError(f"{path}: {name} {wrong}. {_AGAIN}")
-
-
-def _words(title: str, found: Numbers) -> str:
-    if found is None:
-        return "undefined"
-    percent = title.endswith(" SR")
-    value, low, high = (
-        "–" if number is None else f"{100 * number:.1f}" if percent else f"{number:.2f}"
-        for number in found
-    )
-    return f"{value} [{low}, {high}]" + " %" * percent
-
-
-def _short_lines(text: str) -> str:
-    """Return indented JSON with each list of numbers on one line, as people read and compare it."""
-    return _NUMBERS.sub(lambda found: f"[{' '.join(found[1].split())}]", text)
+            f"{where}{short(key)[1:-1]} must be valid, not {short(first['input'])} ({reason:.200})."
+        ) from None

@@ -19,18 +19,20 @@ def report(
     *,
     title: str = "Results",
     walks: Sequence[dict[str, Any]] = (),
+    notes: Sequence[str] = (),
     most: int = MOST,
 ) -> str:
     """Return the HTML page of ``rows``.
 
-    ``walks`` as ``walks.walk_again`` yields them; ``most``: how many episodes of cells it may hold.
+    ``walks`` as ``walks.walk_again`` yields them; ``notes``: lines under the tables; ``most``: how
+    many episodes of cells it may hold.
     Raises ValueError if there are no rows.
     """
     held = list(rows)
     parts, packed = sections(held), Packed(most)
     shown = [{**section_data(part), "grid": packed.add(part, held)} for part in parts]
     largest = max(range(len(shown)), key=lambda n: _size(shown[n]))
-    notes = []
+    notes = list(notes)
     if packed.left_out:
         notes.append(
             f"The episodes of {counted(len(packed.left_out), 'cell')} are not in this file, which "

@@ -17,7 +17,7 @@ from mitigate.guards.text.language_models.tokens import collate, encode_pair
 from mitigate.guards.text.learning.data import Pair
 from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.training import states
-from mitigate.training.recipe import accumulate
+from mitigate.training.objective import accumulate
 from mitigate.training.trainer import Trainer
 from tests.guards.text.conftest import LORA, write_tiny_model
 

@@ -14,7 +14,7 @@ from mitigate.evaluation import evaluate, evaluator
 from mitigate.guards.text import banks
 from mitigate.guards.text.guard import Safeguard
 from mitigate.guards.text.language_models.model import LanguageModel
-from mitigate.training import train
+from mitigate.training.config import read
 from mitigate.training.reports import safeguard as report
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.guards.text.conftest import LORA
@@ -74,11 +74,8 @@ def test_a_file_without_instructions_is_told(tmp_path):
 
 def test_a_training_reports_before_and_after(tiny_base, tmp_path, capsys):
     torch.manual_seed(0)
-    cfg = conf.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"])
-    assert (
-        cfg.report == "mitigate.training.reports.safeguard.before_after"
-        and train.TrainConfig.report
-    )
+    cfg = read(conf.load_config("train", ["recipe=safeguard_lora", "evaluation.episodes=4"]))
+    assert cfg.report == "mitigate.training.reports.safeguard.before_after"
     report.before_after(cfg, None, LanguageModel(tiny_base, "fp32", LORA), tmp_path)
     shown = capsys.readouterr().out
     for name in ("none", "rules", "before, alone", "after, alone", "after, guarded"):

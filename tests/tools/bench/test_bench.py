@@ -73,6 +73,7 @@ def test_the_page_lists_what_is_over_the_bar():
     assert "9.0 s with 1, 5.0 s with 2 (1.80 times)." in text
 
 
+@pytest.mark.slow
 def test_both_ways_of_evaluating_are_timed_on_the_same_rows(monkeypatch):
     monkeypatch.setattr(evaluation, "CHECKPOINTS", ("checkpoints/base",))
     real, names = evaluation.conditions, ["clean", "flare", "missing_data"]

@@ -22,6 +22,7 @@ from mitigate.core import conf, seeding
 from mitigate.core.build import located, maker
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted
+from mitigate.core.observation import sensor_lines
 from mitigate.core.options import without_config_folder
 from mitigate.core.progress import duration
 from mitigate.core.workers import packed
@@ -32,9 +33,8 @@ from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.known import Known
-from mitigate.evaluation.leaderboard.checks import check_texts
-from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
-from mitigate.evaluation.leaderboard.from_rows import entry_of, sensors_of
+from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
+from mitigate.evaluation.leaderboard.figures import entry_of
 from mitigate.evaluation.rows import ROWS
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
@@ -107,13 +107,9 @@ def benchmark(
             rows = evaluate(
                 agent, made, chosen, met, out=file, workers=workers, guards=guards, **label
             )
-    shown = sensors_of(first.sensors, as_agent(agent).sensors)
-    return entry_of(rows, name, severity=severity, sensors=shown, file=_relative(file), **told)
-
-
-def _relative(file: Path) -> str:
-    """The path as an entry shows it: an absolute one is of this machine alone."""
-    return "" if file.is_absolute() else file.as_posix()
+    told["file"] = "" if file.is_absolute() else file.as_posix()
+    shown = sensor_lines(first.sensors, as_agent(agent).sensors)
+    return entry_of(rows, name, severity=severity, sensors=shown, **told)
 
 
 def _conditions(

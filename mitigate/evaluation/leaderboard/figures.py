@@ -1,0 +1,163 @@
+"""Compute an entry from the rows of an agent."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from mitigate.core.names import unknown
+from mitigate.corruptions.registry import UNSEEN
+from mitigate.evaluation import bootstrap
+from mitigate.evaluation.blocks import FRAMES, SUITE
+from mitigate.evaluation.bootstrap import Estimate
+from mitigate.evaluation.grid import METRICS
+from mitigate.evaluation.labels import label_columns
+from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
+from mitigate.evaluation.page.model import CLEAN, Numbers, numbers
+from mitigate.evaluation.rows import Row, identity
+from mitigate.evaluation.sections import Section, mean_sr, sections
+
+
+def entry_of(
+    rows: Iterable[Row],
+    name: str,
+    *,
+    severity: float,
+    split: str | None = None,
+    file: str = "",
+    **texts: Any,
+) -> LeaderboardEntry:
+    """Return the entry of the rows of the agent ``name``, clean and at one severity.
+
+    Args:
+        rows: result rows, also of other agents, splits and severities.
+        name: name of the agent in the rows.
+        severity: severity of the corruptions.
+        split: split of the rows; None if they are of one.
+        file: where the rows are, relative to the current folder.
+        **texts: sensors, training_data and link of the entry.
+
+    Raises:
+        ValueError: if there are no such rows, if they are of several splits, lists, suites, rules
+            or agents that are not training seeds of one another, or if a condition lacks episodes.
+    """
+    chosen = _chosen(rows, name, severity, split)
+    parts = [part for part in sections(chosen) if part.blocks] or sections(chosen)
+    tables = {", ".join((part.grid.heading, part.grid.suite, part.grid.rule)) for part in parts}
+    if (
+        len(tables) > 1
+        or len(label_columns((r["name"], r["agent"], r["seed"]) for r in chosen)) > 1
+    ):
+        raise ValueError(
+            f"The rows of {name} are of several splits, lists, suites, rules or agents: "
+            f"{'; '.join(sorted(tables))}. Name a split, or a file of one."
+        )
+    for part in parts:
+        _check_whole(name, chosen, part)
+    grid = parts[0].grid
+    agents = sorted({(row["seed"], row["agent"]) for row in chosen})
+    values = {"sensors": (), "training_data": "", **_figures(parts), **texts}
+    return LeaderboardEntry(
+        name=name,
+        agents=tuple({"agent": agent, "seed": seed} for seed, agent in agents),
+        split=grid.split,
+        suite=grid.suite,
+        rule=grid.rule,
+        severity=severity,
+        episodes=len(grid.episodes),
+        listed=hashlib.sha256("\n".join(sorted(grid.episodes)).encode()).hexdigest()[:12],
+        rows={"file": file, "sha256": rows_sha(chosen), "count": len(chosen)},
+        **values,
+    )
+
+
+def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
+    """Return which seeds and conditions ``rows`` hold of the entry's agent, split, suite, rule and
+    severity that the entry leaves out; empty if none."""
+    comparable = [
+        row
+        for row in _chosen(rows, entry.name, entry.severity, entry.split)
+        if (row["suite"], row["rule"]) == (entry.suite, entry.rule)
+    ]
+    agents = {(one["seed"], one["agent"]) for one in entry.agents}
+    others = sorted({(row["seed"], row["agent"]) for row in comparable} - agents)
+    conditions = sorted({row["corruption"] for row in comparable} - entry.SR.keys())
+    return ", ".join([*(f"seed {seed} (agent {agent})" for seed, agent in others), *conditions])
+
+
+def rows_sha(rows: Iterable[Row]) -> str:
+    """Return the sha256 of rows, whatever their order and file format: of their JSON with sorted
+    keys, one per line, in the order of their identities."""
+    digest = hashlib.sha256()
+    for row in sorted(rows, key=lambda row: tuple(map(str, identity(row)))):
+        digest.update(json.dumps(row, sort_keys=True).encode() + b"\n")
+    return digest.hexdigest()
+
+
+def _chosen(rows: Iterable[Row], name: str, severity: float, split: str | None) -> list[Row]:
+    """Return the rows of the agent ``name``, clean or at ``severity``. Raises ValueError if there
+    are none."""
+    rows = list(rows)
+    if name not in (names := {row["name"] for row in rows}):
+        raise ValueError(unknown("agent in these rows", name, names))
+    chosen = [
+        row
+        for row in rows
+        if row["name"] == name
+        and split in (None, row["split"])
+        and row["severity"] == (0 if row["corruption"] == CLEAN else severity)
+    ]
+    if not any(row["severity"] == severity for row in chosen):
+        raise ValueError(f"The rows of {name} hold no corruption at severity {severity:g}.")
+    return chosen
+
+
+def _check_whole(name: str, rows: Sequence[Row], part: Section) -> None:
+    """Raise ValueError for a training seed that lacks rows of a table."""
+    conditions = [CLEAN, *(condition for block in part.blocks.values() for condition in block)]
+    cells = Counter((row["seed"], row["corruption"]) for row in rows)
+    episodes = len(part.grid.episodes)
+    for seed in sorted({row["seed"] for row in rows}):
+        have = {condition: cells[seed, condition] for condition in conditions}
+        if lacking := [condition for condition in conditions if have[condition] < episodes]:
+            more = f" and {len(lacking) - 3} more" * (len(lacking) > 3)
+            raise ValueError(
+                f"Seed {seed} of {name} is not finished ({sum(have.values()):,} of "
+                f"{episodes * len(conditions):,} rows): it lacks some under "
+                f"{', '.join(lacking[:3])}{more}. The evaluation's own command goes on from there."
+            )
+
+
+def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
+    """Return the scores by title, and SR and SPL of each condition."""
+    figures: dict[str, dict[str, Numbers]] = {"scores": {}, "SR": {}, "SPL": {}}
+    scores = figures["scores"]
+    for part in parts:
+        (column,) = part.columns
+        names = [CLEAN, *(name for block in part.blocks.values() for name in block)]
+        for metric, key in METRICS.items():
+            scores.setdefault(f"Clean {metric}", numbers(part.clean.get((column, metric))))
+            cells = [part.grid.cell(column, name, part.severity, key) for name in names]
+            for name, estimate in zip(names, bootstrap.means(cells, shares=True), strict=True):
+                figures[metric].setdefault(name, numbers(estimate))
+        if part.kind == SUITE and column in part.corrupted:
+            scores["Mean SR"] = numbers(_mean_sr(part, column))
+        for (_, block, metric), retained in part.retained.items():
+            halves = {UNSEEN[name].half for name in retained.corruptions if name in UNSEEN}
+            half = f", {halves.pop()}" if len(halves) == 1 and "," not in block else ""
+            scores[f"PRS-{metric} ({block}{half})"] = numbers(retained.estimate)
+    return figures
+
+
+def _mean_sr(part: Section, column: str) -> Estimate:
+    """Return the mean SR over the suite's corruptions of frames that were measured, so that entries
+    with and without corrupted instructions compare; without any, over what was measured."""
+    measured = {name for names in part.blocks.values() for name in names}
+    if measured & FRAMES and measured - FRAMES:
+        frames = sorted(measured & FRAMES)
+        if found := part.grid.retention([column], frames, part.severity, METRICS["SR"]):
+            return mean_sr(found).estimate
+    return part.corrupted[column].estimate

@@ -1,0 +1,45 @@
+"""Where shipped weights are looked for."""
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from mitigate.core import files
+
+
+@pytest.fixture
+def nowhere(tmp_path, monkeypatch):
+    """An empty folder, without a checkout, the weights' package and the variable."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(files, "ROOT", tmp_path / "site-packages")
+    monkeypatch.setattr(files, "PACKAGE", tmp_path / "site-packages" / "mitigate")
+    monkeypatch.setattr(files, "WEIGHTS_PACKAGE", "mitigate_weights_of_this_test")
+    monkeypatch.delenv(files.WEIGHTS_VARIABLE, raising=False)
+    return tmp_path
+
+
+def make(folder: Path) -> Path:
+    (folder / "base").mkdir(parents=True)
+    return folder / "base"
+
+
+def test_find_prefers_here_then_the_package_then_the_checkout_then_the_variable(
+    nowhere, monkeypatch
+):
+    named = make(nowhere / "named")
+    monkeypatch.setenv(files.WEIGHTS_VARIABLE, str(nowhere / "named"))
+    assert files.find("checkpoints/base") == named
+    checkout = make(nowhere / "site-packages" / "checkpoints")
+    assert files.find("checkpoints/base") == checkout
+    package = make(nowhere / "packages" / files.WEIGHTS_PACKAGE)
+    monkeypatch.setattr(sys, "path", [str(nowhere / "packages"), *sys.path])
+    assert files.find("checkpoints/base") == package
+    make(nowhere / "checkpoints")
+    assert files.find("checkpoints/base") == Path("checkpoints/base")
+
+
+def test_find_names_the_places_without_weights(nowhere):
+    with pytest.raises(FileNotFoundError, match="not installed.*site-packages.*not set"):
+        files.find("checkpoints/base")
+    assert files.find("other/base") == Path("other/base")

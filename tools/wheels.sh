@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Build the wheels of mitigate and mitigate-weights, install them, and use them away from the checkout:
+#   tools/wheels.sh [FOLDER]
+# The libraries are those of PYTHON's environment (default .venv/bin/python), so that this takes
+# minutes. hatchling is installed from the package index unless that environment has it.
+set -euo pipefail
+root=$(cd "$(dirname "$0")/.." && pwd)
+python=${PYTHON:-$root/.venv/bin/python}
+most=3000000 # bytes of the code's wheel
+work=${1:-$(mktemp -d)}
+mkdir -p "$work/wheels" "$work/empty"
+
+"$python" -m venv "$work/build"
+"$work/build/bin/python" -m pip install --quiet --disable-pip-version-check 'hatchling>=1.25'
+for source in "$root" "$root/checkpoints"; do
+  "$work/build/bin/python" -m pip wheel --quiet --disable-pip-version-check --no-deps \
+    --no-build-isolation --wheel-dir "$work/wheels" "$source"
+done
+ls -l "$work/wheels"
+code=("$work"/wheels/mitigate-[0-9]*.whl)
+[ "$(stat -c %s "${code[0]}")" -le "$most" ] || { echo "${code[0]} has over $most bytes." >&2; exit 1; }
+
+"$python" -m venv "$work/venv"
+site=$("$work/venv/bin/python" -c 'import site; print(site.getsitepackages()[0])')
+"$python" -c 'import site; print(site.getsitepackages()[0])' >"$site/libraries.pth"
+pip=("$work/venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-index --no-deps)
+"${pip[@]}" "${code[0]}"
+
+cd "$work/empty"
+unset PYTHONPATH MITIGATE_WEIGHTS
+export PATH=$work/venv/bin:$PATH OMP_NUM_THREADS=1
+python - <<'END'
+"""The suite without torch, and the error for weights that are not installed."""
+import sys
+
+sys.modules["torch"] = None
+import numpy as np
+import mitigate
+from mitigate.core.files import find
+from mitigate.corruptions import Key, corrupt
+
+assert "empty" not in mitigate.__file__ and "site-packages" in mitigate.__file__
+frame = np.full((48, 64, 3), 128, np.uint8)
+assert (corrupt(frame, "spatter", 0.6, key=Key(0, "1", 0)) != frame).any()
+try:
+    find("checkpoints/base")
+except FileNotFoundError as error:
+    assert "mitigate-weights (not installed)" in str(error), error
+else:
+    raise AssertionError("weights without mitigate-weights")
+END
+"${pip[@]}" "$work"/wheels/mitigate_weights-*.whl
+mitigate train recipe=da_per_episode debug=smoke trainer.steps=2 workers=0 rollouts=2 \
+  stages.perception_rgb.recipe.panoramas=2 stages.perception_depth.recipe.panoramas=2 \
+  evaluation.enabled=false folder=run
+mitigate evaluate checkpoint=run/agent episodes=2 'conditions=[clean]' workers=1 out=rows
+mitigate export run mine --out hardened
+rm hardened/mine/program.pt2
+mitigate export hardened/mine --programs
+python -c 'import mitigate; print(type(mitigate.load("hardened/mine")).__name__)'
+echo "The wheels train, evaluate and export in $work/empty."
