@@ -28,13 +28,13 @@ from mitigate.core.progress import duration
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
-from mitigate.evaluation import making, walked
+from mitigate.evaluation import provenance
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
 from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
-from mitigate.evaluation.known import Known
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
+from mitigate.evaluation.provenance import Known
 from mitigate.evaluation.rows import ROWS
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
@@ -103,7 +103,7 @@ def benchmark(
     with known:
         _tell(agent, made, chosen, met, workers)
         with FolderLock(file.parent):
-            walked.keep(file.parent, first, made_by, split, chosen)
+            provenance.keep(file.parent, first, made_by, split, chosen)
             rows = evaluate(
                 agent, made, chosen, met, out=file, workers=workers, guards=guards, **label
             )
@@ -175,7 +175,7 @@ def _first_world(
             f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
             "since each process has its own."
         )
-    world, made_by = making.first(make_world)
+    world, made_by = provenance.first_world(make_world)
     if not hasattr(world, "sensors"):
         kind = type(world).__name__
         raise ValueError(
@@ -207,11 +207,11 @@ def _episodes(
     """Return the split and the episodes to walk; raise ValueError for none, and for a world that
     was ``given``, of another class than the config's, without a list of its own."""
     own = given and _is_own(world, cfg)
-    split = split or (walked.name_of(world) if own else cfg.split)
+    split = split or (provenance.name_of(world) if own else cfg.split)
     if listed is None and own:
         raise ValueError(
-            f"The episodes of {cfg.env.name} are none of {walked.name_of(world)}: give its own, "
-            'listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
+            f"The episodes of {cfg.env.name} are none of {provenance.name_of(world)}: give its "
+            'own, listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
             "docs/bring-your-own.md). Of a gymnasium or torchrl environment they are seeds: "
             "listed=seeded_episodes(range(20)) (mitigate.worlds.seeded)."
         )

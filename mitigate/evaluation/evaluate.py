@@ -57,7 +57,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     met = conditions(config.condition_names, config.severity, config.severity_depth)
     # nothing slow is imported before the options are checked
     from mitigate.core import build
-    from mitigate.evaluation import making, walked
+    from mitigate.evaluation import provenance
     from mitigate.evaluation.evaluator import evaluate
     from mitigate.guards.opening import open_guards
     from mitigate.guards.text import choices
@@ -66,14 +66,14 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     check_walks(agent)
     world = build.maker(env.world)
     name = _column(config, overrides)
-    first, made_by = making.first(world)
+    first, made_by = provenance.first_world(world)
     check_sensors(met, first.sensors, env.name)
     choices.check(config.safeguard)
     out = Path(config.out or default_folder(config, name))
     guards = open_guards(config.safeguard, config.restore, first.sensors, log=out / DECISIONS)
     with FolderLock(out) as lock:
-        walked.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
-        lock.expect(out / ROWS, *walked.notes(out, config.split))
+        provenance.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
+        lock.expect(out / ROWS, *provenance.notes(out, config.split))
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "

@@ -36,7 +36,7 @@ from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import run_episode, run_side_by_side, start_of
-from mitigate.evaluation.known import Known
+from mitigate.evaluation.provenance import Known
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world

@@ -133,7 +133,7 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
     """Write ``table.md`` with its pictures, and ``overview.md`` with the paper beside it, from
     the rows under ``paths``."""
     from mitigate.evaluation import report, rows
-    from mitigate.evaluation.paper import beside
+    from mitigate.evaluation.report import beside
     from mitigate.evaluation.sections import sections
 
     found = rows.gather(paths)
