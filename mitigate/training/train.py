@@ -164,9 +164,8 @@ def _run(cfg: DictConfig, folder: Path, ranks: Ranks) -> Path:
     if not ranks.first:
         return folder
     agent.cpu().eval()
-    checkpoint.save_agent(agent, folder / "agent")
-    with atomic_text(folder / "agent" / "config.yaml") as file:
-        file.write(OmegaConf.to_yaml({"agent": written(cfg.agent, agent)}))
+    config = OmegaConf.to_yaml({"agent": written(cfg.agent, agent)})
+    checkpoint.save_agent(agent, folder / "agent", config)
     with atomic_text(folder / "config.yaml") as file:
         file.write(OmegaConf.to_yaml(cfg, resolve=True))
     if cfg.evaluation.enabled:
