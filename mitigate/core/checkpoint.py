@@ -224,8 +224,9 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
         folder: the folder.
         config: text of ``config.yaml``; None: no such file.
     """
-    if hasattr(agent, "save"):
-        agent.save(folder)
+    save = getattr(agent, "save", None)  # of a kind of agent with a format of its own
+    if save is not None:
+        save(folder)
         if config is not None:
             folders.add_file(folder, CONFIG, config)
         return

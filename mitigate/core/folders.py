@@ -71,13 +71,28 @@ def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
 
     Raises:
         OSError: The folder cannot be written.
+        ValueError: It holds files of another kind.
     """
     folder = make_folder(folder)
+    _check_kind(folder, kind)
     with writing(folder):
         draft = tempfile.TemporaryDirectory(f".{os.getpid()}.tmp", ".draft-", folder)
     with draft as place:
         yield Path(place)
         _replace(Path(place), folder, kind)
+
+
+def _check_kind(folder: Path, kind: str) -> None:
+    try:
+        manifest = read_manifest(folder)
+    except ValueError:  # damaged: it is written again
+        return
+    loose = {"weights", "agent"}
+    if manifest is not None and manifest.kind != kind and not {manifest.kind, kind} <= loose:
+        raise ValueError(
+            f"{folder} holds files of another kind ({manifest.kind}, not {kind}), which are not "
+            "replaced. Name another folder, or delete this one."
+        )
 
 
 def _replace(draft: Path, folder: Path, kind: str) -> None:

@@ -12,7 +12,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from mitigate.core.json_files import read_json
+from mitigate.core.json_files import read_object
 
 CARD = "card.json"
 FORMAT = 1
@@ -26,8 +26,8 @@ def card_files(folder: Path, again: str) -> dict[str, Any] | None:
         ValueError: The card is damaged. The message ends with ``again``.
     """
     file = folder / CARD
-    card = read_json(file, again) if file.is_file() else None
-    if not isinstance(card, dict) or "sha256" not in card:
+    card = read_object(file, again) if file.is_file() else {}
+    if "sha256" not in card:
         return None
     if card.get("format") != FORMAT:
         raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {again}")
