@@ -68,7 +68,7 @@ ALLOWED = {
     ("mitigate/worlds/recorded/unpacking.py", "sqlite3.connect"): "reads, with immutable=1",
     ("mitigate/guards/text/language_models/base.py", "save_pretrained"): OWN,
     ("mitigate/bridge/events.py", "mkdir"): "fails if anything has the name",
-    ("mitigate/bridge/shared_memory.py", "os.open"): "a random name and O_EXCL",
+    ("mitigate/bridge/connection.py", "os.open"): "a random name and O_EXCL",
     ("mitigate/bridge/hook/mitigate_hook.py", "open"): "a marker in the server's private folder",
     ("mitigate/bridge/hook/mitigate_hook.py", "os.open"): "memory that the server has named",
     ("mitigate/training/ranks.py", "open"): "the null device, as standard output",
