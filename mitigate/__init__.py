@@ -7,8 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from mitigate.agents.hardened import load_hardened
-    from mitigate.agents.loading import load
+    from mitigate.agents.loading import load, load_hardened
     from mitigate.evaluation.benchmark import benchmark
     from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 
@@ -26,7 +25,7 @@ _HOMES = {
     "LeaderboardEntry": "mitigate.evaluation.leaderboard.entry",
     "benchmark": "mitigate.evaluation.benchmark",
     "load": "mitigate.agents.loading",
-    "load_hardened": "mitigate.agents.hardened",
+    "load_hardened": "mitigate.agents.loading",
 }
 
 

@@ -22,8 +22,8 @@ from mitigate.agents.adapters import ConvAdapter, adapter_parameters, adapters_o
 from mitigate.agents.fusion import reliability
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import feature_loss, policy_kl
-from mitigate.shipping import export, export_command, others
-from mitigate.shipping.finished import finished
+from mitigate.shipping import export, export_command
+from mitigate.shipping.export import finished
 
 ROOT = Path(__file__).parent.parent
 NAMES = ("low_light", "spatter", "flare", "defocus")
@@ -150,7 +150,7 @@ def test_multirun_trains_one_run_per_combination(runs):
 
 
 def test_export_reloads_to_the_same_outputs(runs, tmp_path, monkeypatch):
-    monkeypatch.setattr(others, "WALKS", 1)
+    monkeypatch.setattr(export, "WALKS", 1)
     walks = export_command._walks_of(runs[0], ["agent=frontier", "env.size=16"], None)
     folder = export.export(runs[0], "tiny", out=tmp_path, walks=walks)
     loaded, trained = mitigate.load_hardened(folder), finished(runs[0], walks)[1].eval()

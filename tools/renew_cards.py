@@ -1,8 +1,8 @@
-"""Write the README of hardened folders again from their cards: python tools/renew_cards.py DIR...
+"""Write the README of hardened folders anew from their cards: python tools/renew_cards.py DIR...
 
-For folders that an older version exported. Each folder is checked first; the new one replaces it
-by a rename. The card gets the new sum of the README and loses that of a missing ``program.pt2``.
-``--rows FILE...`` adds the agent of those rows to the card, if they are of its weights.
+For folders that an older version exported. Each is checked first; the new one is made aside and
+renamed into place, with a manifest. Nothing else in it changes, but that
+``--rows FILE...`` adds to a card which agent those rows are of, where they are of its weights.
 """
 
 from __future__ import annotations
@@ -15,9 +15,10 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from mitigate.agents import hardened
+from mitigate.agents import loading
+from mitigate.core import folders, older_folders
 from mitigate.core.errors import said
-from mitigate.core.files import put_folder, sha256
+from mitigate.core.files import put_folder
 from mitigate.evaluation.rows import Row, gather
 from mitigate.shipping.card import readme, rows_agent
 
@@ -25,21 +26,19 @@ from mitigate.shipping.card import readme, rows_agent
 def renew(folder: Path, rows: Sequence[Row] = ()) -> None:
     """Rewrite ``folder``. Raises FileNotFoundError or ValueError if it is not whole; it is then as
     it was."""
-    card = hardened.check(folder)
+    card = loading.check_hardened(folder)
     named = rows_agent(rows, {card["agent"], card["run_agent"]})
     if named:
         card["rows_agent"] = named
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as aside:
         draft = Path(shutil.copytree(folder, Path(aside) / folder.name))
-        page = draft / hardened.README
+        page = draft / loading.README
         page.write_text(readme(card), encoding="utf-8")
-        card["files"][hardened.README] = sha256(page)
-        if not (draft / hardened.PROGRAM).exists():
-            card["files"].pop(hardened.PROGRAM, None)
-        card["sha256"] = hardened.card_sha(card)
+        card = {**older_folders.without_sums(card), "format": loading.FORMAT}
         text = json.dumps(card, indent=2, allow_nan=False) + "\n"
-        (draft / hardened.CARD).write_text(text, encoding="utf-8")
-        hardened.check(draft)
+        (draft / loading.CARD).write_text(text, encoding="utf-8")
+        folders.seal(draft, "hardened")
+        loading.check_hardened(draft)
         put_folder(draft, folder, Path(aside) / "old")
 
 
@@ -55,7 +54,7 @@ def main() -> None:
         rows = gather(given.rows) if given.rows else []
         for folder in given.folders:
             renew(folder.resolve(), rows)
-            print(f"wrote {folder / hardened.README}")
+            print(f"wrote {folder / loading.README}")
     except (OSError, ValueError) as error:
         sys.exit(f"error: {said(error)}")
 

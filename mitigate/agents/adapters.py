@@ -29,7 +29,8 @@ from mitigate.agents.adapter_layers import (
 )
 from mitigate.agents.sites import MAP, Run, Site, channels_of, first, inputs_of, listed, look, named
 from mitigate.core import checkpoint
-from mitigate.core.files import atomic_text, make_folder
+from mitigate.core.files import write_text
+from mitigate.core.folders import problem, write_folder
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
@@ -163,7 +164,14 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     """Write the adapters alone: ``adapters.safetensors`` and ``adapters.json`` (names, shapes of
     the bottlenecks, sha256 of the backbone). Returns the folder. Raises ValueError if there are
     none; warns if the backbone's running statistics are not those of when they were inserted."""
-    adapters, folder = _attached(model), Path(folder)
+    with write_folder(folder, "adapters") as draft:
+        write_adapters(model, draft)
+    return Path(folder)
+
+
+def write_adapters(model: nn.Module, draft: Path) -> None:
+    """Write the files of :func:`save_adapters` into ``draft``, without a manifest."""
+    adapters = _attached(model)
     if not adapters:
         raise ValueError("There are no adapters to save: call insert_adapters(model, ...) first.")
     if moved_statistics(model):
@@ -171,25 +179,22 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
             "The backbone's running statistics (BatchNorm) have changed since the adapters were "
             "inserted, so these adapters fit this backbone only: save it, too. To keep them, train "
             "with the backbone in eval mode, model.eval().",
-            stacklevel=2,
+            stacklevel=3,
         )
-    make_folder(folder)
     modules = nn.ModuleDict({_key(name): adapter for name, adapter in adapters.items()})
-    checkpoint.save_weights(modules, folder / WEIGHTS)
+    checkpoint.write_tensors(modules, draft / WEIGHTS)
     settings = {
         "backbone_sha256": backbone_sha(model),
         "adapters": {name: adapter.settings for name, adapter in adapters.items()},
     }
-    with atomic_text(folder / SETTINGS) as file:
-        json.dump(settings, file, indent=2)
-    return folder
+    write_text(draft / SETTINGS, json.dumps(settings, indent=2))
 
 
 def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     """Insert the adapters that ``save_adapters`` wrote; returns the adapted modules' names.
 
-    Each goes to its module's device and dtype. The sha256 beside the file is compared if there is
-    one (that of a shipped folder is in its card). Raises FileNotFoundError if a file is missing;
+    Each goes to its module's device and dtype. The files are compared with the manifest, if there
+    is one. Raises FileNotFoundError if a file is missing;
     ValueError for a damaged file, for a model that has adapters already, for adapters trained on
     another backbone (or this one in another dtype), or for modules that ``model`` does not have.
     """
@@ -199,6 +204,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         if not file.is_file():
             raise FileNotFoundError(f"There are no adapters in {folder}: {file.name} is missing.")
     try:
+        if wrong := problem(folder / SETTINGS):
+            raise ValueError(f"{SETTINGS} {wrong}")
         settings = read_json(folder / SETTINGS, "Fetch the folder again.")
         tensors = checkpoint.load_tensors(folder / WEIGHTS)
         shapes = {name: dict(shape) for name, shape in settings["adapters"].items()}

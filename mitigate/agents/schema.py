@@ -1,4 +1,6 @@
-"""What the settings of our agents may be, where they come with weights.
+"""Allowed values of settings that come with weights.
+
+The class of each agent in ``KINDS`` has its own ``settings_schema`` beside its constructor.
 
 The limits are far above what any agent here has; they keep a file from asking for all memory, and
 patterns from taking for ever to match.
@@ -16,7 +18,6 @@ from mitigate.core import settings
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 
 SENSES = (RGB, DEPTH, "instruction")
-RGB_ENCODERS = ("own", "efficientnet_lite0")
 MOST_TARGETS = 64  # patterns of a list
 MOST_WORDS = 50_000  # of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
@@ -86,16 +87,7 @@ def _are_words(value: Any) -> bool:
 
 VOCABULARY = Kind(f"null or a list of at most {MOST_WORDS} words of the letters a to z", _are_words)
 TRUTH = Kind("true or false", lambda value: type(value) is bool)
-FUSION = {"learned": TRUTH, "rate": number(0, 1e6), "cap": number(0, 1e6)}
-PLANNER = {
-    "width": whole(4, 1024),
-    "heads": whole(1, 64),
-    "text_layers": whole(0, 32),
-    "layers": whole(0, 32),
-    "dropout": number(0, 1),
-    "fusion": FUSION,
-}
-ADAPTERS = {
+ADAPTERS = {  # keyword arguments of ``insert_adapters``
     "target_modules": TARGETS,
     "ring": TARGETS,
     "gates": TARGETS,
@@ -107,56 +99,44 @@ ADAPTERS = {
     "views": Kind(f"{VIEWS}, as the agents' panoramas have", lambda value: value == VIEWS),
     "hfov": number(1, 179),
 }
-POLICY = {
-    "width": whole(4, 1024),
-    "heads": whole(1, 64),
-    "text_layers": whole(0, 32),
-    "dropout": number(0, 1),
-}
-ENCODERS = {  # what all have
+ENCODERS = {  # of all our agents
     "size": whole(16, 1024),
     "blind": some_of(SENSES),
     "adapters": ADAPTERS,
 }
-AGENT = {
-    **ENCODERS,
-    "width": whole(4, 1024),
-    "planner": PLANNER,
-    "vocabulary": VOCABULARY,
-    "encoder": one_of(RGB_ENCODERS),
-}
-RECURRENT = {
-    **ENCODERS,
-    "sensors": some_of((RGB, DEPTH)),
-    "rgb_width": whole(4, 1024),
-    "depth_width": whole(4, 1024),
-    "policy": POLICY,
-    "vocabulary": VOCABULARY,
-}
-FRONTIER = {**ENCODERS, "width": whole(4, 1024), "eye": number(0.05, 5)}
 
 
-class Shipped(NamedTuple):
-    """A kind of agent that a folder may hold: what its settings may be, and of the part that has
-    attention heads, its name and the usual width and heads."""
+class Schema(NamedTuple):
+    """Settings of a kind of agent: the attribute ``settings_schema`` of its class.
+
+    Attributes:
+        settings: the allowed values by name; nested mappings for arguments of a part.
+        part: the setting that holds the arguments of the part with attention heads; "" for none.
+        usual: width and heads of that part by default.
+    """
 
     settings: dict[str, Any]
     part: str = ""
     usual: tuple[int, int] = (1, 1)
 
 
-KINDS = {  # a folder may name these classes, and no others
-    "mitigate.agents.topological.TopologicalAgent": Shipped(AGENT, "planner", (128, 4)),
-    "mitigate.agents.recurrent.RecurrentAgent": Shipped(RECURRENT, "policy", (160, 4)),
-    "mitigate.agents.frontier.FrontierAgent": Shipped(FRONTIER),
-}
+KINDS = (  # classes that a folder may name, and no others
+    "mitigate.agents.topological.TopologicalAgent",
+    "mitigate.agents.recurrent.RecurrentAgent",
+    "mitigate.agents.frontier.FrontierAgent",
+)
 
 
-def class_of(target: str) -> Callable[..., Any]:
+def class_of(target: str) -> Any:
     """The class of one of ``KINDS``; each is imported only where it is needed."""
     assert target in KINDS, target
     module, _, name = target.rpartition(".")
     return getattr(import_module(module), name)
+
+
+def schema_of(target: str) -> Schema:
+    """The settings of one of ``KINDS``."""
+    return class_of(target).settings_schema
 
 
 _AGAIN = "Fetch the folder again, or train again."
@@ -168,7 +148,7 @@ def check(
     """Return ``found``, the settings of an agent of the kind ``target`` in ``file``. Raises
     ValueError, naming the file and the setting, for an unknown one and a value of another kind;
     ``again``: what to do about it."""
-    kind = KINDS[target]
+    kind = schema_of(target)
     _check(found, kind.settings, file, "agent", again)
     own = found.get(kind.part) or {}
     width, heads = (own.get(n, d) for n, d in zip(("width", "heads"), kind.usual, strict=True))

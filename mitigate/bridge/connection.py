@@ -6,7 +6,9 @@ What happens is noted as an event (``events.py``).
 from __future__ import annotations
 
 import hmac
+import mmap
 import os
+import secrets
 import socket
 import sys
 import time
@@ -18,11 +20,9 @@ from typing import Any
 
 from mitigate.bridge.cameras import CHANNELS, Rig
 from mitigate.bridge.condition import Condition
-from mitigate.bridge.episodes import begun, ended
-from mitigate.bridge.events import EVENTS, note
+from mitigate.bridge.events import EVENTS, begun, ended, note
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import BROKEN, LONGEST, receive, send
-from mitigate.bridge.shared_memory import SharedMemory
 from mitigate.core.names import short, unknown
 
 # of messages, behind "hello"
@@ -53,6 +53,42 @@ def _said(kind: str, error: Exception) -> str:
         f"the message {kind!r} is not as the protocol has it ({short(repr(error), 200)}): use the "
         "mitigate_hook.py of this version."
     )
+
+
+class SharedMemory:
+    """Memory for frames that the server and an environment's process share.
+
+    It is a file in ``folder``, mapped as ``map``. Its name is gone as soon as both sides mapped it.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.map: mmap.mmap | None = None
+        self.file: Path | None = None
+
+    def make(self, size: int) -> dict[str, Any]:
+        """Map ``size`` new bytes; return where the other side finds them. Raises ValueError if
+        there is no room."""
+        self.forget()
+        self.file = self.folder / secrets.token_hex(8)
+        descriptor = os.open(self.file, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
+        try:
+            os.posix_fallocate(descriptor, 0, size)
+            self.map = mmap.mmap(descriptor, size)
+        except OSError as error:
+            raise ValueError(
+                f"there is no room for {size >> 10} KiB of frames in {self.folder.parent} "
+                f"({error.strerror}): free some, or enlarge it (docker: --shm-size=1g)."
+            ) from error
+        finally:
+            os.close(descriptor)
+        return {"file": str(self.file), "size": size}
+
+    def forget(self) -> None:
+        """Delete the name of what was made: the memory lasts as long as it is mapped."""
+        if self.file is not None:
+            self.file.unlink(missing_ok=True)
+            self.file = None
 
 
 class Connection:

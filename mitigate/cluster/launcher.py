@@ -54,7 +54,7 @@ for _kind in (LauncherConfig, RayConfig, SlurmConfig):
     ConfigStore.instance().store(group="launcher", name=f"{_kind.name}_schema", node=_kind)
 
 
-def chosen(node: DictConfig | LauncherConfig) -> LauncherConfig:
+def chosen(node: LauncherConfig | DictConfig) -> LauncherConfig:
     """The launcher that a config names. Raises ValueError for a number that is too small, and for
     what can be seen from here to be missing or misnamed, before any work is done."""
     launcher = OmegaConf.to_object(node) if isinstance(node, DictConfig) else node

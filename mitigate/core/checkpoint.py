@@ -1,8 +1,8 @@
-"""Checkpoints: ``model.safetensors`` holds weights alone, to evaluate, ship or start from.
+"""Weights: ``model.safetensors`` in a folder, to evaluate, ship or start from.
 
-They are whole or not there. Beside each lies its sha256 (``checksums.py``), which is compared
-before the file is read; a file without one, of an older version or from elsewhere, is read all the
-same. What a training goes on from is in ``training/states.py``.
+A folder has a manifest (``folders.py``), a single file has its sha256 beside it (``checksums.py``);
+either is compared before the weights are read. Weights without one, of an older version or from
+elsewhere, are read too. The states that a training resumes from are in ``training/states.py``.
 """
 
 from __future__ import annotations
@@ -16,10 +16,12 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save_file
 from torch import nn
 
-from mitigate.core import checksums
+from mitigate.core import checksums, folders
+from mitigate.core.files import write_text
 from mitigate.core.names import short
 
 WEIGHTS = "model.safetensors"
+CONFIG = "config.yaml"
 ADAPTER = ".adapter."  # in the names of adapters' tensors, see mitigate/agents/adapters.py
 
 
@@ -47,21 +49,32 @@ def weights_file(path: str | Path) -> Path:
 
 
 def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> Path:
-    """Write the tensors of ``module.state_dict()`` to a safetensors file (or into a folder).
+    """Write the tensors of ``module.state_dict()`` to a safetensors file, or into a folder.
 
-    ``half`` rounds floats to float16, as in the shipped weights: half the bytes.
+    Args:
+        module: the module.
+        path: a folder, which gets ``model.safetensors`` and a manifest; or a ``.safetensors`` file,
+            which gets its sha256 beside it.
+        half: round floats to float16, as in the shipped weights: half the bytes.
+
+    Returns:
+        The file.
     """
     given = Path(path)
-    file = given if given.suffix == ".safetensors" else given / WEIGHTS
+    if given.suffix == ".safetensors":
+        return checksums.write(given, lambda draft: write_tensors(module, draft, half=half))
+    with folders.write_folder(given, "weights") as draft:
+        write_tensors(module, draft / WEIGHTS, half=half)
+    return given / WEIGHTS
+
+
+def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
+    """Write the tensors of ``module`` to ``file``, a draft; see :func:`save_weights`."""
     tensors = {
         name: (value.half() if half and value.is_floating_point() else value).cpu().clone()
         for name, value in module.state_dict().items()
         if isinstance(value, torch.Tensor)
     }
-    return checksums.write(file, lambda temporary: _save_file(tensors, temporary))
-
-
-def _save_file(tensors: dict[str, torch.Tensor], file: Path) -> None:
     try:
         save_file(tensors, file)
     except SafetensorError as error:
@@ -173,7 +186,7 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     """Return the tensors of a safetensors file; ValueError if it is damaged, by its sidecar (if it
     has one) or by itself, PermissionError if it may not be read."""
     file.open("rb").close()  # tells what may not be read from what is damaged
-    problem = checksums.problem(file)
+    problem = folders.problem(file)
     if not problem:
         try:
             found = load_file(file)
@@ -196,15 +209,31 @@ def _again(file: Path) -> str:
             "They are those of a run: the same `make train` command writes them again from the "
             "run's checkpoints."
         )
-    note = checksums.sidecar(file)
+    manifest = file.with_name(folders.MANIFEST)
+    note = manifest if manifest.is_file() else checksums.sidecar(file)
     alone = f" If you know that {note.name} alone is damaged, delete it." if note.is_file() else ""
     return f"Fetch or train them again.{alone}"
 
 
-def save_agent(agent: nn.Module, folder: str | Path) -> None:
-    """Write what was trained into ``folder``: by the agent's own ``save``, if it has one (an
-    adapter in PEFT's format), else as :func:`save_weights` does."""
-    getattr(agent, "save", lambda path: save_weights(agent, path))(folder)
+def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) -> None:
+    """Write what was trained into ``folder``, and its settings.
+
+    Args:
+        agent: written by its own ``save``, if it has one (an adapter in PEFT's format), else as
+            :func:`save_weights` does.
+        folder: the folder.
+        config: text of ``config.yaml``; None: no such file.
+    """
+    save = getattr(agent, "save", None)  # of a kind of agent with a format of its own
+    if save is not None:
+        save(folder)
+        if config is not None:
+            folders.add_file(folder, CONFIG, config)
+        return
+    with folders.write_folder(folder, "agent") as draft:
+        write_tensors(agent, draft / WEIGHTS)
+        if config is not None:
+            write_text(draft / CONFIG, config)
 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:

@@ -1,4 +1,6 @@
-"""The sha256 of a file in a sidecar beside it, in the format of ``sha256sum -c``.
+"""The sha256 of a single file in a sidecar beside it, in the format of ``sha256sum -c``.
+
+The states of a training have one. Folders have a manifest in its place (``core/folders.py``).
 
 While a file is replaced, its sidecar lists the sums of the old one and of the new one: a program
 that is killed at any moment leaves a file that has one of them.
@@ -14,6 +16,7 @@ from typing import Any
 from mitigate.core.files import atomic_text, sha256, write_atomically
 
 SUFFIX = ".sha256"
+LARGEST = 4096  # characters of a sidecar, which has a line or two
 DIGITS = 12  # hex digits of a fingerprint: 48 bits
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 
@@ -88,7 +91,11 @@ def delete_sidecars(folder: Path, pattern: str, *, orphans: bool = False) -> Non
 
 def _sums(path: Path) -> list[str]:
     """Return the sums that the sidecar of ``path`` lists; ValueError if it is damaged."""
-    lines = sidecar(path).read_text(encoding="utf-8").splitlines()
+    with open(sidecar(path), encoding="utf-8") as file:
+        text = file.read(LARGEST + 1)
+    if len(text) > LARGEST:
+        raise ValueError("it is damaged")
+    lines = text.splitlines()
     found = [_LINE.fullmatch(line) for line in lines]
     sums = [line[1] for line in found if line and line[2] == path.name]
     if not sums or len(sums) < len(lines):

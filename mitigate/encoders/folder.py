@@ -1,8 +1,8 @@
 """What a training of an encoder leaves: a folder of data that plain PyTorch can load.
 
-With adapters: ``adapters.safetensors``, its sha256 beside it, ``adapters.json``; with
-``tune=all``: ``model.safetensors`` and its sha256. ``encoder.json`` says what frames and which
-output they belong to. Reading one runs nothing from it: the encoder is given by the caller.
+With adapters: ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``:
+``model.safetensors``. ``encoder.json`` says what frames and which output they belong to; all files
+are listed in the manifest. Reading one runs nothing from it: the caller gives the encoder.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.agents import adapters
-from mitigate.core import checkpoint
-from mitigate.core.files import atomic_text, make_folder
+from mitigate.core import checkpoint, folders
+from mitigate.core.files import write_text
 from mitigate.core.json_files import read_json
 
 if TYPE_CHECKING:
@@ -47,20 +47,19 @@ encoder.load_state_dict(parse(open("{folder}/model.safetensors", "rb").read()))
 
 def write(encoder: Encoder, folder: str | Path) -> Path:
     """Write what was trained of ``encoder`` into ``folder``; return it."""
-    folder = Path(folder)
-    make_folder(folder)
-    if encoder.tune == "adapters":
-        adapters.save_adapters(encoder.model, folder)
-    else:
-        checkpoint.save_weights(_inner(encoder), folder)
-    with atomic_text(folder / CARD) as file:
-        json.dump({"format": FORMAT, **described(encoder)}, file, indent=2)
-    with atomic_text(folder / README) as file:
-        file.write(
+    with folders.write_folder(folder, "encoder") as draft:
+        if encoder.tune == "adapters":
+            adapters.write_adapters(encoder.model, draft)
+        else:
+            checkpoint.write_tensors(_inner(encoder), draft / checkpoint.WEIGHTS)
+        card = {"format": FORMAT, **described(encoder)}
+        write_text(draft / CARD, json.dumps(card, indent=2))
+        write_text(
+            draft / README,
             f"# A hardened encoder\n\nTrained by `make train RECIPE=encoder` (mitigate). In plain "
-            f"PyTorch:\n\n```python\n{lines(encoder, 'this-folder')}```\n"
+            f"PyTorch:\n\n```python\n{lines(encoder, 'this-folder')}```\n",
         )
-    return folder
+    return Path(folder)
 
 
 def described(encoder: Encoder) -> dict[str, Any]:
@@ -92,6 +91,9 @@ def card(folder: str | Path) -> dict[str, Any]:
             f"{folder} holds no hardened encoder: {CARD} is missing. Name the folder `agent` of a "
             "run of `make train RECIPE=encoder`."
         )
+    damage = folders.problem(file)
+    if damage:
+        raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")
     found = read_json(file, _AGAIN)
     for name, kinds in ENTRIES.items():
         value = found.get(name) if isinstance(found, dict) else None

@@ -19,6 +19,7 @@ import torch
 import torch.nn.functional as F
 
 WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
+MANIFEST = "manifest.json"
 LONGEST = 1 << 24  # bytes of a header (ours)
 # of safetensors: name -> numpy's; BF16, which numpy lacks, is the upper half of a float32
 TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "U8": "<u1"}
@@ -147,15 +148,29 @@ def _shapes(shape):
     return found
 
 
+def _sums(folder):
+    """The sha256 of the weights in the manifest, or beside them as earlier versions wrote it."""
+    manifest = os.path.join(folder, MANIFEST)
+    if not os.path.isfile(manifest):
+        with open(os.path.join(folder, WEIGHTS + SUM), encoding="utf-8") as file:
+            return re.findall(r"^([0-9a-f]{64})  ", file.read(LONGEST), re.MULTILINE)
+    with open(manifest, encoding="utf-8") as file:
+        text = file.read(LONGEST)
+    try:
+        held = json.loads(text)
+        listed = [held["files"], held.get("replaced", {})]
+        return [str(files[WEIGHTS]["sha256"]) for files in listed if WEIGHTS in files]
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        raise ValueError(f"{manifest} is damaged: fetch the folder again.") from error
+
+
 def read(folder):
     """The settings and tensors of a folder: (dict, {name: tensor}). Errors as ``attach``."""
     folder = str(folder)
     path = os.path.join(folder, WEIGHTS)
     with open(path, "rb") as file:
         data = file.read()
-    with open(path + SUM, encoding="utf-8") as file:
-        sums = re.findall(r"^([0-9a-f]{64})  ", file.read(), re.MULTILINE)
-    if hashlib.sha256(data).hexdigest() not in sums:
+    if hashlib.sha256(data).hexdigest() not in _sums(folder):
         raise ValueError(f"{path} does not have the sha256 beside it: fetch it again.")
     with open(os.path.join(folder, SETTINGS), encoding="utf-8") as file:
         text = file.read(LONGEST)

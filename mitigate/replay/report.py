@@ -18,8 +18,7 @@ from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.plots import COLOURS, DPI, plain
 from mitigate.evaluation.sections import label
 from mitigate.guards.guard import NO_GUARDS, Guards
-from mitigate.replay.changes import FEW, Changes
-from mitigate.replay.walk import ACTIONS, Answers
+from mitigate.replay.walk import ACTIONS, FEW, Answers, Changes
 from mitigate.worlds.recorded import Recording
 
 Found = Mapping[str, Mapping[str, Changes]]  # agent -> condition -> changes

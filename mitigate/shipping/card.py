@@ -1,27 +1,34 @@
-"""The card of a hardened checkpoint: what made it and what it reached, and the README from it."""
+"""The card of a hardened checkpoint: what made it and what it reached, and the README from it,
+with the front matter that Hugging Face reads."""
 
 from __future__ import annotations
 
 import math
+import re
 import subprocess
 from collections.abc import Iterable
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from mitigate.agents import adapters, hardened
+import yaml
+
+from mitigate.agents import adapters, loading
 from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted, short
 from mitigate.corruptions import SUITE_VERSION
-from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
+from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, RESAMPLES, Estimate
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
-from mitigate.shipping.front_matter import front_matter
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
 CODE = ("mitigate", "conf", "recipes", "pyproject.toml")  # of a checkout: what makes a folder
+LIBRARY = "mitigate"
+TASK = "robotics"  # of Hugging Face's list of tasks, the one for agents that move
+TAGS = ("embodied-navigation", "robustness", "sensor-corruption", "safetensors")
+DATASET = "mitigate-episodes"  # ours; no data set of the hub
 LICENCE, UNKNOWN = "Apache-2.0", "other"  # of our agents; Hugging Face's word where it is not said
 
 
@@ -34,7 +41,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
     trained_at = {**cfg, **(cfg.get("schedule") or {})}
-    kind = str((cfg.get("agent") or {}).get("_target_", hardened.TARGET))
+    kind = str((cfg.get("agent") or {}).get("_target_", loading.TARGET))
     return {
         "recipe": cfg["name"],
         "severity": trained_at["severity"],
@@ -44,19 +51,19 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
         "suite": SUITE_VERSION,
         "base": reference(cfg["init"]) if cfg.get("init") else None,
         "teachers": [reference(path) for path in teachers],
-        "vocabulary": hardened.vocabulary_sha(agent),
+        "vocabulary": loading.vocabulary_sha(agent),
         "commit": commit(),
         "uncommitted": uncommitted(),
         "versions": {package: _version(package) for package in VERSIONS},
         "class": kind,
-        "license": LICENCE if hardened.is_ours(kind) else UNKNOWN,
+        "license": LICENCE if loading.is_ours(kind) else UNKNOWN,
     }
 
 
 def reference(weights: str) -> dict[str, str]:
     """Return the path of ``weights`` (below the current folder: relative) and its sha256."""
     held = find(weights)
-    own = hardened.adapters_only(held)
+    own = loading.adapters_only(held)
     file = held / adapters.WEIGHTS if own else checkpoint.weights_file(held)
     return {"weights": weights.removeprefix(f"{Path.cwd()}/"), "sha256": sha256(file)}
 
@@ -214,7 +221,7 @@ def _cell(found: list[float | None]) -> str:
 def _use(card: dict[str, Any]) -> str:
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     if not card.get("program", True):
-        own = hardened.is_ours(card.get("class", ""))
+        own = loading.is_ours(card.get("class", ""))
         built = "Build the agent with the settings in `config.yaml`; it is filled in place. "
         return (
             f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
@@ -287,3 +294,82 @@ def _version(package: str) -> str | None:
         return version(package)
     except PackageNotFoundError:
         return None
+
+
+# Hugging Face's front matter ----------------------------------------------------------------------
+
+
+def front_matter(card: dict[str, Any]) -> str:
+    """Return what stands above a README for Hugging Face: YAML between two lines of ``---``.
+
+    ``hf upload`` of a folder makes a model page from it, with library, licence, tags and metrics
+    (docs/deployment.md); ``model-index`` is left out where there are no metrics. The form:
+    https://github.com/huggingface/hub-docs/blob/main/modelcard.md
+    """
+    kind = "adapters" if card["adapters_only"] else "full-weights"
+    held: dict[str, Any] = {
+        "library_name": LIBRARY,
+        "license": str(card["license"]).lower(),
+        "pipeline_tag": TASK,
+        "tags": list(dict.fromkeys([*TAGS, kind, _tag(card["recipe"])])),
+    }
+    results = [_result(entry) for entry in card["metrics"]]
+    if results:
+        held["model-index"] = [{"name": card["name"], "results": results}]
+    text = yaml.dump(held, Dumper=_Quoting, sort_keys=False, allow_unicode=True)
+    return f"---\n{text}---\n"
+
+
+class _Quoting(yaml.SafeDumper):
+    """Quotes texts that YAML 1.2, which the hub reads, takes for numbers and PyYAML's 1.1 does
+    not: 1e3, 08."""
+
+
+def _represent(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+    style = "'" if re.match(r"[-+.]*\d", text) else None
+    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style)
+
+
+_Quoting.add_representer(str, _represent)
+
+
+def _result(entry: dict[str, Any]) -> dict[str, Any]:
+    """Return one table of a card as a result of ``model-index``."""
+    severity = f"severity {entry['severity']:g}"
+    found = [(f"Clean {metric}", value) for metric, value in entry["clean"].items()]
+    found += entry["PRS"].items()
+    metrics = [_metric(title, *value) for title, value in found if value[0] is not None]
+    metrics += [
+        _metric(f"SR, {label(name)}", value, None, None)
+        for name, value in entry["SR"].items()
+        if value is not None
+    ]
+    return {
+        "task": {"type": TASK, "name": "Embodied navigation"},
+        "dataset": {
+            "type": DATASET,
+            "name": f"{entry['split']}, corruption suite {entry['suite']}, {severity}",
+            "config": severity,
+            "split": entry["split"],
+            "revision": f"suite {entry['suite']}",
+            "args": {
+                "success": entry["rule"],
+                "episodes": entry["episodes"],
+                "seeds": list(entry["seeds"]),
+            },
+        },
+        "metrics": metrics,
+    }
+
+
+def _metric(title: str, value: float, low: float | None, high: float | None) -> dict[str, Any]:
+    kind = title.partition(" (")[0].partition(",")[0]
+    found: dict[str, Any] = {"type": _tag(kind), "name": title, "value": value}
+    if low is not None and high is not None:
+        found["args"] = {"interval": [low, high], "level": LEVEL, "resamples": RESAMPLES}
+    return found
+
+
+def _tag(text: str) -> str:
+    """Return ``text`` as the hub writes tags: small letters, digits and dashes."""
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")

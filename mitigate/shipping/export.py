@@ -10,39 +10,63 @@ from __future__ import annotations
 import copy
 import json
 import os
+import pickle
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import torch
 import yaml
 from safetensors.torch import load_file, save_file
-from torch import Tensor
+from torch import Tensor, nn
 
-from mitigate.agents import adapters, hardened
+from mitigate.agents import adapters, loading
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import checkpoint
-from mitigate.core.files import find, put_folder, sha256, write_text
+from mitigate.core import checkpoint, folders, older_folders, settings
+from mitigate.core.files import find, put_folder, write_text
 from mitigate.core.output import output_folder
+from mitigate.corruptions import CLEAN
 from mitigate.evaluation import rows as result_rows
+from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
-from mitigate.shipping import others, programs
+from mitigate.shipping import programs
 from mitigate.shipping.card import facts, metrics, readme, rows_agent, weights_of
-from mitigate.shipping.finished import finished
-from mitigate.shipping.others import Walks
+from mitigate.worlds.episodes import Episode
+from mitigate.worlds.world import World
 
 HARDENED = Path("checkpoints/hardened")
 # largest absolute difference of an output on the probe (ours; logits are of the order of 1 to 10)
 RELOADED = 1e-5  # the folder in a fresh process against the agent in this one
 EXPORTED = 1e-3  # program.pt2, and the ONNX files, against the agent
 ROUNDED = 0.1  # the float16 weights against the run's float32 ones
-_CHECK = (
-    "import sys; from mitigate.shipping.export import check_outputs; check_outputs(*sys.argv[1:])"
-)
+WALKS = 2  # episodes that a reloaded agent of another class must walk alike (heuristic)
+_RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
+_TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
+
+
+class Walks:
+    """What an exported folder is checked by: ``episodes`` walked clean, in a fresh process, by the
+    agent that ``make_agent`` makes and the folder fills, in what ``make_world`` makes."""
+
+    def __init__(
+        self,
+        make_agent: Callable[[], nn.Module],
+        make_world: Callable[[], World],
+        episodes: Sequence[Episode],
+    ) -> None:
+        self.make_agent, self.make_world = make_agent, make_world
+        self.episodes = list(episodes)[:WALKS]
+
+    def measures(self, agent: Any) -> list[dict[str, Any]]:
+        """How ``agent`` walks, the hash of its weights first."""
+        world = self.make_world()
+        walked = [run_episode(agent.eval(), world, e, CLEAN, 0) for e in self.episodes]
+        return [{"weights": checkpoint.weights_sha(agent)}, *walked]
 
 
 def export(
@@ -83,6 +107,36 @@ def export(
     return target
 
 
+def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any]:
+    """Return the config and the agent of the finished run in the folder ``run``.
+
+    Raises FileNotFoundError if there is none, ValueError for a run of what ships as it is, of a
+    kind of agent that needs ``walks``, and for weights that do not fit float16.
+    """
+    weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
+    loading.refuse_what_ships_as_it_is(run)
+    if not (weights.is_file() and config.is_file()):
+        inside = run.name == "agent" and (run / checkpoint.WEIGHTS).is_file()
+        raise FileNotFoundError(
+            f"{run} holds no finished run: it needs config.yaml and agent/{checkpoint.WEIGHTS}. "
+            + (f"Name the run: {run.parent}." if inside else _TRAIN)
+        )
+    kind = loading.kind_of(config)
+    if walks is None and kind != loading.TARGET:
+        raise ValueError(
+            f"{run} holds a {kind.rpartition('.')[2]}, of which a folder without programs is "
+            "written: give walks to check it by (on the command line: "
+            f"agent={settings.named(kind)})."
+        )
+    agent = loading.build_from(config) if walks is None else walks.make_agent()
+    checkpoint.load_weights(agent, weights)
+    if walks is None and not all(
+        torch.isfinite(value.half()).all() for value in agent.state_dict().values()
+    ):
+        raise ValueError(f"{weights} holds numbers that are not finite in float16.")
+    return settings.read(config), agent.eval()
+
+
 def add_programs(folder: Path) -> Path:
     """Write ``program.pt2`` of the hardened ``folder`` again and list it in the card.
 
@@ -93,11 +147,11 @@ def add_programs(folder: Path) -> Path:
         FileNotFoundError: if ``folder`` is not a whole hardened folder.
         ValueError: also for an agent without programs, and for other outputs.
     """
-    card = hardened.check(folder)
+    card = loading.check_hardened(folder)
     if not card.get("program", True):
         raise ValueError(f"{folder} holds an agent of a class for which there are no programs.")
-    agent = hardened.load_hardened(folder)
-    size = json.loads((folder / hardened.INPUTS).read_text(encoding="utf-8"))["size"]
+    agent = loading.load_hardened(folder)
+    size = json.loads((folder / loading.INPUTS).read_text(encoding="utf-8"))["size"]
     exported = programs.export_programs(agent, size)
     probe = programs.probe(agent, size)
     modules = {name: program.module() for name, program in exported.items()}
@@ -108,13 +162,13 @@ def add_programs(folder: Path) -> Path:
     folder = folder.resolve()
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as aside:
         draft = Path(shutil.copytree(folder, Path(aside) / folder.name))
-        programs.save_programs(exported, draft / hardened.PROGRAM)
-        card["files"][hardened.PROGRAM] = sha256(draft / hardened.PROGRAM)
-        card["sha256"] = hardened.card_sha(card)
-        _write_json(draft / hardened.CARD, card)
-        hardened.check(draft)
+        programs.save_programs(exported, draft / loading.PROGRAM)
+        card = {**older_folders.without_sums(card), "format": loading.FORMAT}
+        _write_json(draft / loading.CARD, card)
+        folders.seal(draft, "hardened")
+        loading.check_hardened(draft)
         put_folder(draft, folder, Path(aside) / "old")
-    return folder / hardened.PROGRAM
+    return folder / loading.PROGRAM
 
 
 def _check_free(target: Path, overwrite: bool) -> None:
@@ -128,7 +182,7 @@ def _check_free(target: Path, overwrite: bool) -> None:
     try:
         if target.is_symlink():
             raise ValueError("it is a link")
-        hardened.read_card(target)
+        loading.read_card(target)
     except (ValueError, OSError) as error:
         raise ValueError(
             f"{target} is not replaced: --overwrite replaces folders that `mitigate export` wrote, "
@@ -140,9 +194,9 @@ def check_outputs(folder: str, expected: str) -> None:
     """Raise ValueError unless the agent and the program in ``folder`` give the outputs in the
     safetensors file ``expected`` on the probe. Run by ``export`` in a fresh process."""
     wanted = _open(load_file(expected))
-    agent = hardened.load_hardened(folder)
-    size = json.loads((Path(folder) / hardened.INPUTS).read_text(encoding="utf-8"))["size"]
-    program = programs.load_programs(Path(folder) / hardened.PROGRAM)
+    agent = loading.load_hardened(folder)
+    size = json.loads((Path(folder) / loading.INPUTS).read_text(encoding="utf-8"))["size"]
+    program = programs.load_programs(Path(folder) / loading.PROGRAM)
     for what, networks, most in (
         ("agent", programs.networks(agent), RELOADED),
         ("program", program, EXPORTED),
@@ -167,23 +221,23 @@ def _write(
     """Fill ``draft`` and check it."""
     config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)  # where it ran is no matter
     config = config.replace(f"{Path.cwd()}/", "")
-    write_text(draft / hardened.CONFIG, config)
+    write_text(draft / loading.CONFIG, config)
     adapters_only = _only_adapters_trained(cfg, agent)
     known = facts(cfg, agent)  # before the slow part: what is missing shows at once
     shipped = agent
-    others.write(draft, agent, adapters_only, half=walks is None)
+    _write_weights(draft, agent, adapters_only, half=walks is None)
     if walks is None and not adapters_only:
         shipped = copy.deepcopy(agent)
         checkpoint.load_weights(shipped, draft)
     weights = {checkpoint.weights_sha(a) for a in (agent, shipped)}
     found = _rows(run, rows, weights)
     made: dict[str, Any] = {"program": False, "latency_ms": {}}
-    made["checked"] = {"walks": others.WALKS}
+    made["checked"] = {"walks": WALKS}
     wanted: dict[str, Tensor] = {}
     if walks is None:
         made, wanted = _programs(draft, agent, shipped, onnx)
     card = {
-        "format": hardened.FORMAT,
+        "format": loading.FORMAT,
         "name": name,
         **known,
         "agent": checkpoint.weights_sha(shipped),  # of the weights alone, as run_agent
@@ -193,17 +247,24 @@ def _write(
         "metrics": metrics(found, weights),
         **made,
     }
-    write_text(draft / hardened.README, readme(card))
+    write_text(draft / loading.README, readme(card))
+    _write_json(draft / loading.CARD, card)
     for file in draft.iterdir():
         file.chmod(0o644)  # safetensors are written for their owner alone
-    card["files"] = {file.name: sha256(file) for file in sorted(draft.iterdir())}
-    card["sha256"] = hardened.card_sha(card)
-    _write_json(draft / hardened.CARD, card)
+    folders.seal(draft, "hardened")
     print("reloading in a fresh process", flush=True)
     if walks is None:
         _reload(draft, wanted)
     else:
-        others.reload(draft, agent, walks)
+        _reload_walks(draft, agent, walks)
+
+
+def _write_weights(draft: Path, agent: nn.Module, only_adapters: bool, *, half: bool) -> None:
+    """Write the weights of ``agent``, with ``half`` in float16, or its adapters alone."""
+    if only_adapters:
+        adapters.write_adapters(agent, draft)
+    else:
+        checkpoint.write_tensors(agent, draft / checkpoint.WEIGHTS, half=half)
 
 
 def _programs(
@@ -215,8 +276,8 @@ def _programs(
     given = programs.probe(agent, size)
     print("exporting the programs", flush=True)
     exported = programs.export_programs(shipped, size)
-    programs.save_programs(exported, draft / hardened.PROGRAM)
-    _write_json(draft / hardened.INPUTS, programs.description(shipped, size))
+    programs.save_programs(exported, draft / loading.PROGRAM)
+    _write_json(draft / loading.INPUTS, programs.description(shipped, size))
     eager = programs.networks(shipped)
     modules = {kind: program.module() for kind, program in exported.items()}
     before, wanted = (programs.outputs(programs.networks(a), given) for a in (agent, shipped))
@@ -227,9 +288,7 @@ def _programs(
             f"{ROUNDED:g} is allowed. Was the run trained to the end? Nothing was written."
         )
     if onnx:
-        from mitigate.shipping.onnx_programs import save_onnx
-
-        save_onnx(shipped, size, draft, EXPORTED)
+        programs.save_onnx(shipped, size, draft, EXPORTED)
     checked = {
         "float16": rounded,
         "float16_tolerance": ROUNDED,
@@ -243,7 +302,7 @@ def _programs(
 def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
     """Whether all but the adapters of ``agent`` is, bit for bit, what the run started from."""
     init = find(cfg.get("init") or "")
-    if not adapters.adapted(agent) or not cfg.get("init") or hardened.adapters_only(init):
+    if not adapters.adapted(agent) or not cfg.get("init") or loading.adapters_only(init):
         return False
     base = copy.deepcopy(agent)
     adapters.remove_adapters(base)
@@ -297,7 +356,7 @@ def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:
         expected = Path(folder) / "expected.safetensors"
         save_file(_open(wanted), expected)
         done = subprocess.run(
-            [sys.executable, "-c", _CHECK, str(draft), str(expected)],
+            [sys.executable, "-c", _RUN.format("check_outputs"), str(draft), str(expected)],
             env={**os.environ, "PYTHONPATH": path},
             capture_output=True,
             text=True,
@@ -307,6 +366,36 @@ def _reload(draft: Path, wanted: dict[str, Tensor]) -> None:
         raise ValueError(
             f"The folder does not reload to the same outputs ({last}); nothing written"
         )
+
+
+def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
+    """Raise ValueError unless a fresh process reloads ``draft`` to an agent that walks as ``agent``
+    does."""
+    with tempfile.TemporaryDirectory() as folder:
+        given, expected = Path(folder, "walks"), Path(folder, "expected.json")
+        given.write_bytes(pickle.dumps((sys.path, walks)))  # ours, for the process started here
+        expected.write_text(json.dumps(walks.measures(agent)), encoding="utf-8")
+        done = subprocess.run(
+            [sys.executable, "-c", _RUN.format("check_walks"), *map(str, (draft, given, expected))],
+            env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))},
+            capture_output=True,
+            text=True,
+        )
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        raise ValueError(f"The folder does not reload to the same agent ({last}); nothing written")
+
+
+def check_walks(draft: str, given: str, expected: str) -> None:
+    """Raise ValueError if the agent in ``draft`` walks otherwise than ``expected`` says. Run by
+    :func:`_reload_walks` in a fresh process."""
+    path, walks = pickle.loads(Path(given).read_bytes())
+    sys.path[:] = path
+    agent = loading.load_hardened(draft, agent=walks.make_agent())
+    found = json.loads(json.dumps(walks.measures(agent)))
+    wanted = json.loads(Path(expected).read_text(encoding="utf-8"))
+    if found != wanted:
+        raise ValueError(f"it walks {found}, and walked {wanted}")
 
 
 def _open(tensors: dict[str, Tensor]) -> dict[str, Tensor]:

@@ -22,7 +22,7 @@ from mitigate.evaluation import config as _options  # noqa: F401 - registers the
 from mitigate.evaluation.episode_lists import episodes
 
 if TYPE_CHECKING:  # nothing slow is imported before main() has read the command line
-    from mitigate.shipping.others import Walks
+    from mitigate.shipping.export import Walks
 
 
 def main() -> None:
@@ -60,7 +60,7 @@ def main() -> None:
         parser.error(f"the following arguments are required: {', '.join(missing)}")
     if given["programs"] and given["name"] is not None:
         parser.error("--programs takes one hardened folder and no name.")
-    from mitigate.agents import hardened
+    from mitigate.agents import loading
     from mitigate.shipping.export import add_programs, export
 
     if given.pop("programs"):
@@ -80,7 +80,7 @@ def main() -> None:
         folder = export(given.pop("run"), given.pop("name"), **given)
     except (ValueError, OSError) as error:
         sys.exit(f"error: {conf.said(error)}")
-    card = hardened.read_card(folder)
+    card = loading.read_card(folder)
     if card["latency_ms"]:
         print(f"latency in ms: {json.dumps(card['latency_ms'])}")
     print(f"wrote {folder}")
@@ -88,11 +88,11 @@ def main() -> None:
 
 def _own_kind(run: Path) -> list[str]:
     """The option that names the agent of ``run`` where it is one of ours that has no programs."""
-    from mitigate.agents import hardened
+    from mitigate.agents import loading
 
-    config = run / hardened.CONFIG
-    kind = hardened.kind_of(config) if config.is_file() else hardened.TARGET
-    name = "" if kind == hardened.TARGET else settings.named(kind)
+    config = run / loading.CONFIG
+    kind = loading.kind_of(config) if config.is_file() else loading.TARGET
+    name = "" if kind == loading.TARGET else settings.named(kind)
     return [f"agent={name}"] if name else []
 
 
@@ -100,9 +100,9 @@ def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
     """How to make the agent and the world that ``overrides`` name; the agent's settings are those
     beside the run's weights, read as data."""
     from mitigate.agents import loading
-    from mitigate.shipping import others
+    from mitigate.shipping.export import WALKS, Walks
 
     cfg = conf.composed("evaluate", overrides, configs)
     node = loading.settings_of(cfg.agent, str(run / "agent"), overrides)
-    listed = episodes(cfg.env, cfg.split, others.WALKS)
-    return others.Walks(build.maker(node), build.maker(cfg.env.world), listed)
+    listed = episodes(cfg.env, cfg.split, WALKS)
+    return Walks(build.maker(node), build.maker(cfg.env.world), listed)

@@ -33,9 +33,8 @@ def run_plan(plan: Plan, ranks: Ranks) -> Path:
     if not ranks.first:
         return plan.folder
     plan.agent.cpu().eval()
-    checkpoint.save_agent(plan.agent, plan.folder / "agent")
-    with atomic_text(plan.folder / "agent" / "config.yaml") as file:
-        file.write(OmegaConf.to_yaml({"agent": plan.agent_config}))
+    agent_config = OmegaConf.to_yaml({"agent": plan.agent_config})
+    checkpoint.save_agent(plan.agent, plan.folder / "agent", agent_config)
     with atomic_text(plan.folder / "config.yaml") as file:
         file.write(OmegaConf.to_yaml(plain_data(config)))
     if config.evaluation.enabled:

@@ -18,8 +18,9 @@ from hypothesis import strategies as st
 from safetensors.torch import save_file
 from torch import nn
 
-from mitigate.agents import adapters, hardened
-from mitigate.core import checkpoint
+from mitigate.agents import adapters
+from mitigate.agents import loading as agents
+from mitigate.core import checkpoint, older_folders
 from mitigate.encoders import folder as encoder_folder
 from mitigate.encoders import loading, plain_adapters
 from mitigate.guards.text.language_models import adapter_folder
@@ -177,7 +178,7 @@ def test_a_safetensors_file_that_is_none_is_refused(tmp_path, raw):
 def card(**changes) -> dict:
     made = {"format": 1, "files": {}, "adapters_only": False, "base": None, "vocabulary": None}
     made |= {"commit": "0", "agent": "0", **changes}
-    return made | {"sha256": hardened.card_sha(made)}
+    return made | {"sha256": older_folders.card_sha(made)}
 
 
 OTHER = "../../../etc/passwd"
@@ -207,24 +208,24 @@ CARDS = {
 @pytest.mark.parametrize("made", CARDS.values(), ids=CARDS)
 def test_a_hardened_folder_whose_card_is_none_is_refused(tmp_path, made):
     raw = made if isinstance(made, bytes) else json.dumps(made).encode()
-    (tmp_path / hardened.CARD).write_bytes(raw)
-    assert str(tmp_path) in refused(lambda: hardened.load_hardened(tmp_path))
+    (tmp_path / agents.CARD).write_bytes(raw)
+    assert str(tmp_path) in refused(lambda: agents.load_hardened(tmp_path))
 
 
 @pytest.mark.parametrize("folder", [None, 3, True])
 def test_a_hardened_folder_that_is_no_path_is_refused(folder):
     with pytest.raises(TypeError, match=f"path of a hardened checkpoint, not {folder}: name one"):
-        hardened.load_hardened(folder)
+        agents.load_hardened(folder)
 
 
 @pytest.mark.parametrize("name", [OTHER, "/etc/passwd", "..", "", ".", "a/b", "./x", "a\\..\\/b"])
 def test_a_card_reads_no_file_outside_its_folder(tmp_path, name):
-    needed = (*hardened.FILES, checkpoint.WEIGHTS)
+    needed = (*agents.FILES, checkpoint.WEIGHTS)
     for each in needed:
         (tmp_path / each).write_text("x")
-    files = {name: "0"} | dict.fromkeys(needed, hardened.sha256(tmp_path / needed[0]))
-    (tmp_path / hardened.CARD).write_text(json.dumps(card(files=files)))
-    refused(lambda: hardened.load_hardened(tmp_path), "no plain file name")
+    files = {name: "0"} | dict.fromkeys(needed, agents.sha256(tmp_path / needed[0]))
+    (tmp_path / agents.CARD).write_text(json.dumps(card(files=files)))
+    refused(lambda: agents.load_hardened(tmp_path), "no plain file name")
 
 
 SHAPE = {"channels": 3, "reduction": 1, "kernel": 3}
@@ -349,11 +350,11 @@ def test_sound_files_of_before_are_still_read(tmp_path):
 def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypatch):
     """Who writes the card can write its sums too: what it lists must not run either."""
     shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
-    program, file = tmp_path / "mine" / hardened.PROGRAM, tmp_path / "mine" / hardened.CARD
+    program, file = tmp_path / "mine" / agents.PROGRAM, tmp_path / "mine" / agents.CARD
     program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))
     held = json.loads(file.read_text())
-    held["files"][hardened.PROGRAM] = hardened.sha256(program)
-    file.write_text(json.dumps(held | {"sha256": hardened.card_sha(held)}))
+    held["files"][agents.PROGRAM] = agents.sha256(program)
+    file.write_text(json.dumps(held | {"sha256": older_folders.card_sha(held)}))
     monkeypatch.chdir(ROOT)
-    assert not hardened.load_hardened(tmp_path / "mine").training
+    assert not agents.load_hardened(tmp_path / "mine").training
     assert not (tmp_path / "ran").exists()

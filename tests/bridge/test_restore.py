@@ -9,9 +9,8 @@ import pytest
 import torch
 
 from mitigate.bridge.cameras import Rig
-from mitigate.bridge.check import described
+from mitigate.bridge.check import described, of
 from mitigate.bridge.results import Told
-from mitigate.bridge.sheet import of
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.evaluation import rows
 from mitigate.guards.frames.restorer import Restorer

@@ -14,7 +14,7 @@ import torch
 from safetensors.torch import save_file
 from torch import nn
 
-from mitigate.core import checkpoint, checksums, files, seeding
+from mitigate.core import checkpoint, checksums, files, folders, seeding
 from mitigate.training import states
 
 STATE = {
@@ -154,7 +154,7 @@ def test_weights_that_may_not_be_read_are_not_called_damaged(tmp_path, monkeypat
     def refused(path):
         raise PermissionError(13, "Permission denied", str(path))
 
-    monkeypatch.setattr("mitigate.core.checksums.sha256", refused)
+    monkeypatch.setattr("mitigate.core.folders.sha256", refused)
     with pytest.raises(PermissionError, match=r"denied.*model\.safetensors"):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
 
@@ -217,6 +217,6 @@ def test_a_full_disk_is_named_and_leaves_what_was_there(tmp_path):
         signal.signal(signal.SIGXFSZ, before_signal)
     assert (tmp_path / checkpoint.WEIGHTS).read_bytes() == before
     assert sorted(p.name for p in tmp_path.iterdir()) == [
+        folders.MANIFEST,
         checkpoint.WEIGHTS,
-        f"{checkpoint.WEIGHTS}.sha256",
     ]

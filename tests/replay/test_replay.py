@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from omegaconf import OmegaConf
 
 from mitigate import cli
 from mitigate.agents.recurrent.policy import Odometer
@@ -22,9 +23,8 @@ from mitigate.evaluation import episode_lists
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.guard import Guard, Guards
 from mitigate.replay import export_drive, replay, report
-from mitigate.replay.changes import _share, compare
 from mitigate.replay.export_drive import write_frames
-from mitigate.replay.walk import Answers, walk
+from mitigate.replay.walk import Answers, _share, compare, walk
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.recorded import Recording, open_recording
 from mitigate.worlds.recorded.recording import NONE, answered
@@ -264,7 +264,8 @@ def test_one_that_is_stopped_says_the_whole_command_and_does_not_promise_to_go_o
 def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
     tmp_path, form, monkeypatch
 ):
-    cfg = load_config("export_drive", [f"form={form}", "env.size=16", "episodes=2"])
+    options = [f"form={form}", "env.size=16", "episodes=2"]
+    config = OmegaConf.to_object(load_config("export_drive", options))
     listed = [
         replace(e, episode_id=f"../../é.{n}") for n, e in enumerate(load_episodes("val_seen")[:2])
     ]
@@ -274,18 +275,18 @@ def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
         patch.setattr(export_drive, "write_bytes", full)
         patch.setattr(export_drive, "write_bag", full)
         with pytest.raises(OSError, match="No space left"):
-            export_drive.run(cfg, out)
+            export_drive.run(config, out)
     assert [*out.iterdir()] == []
-    written = export_drive.run(cfg, out)
+    written = export_drive.run(config, out)
     assert [path.stem for path in written] == ["é-0", "é-1"]
     assert [*tmp_path.iterdir()] == [tmp_path / "a"] and [*(tmp_path / "a").iterdir()] == [out]
     found = [open_recording(path)[0] for path in written]
     assert [drive.instruction for drive in found] == [e.instruction.text for e in listed]
     with pytest.raises(ValueError, match="is there already: name another folder"):
-        export_drive.run(cfg, out)
+        export_drive.run(config, out)
     listed[:] = [replace(listed[0], episode_id=name) for name in ("a/b", "a.b")]
     with pytest.raises(ValueError, match="Two episodes would be the drive .*'a/b' and 'a.b'"):
-        export_drive.run(cfg, tmp_path / "other")
+        export_drive.run(config, tmp_path / "other")
 
 
 def full(*_):

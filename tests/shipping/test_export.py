@@ -22,9 +22,9 @@ from safetensors.torch import save_file
 from torch.export.pt2_archive._package import load_pt2
 
 import mitigate
-from mitigate.agents import adapters, hardened, loading
+from mitigate.agents import adapters, loading
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import build, checkpoint
+from mitigate.core import build, checkpoint, folders
 from mitigate.core.files import sha256
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS
 from mitigate.evaluation import rows
@@ -50,7 +50,7 @@ ADAPTERS = {
 def finished_run(folder: Path, agent: TopologicalAgent, settings: dict, **others) -> Path:
     """A run folder as `make train` leaves it."""
     checkpoint.save_weights(agent, folder / "agent")
-    node = {"_target_": hardened.TARGET, **settings}
+    node = {"_target_": loading.TARGET, **settings}
     cfg = {
         "name": "tiny",
         "severity": 0.6,
@@ -152,23 +152,31 @@ def copied(place, tmp_path) -> Path:
 
 
 def resign(folder: Path, **changes) -> None:
-    """Change the card and give it a fitting sha256 again."""
+    """Change the card and list it with a fitting sha256 again."""
     card = json.loads((folder / "card.json").read_text())
-    card |= changes
-    (folder / "card.json").write_text(json.dumps({**card, "sha256": hardened.card_sha(card)}))
+    (folder / "card.json").write_text(json.dumps({**card, **changes}))
+    folders.seal(folder, "hardened")
+
+
+def relist(folder: Path, change) -> None:
+    """Change what the manifest lists."""
+    manifest = json.loads((folder / folders.MANIFEST).read_text())
+    change(manifest["files"])
+    (folder / folders.MANIFEST).write_text(json.dumps(manifest))
 
 
 def node_of(settings: dict) -> DictConfig:
     """The config of a topological agent with ``settings``."""
-    return OmegaConf.create({"_target_": hardened.TARGET, **settings})
+    return OmegaConf.create({"_target_": loading.TARGET, **settings})
 
 
 def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
     folder = place / "hardened/whole"
-    card = hardened.check(folder)
+    card = loading.check_hardened(folder)
     assert card["recipe"] == "tiny" and card["seed"] == 3 and card["license"] == "Apache-2.0"
     assert card["base"]["sha256"] == sha256(place / "base/model.safetensors")
-    assert card["files"].keys() | {"card.json"} == {p.name for p in folder.iterdir()}
+    listed = folders.check(folder).files
+    assert listed.keys() | {folders.MANIFEST} == {p.name for p in folder.iterdir()}
     (entry,) = card["metrics"]
     assert entry["episodes"] == 8 and entry["clean"]["SR"][0] == 0.75
     assert entry["clean"]["SR"][1] < 0.75 < entry["clean"]["SR"][2]
@@ -181,14 +189,14 @@ def test_the_card_says_what_made_the_agent_and_lists_every_file(place):
     for kind in ("eager", "exported"):
         for name in ("perceive", "decide"):
             assert card["latency_ms"][kind][name]["cpu"] > 0
-    assert sha256(folder / "model.safetensors") == card["files"]["model.safetensors"]
+    assert sha256(folder / "model.safetensors") == listed["model.safetensors"].sha256
     tensors = (folder / "model.safetensors").stat().st_size
     assert tensors < 0.6 * (place / "runs/whole/agent/model.safetensors").stat().st_size
 
 
 @pytest.mark.parametrize("name", ["whole", "adapted"])
 def test_the_loaded_agent_does_what_the_trained_one_did(place, name):
-    trained = hardened.build(place / "runs" / name / "config.yaml").eval()
+    trained = loading.build_from(place / "runs" / name / "config.yaml").eval()
     checkpoint.load_weights(trained, place / "runs" / name / "agent")
     state = torch.random.get_rng_state()
     loaded = mitigate.load_hardened(place / "hardened" / name)
@@ -206,22 +214,22 @@ def test_the_loaded_agent_does_what_the_trained_one_did(place, name):
 
 def test_a_folder_of_adapters_holds_no_backbone_and_needs_its_base(place, tmp_path):
     folder = place / "hardened/adapted"
-    assert hardened.check(folder)["adapters_only"]
+    assert loading.check_hardened(folder)["adapters_only"]
     assert not (folder / "model.safetensors").exists()
     assert not list((place / "hardened").rglob("*.sha256"))  # the cards have the sums
     other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
     with pytest.raises(ValueError, match="another"):
-        hardened.load_hardened(folder, base=other)
+        loading.load_hardened(folder, base=other)
     with pytest.raises(FileNotFoundError, match="base="):
-        hardened.load_hardened(folder, base=tmp_path / "nothing")
-    assert adapters.adapted(hardened.load_hardened(folder, base=place / "base"))
+        loading.load_hardened(folder, base=tmp_path / "nothing")
+    assert adapters.adapted(loading.load_hardened(folder, base=place / "base"))
 
 
 def test_evaluation_and_training_take_a_folder_of_adapters(place):
     folder = str(place / "hardened/adapted")
     node = loading.settings_of(node_of({}), folder)
     agent = loading.build_agent(node, weights=folder, seed=0)
-    assert checkpoint.weights_sha(agent) == hardened.check(Path(folder))["run_agent"]
+    assert checkpoint.weights_sha(agent) == loading.check_hardened(Path(folder))["run_agent"]
     with pytest.raises(ValueError, match="other modules"):
         loading.build_agent(node_of(TINY), weights=folder, seed=0)
 
@@ -266,7 +274,7 @@ print(json.dumps([waypoints.sum().item(), logits[0].tolist()]))
 """
     import numpy as np
 
-    agent = hardened.load_hardened(place / "hardened/whole")
+    agent = loading.load_hardened(place / "hardened/whole")
     given = programs.probe(agent, SIZE)
     first = {  # the first decision of an episode: one panorama, one node, two ghosts
         **{name: given[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
@@ -298,11 +306,11 @@ def test_a_changed_file_is_refused_by_name(copied, name, spoil):
     else:
         file.write_bytes(data if spoil == "flipped" else data[: len(data) // 2])
     if (name, spoil) == ("program.pt2", "removed"):
-        hardened.load_hardened(copied)  # nothing reads it
+        loading.load_hardened(copied)  # nothing reads it
         return
     error = FileNotFoundError if spoil == "removed" else ValueError
     with pytest.raises(error, match=name.replace(".", r"\.")):
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
 
 
 @pytest.mark.parametrize(
@@ -310,55 +318,51 @@ def test_a_changed_file_is_refused_by_name(copied, name, spoil):
     [
         (lambda t: t[: len(t) // 2], "cut short or damaged"),
         (lambda t: t.replace('"seed": 3', '"seed": 4'), "sha256"),
-        (lambda t: "[]", "no card"),
+        (lambda t: "[]", "must hold a JSON object"),
         (lambda t: "[" * 100_000, "card.json"),
-        (lambda t: t.replace('"format": 1', '"format": 2'), "format 1"),
+        (lambda t: t.replace('"format": 2', '"format": 3'), "format 2"),
     ],
 )
 def test_a_changed_card_is_refused(copied, text, problem):
     card = copied / "card.json"
     card.write_text(text(card.read_text()))
     with pytest.raises(ValueError, match=problem):
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
 
 
 def test_a_folder_without_a_card_is_none(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"card\.json is missing"):
-        hardened.load_hardened(tmp_path)
+        loading.load_hardened(tmp_path)
 
 
 @pytest.mark.parametrize("name", ["model.safetensors", "program.pt2", "config.yaml"])
 def test_a_card_that_lacks_a_file_is_refused(copied, name):
-    files = json.loads((copied / "card.json").read_text())["files"]
-    del files[name]
-    resign(copied, files=files)
+    relist(copied, lambda files: files.pop(name))
     part = "not listed in" if name == "program.pt2" else f"does not list {name}"
     with pytest.raises(ValueError, match=part):
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
 
 
 @pytest.mark.parametrize("name", ["../outside", "/etc/hostname", "..", "a/b"])
 def test_a_card_may_name_no_file_outside_its_folder(copied, name):
-    files = json.loads((copied / "card.json").read_text())["files"]
-    resign(copied, files={**files, name: "0" * 64})
+    relist(copied, lambda files: files.update({name: files["config.yaml"]}))
     with pytest.raises(ValueError, match="no plain file name"):
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
 
 
 def test_a_config_is_data_and_names_no_other_class(copied):
     config = yaml.safe_load((copied / "config.yaml").read_text())
     config["agent"]["_target_"] = "os.system"
     (copied / "config.yaml").write_text(yaml.safe_dump(config))
-    files = json.loads((copied / "card.json").read_text())["files"]
-    resign(copied, files={**files, "config.yaml": sha256(copied / "config.yaml")})
+    folders.seal(copied, "hardened")
     with pytest.raises(ValueError, match=r"os\.system"):
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
 
 
 def test_another_vocabulary_is_refused(copied):
     resign(copied, vocabulary="000000000000")
     with pytest.raises(ValueError, match="vocabulary"):
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
 
 
 @pytest.mark.parametrize("name", ["adapters.safetensors", "adapters.json", "decide.onnx"])
@@ -366,8 +370,8 @@ def test_a_known_file_that_the_card_does_not_list_is_refused(copied, name):
     (copied / name).write_bytes(b"x")
     (copied / ".gitattributes").touch()  # as the hub adds it
     for read in (
-        lambda: hardened.load_hardened(copied),
-        lambda: hardened.fill(TopologicalAgent(**TINY), copied),
+        lambda: loading.load_hardened(copied),
+        lambda: loading.fill(TopologicalAgent(**TINY), copied),
     ):
         with pytest.raises(ValueError, match=f"{re.escape(name)} is not listed"):
             read()
@@ -375,11 +379,11 @@ def test_a_known_file_that_the_card_does_not_list_is_refused(copied, name):
 
 def test_adapters_that_the_card_does_not_list_take_no_part(place, copied):
     """They are other weights than those that the card's sums are of."""
+    resign(copied, base=None)
     for name in (adapters.WEIGHTS, adapters.SETTINGS):
         shutil.copy(place / "hardened/adapted" / name, copied)
-    resign(copied, base=None)
-    assert hardened.adapters_only(place / "hardened/adapted")
-    assert not hardened.adapters_only(copied)
+    assert loading.adapters_only(place / "hardened/adapted")
+    assert not loading.adapters_only(copied)
     assert cards.reference(str(copied))["sha256"] == sha256(copied / checkpoint.WEIGHTS)
     with pytest.raises(ValueError, match="not listed"):
         loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
@@ -387,7 +391,9 @@ def test_adapters_that_the_card_does_not_list_take_no_part(place, copied):
 
 def test_evaluation_and_training_refuse_a_changed_folder(copied):
     assert loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
-    checkpoint.save_weights(TopologicalAgent(**TINY), copied)
+    with pytest.raises(ValueError, match="another kind .hardened, not weights"):
+        checkpoint.save_weights(TopologicalAgent(**TINY), copied)
+    checkpoint.write_tensors(TopologicalAgent(**TINY), copied / checkpoint.WEIGHTS)
     with pytest.raises(ValueError, match="does not have the sha256"):
         loading.build_agent(node_of(TINY), weights=str(copied), seed=0)
 
@@ -395,19 +401,18 @@ def test_evaluation_and_training_refuse_a_changed_folder(copied):
 def test_a_folder_of_another_agent_than_its_card_says_is_refused(copied):
     resign(copied, agent="0123456789ab")
     with pytest.raises(ValueError, match=r"card\.json is of '0123456789ab'"):
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
     own = TopologicalAgent(**TINY).eval()
-    assert hardened.fill(own, copied) is own  # to train from: with adapters it is another one
+    assert loading.fill(own, copied) is own  # to train from: with adapters it is another one
 
 
 @pytest.mark.parametrize(
     "name", ["n" * 5000, "a\ud800", "a\nb"], ids=["long", "surrogate", "lines"]
 )
 def test_a_card_lists_only_names_that_can_be_held_and_shown(copied, name):
-    files = json.loads((copied / "card.json").read_text())["files"]
-    resign(copied, files={**files, name: "0" * 64})
+    relist(copied, lambda files: files.update({name: files["config.yaml"]}))
     with pytest.raises(ValueError, match="no plain file name") as told:
-        hardened.load_hardened(copied)
+        loading.load_hardened(copied)
     assert str(told.value).isprintable() and len(str(told.value)) < 500
 
 
@@ -416,7 +421,7 @@ def test_a_card_names_a_base_that_can_be_held_and_shown(place, tmp_path, path):
     folder = Path(shutil.copytree(place / "hardened/adapted", tmp_path / "adapted"))
     resign(folder, base={"weights": path, "sha256": "0" * 64})
     with pytest.raises(ValueError, match="to which base"):
-        hardened.load_hardened(folder)
+        loading.load_hardened(folder)
 
 
 def test_an_unfinished_run_says_what_is_missing(tmp_path):
@@ -491,7 +496,7 @@ def test_what_does_not_reload_to_the_same_is_not_written(place, exported, tmp_pa
 
 
 def test_the_check_finds_other_outputs(place, tmp_path):
-    agent = hardened.load_hardened(place / "hardened/whole")
+    agent = loading.load_hardened(place / "hardened/whole")
     wanted = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
     save_file({k: v.contiguous() for k, v in wanted.items()}, tmp_path / "same.safetensors")
     export.check_outputs(str(place / "hardened/whole"), str(tmp_path / "same.safetensors"))
@@ -604,7 +609,7 @@ def test_a_card_says_that_the_code_was_not_that_of_the_commit(monkeypatch, tmp_p
 
 
 def test_a_readme_says_of_the_commit_what_is_known(place):
-    card = hardened.read_card(place / "hardened/whole")
+    card = loading.read_card(place / "hardened/whole")
     end = f"exported at commit `{card['commit']}`"
     assert "uncommitted" in card
     assert f"{end}." in cards.readme(card | {"uncommitted": False})
@@ -614,7 +619,7 @@ def test_a_readme_says_of_the_commit_what_is_known(place):
 
 
 def test_a_missing_teacher_is_told(place, tmp_path):
-    agent = hardened.load_hardened(place / "hardened/whole")
+    agent = loading.load_hardened(place / "hardened/whole")
     stages = {"one": {"recipe": {"teacher": "checkpoints/nobody"}}}
     run = finished_run(tmp_path / "run", agent, TINY, stages=stages)
     with pytest.raises(FileNotFoundError, match="checkpoints/nobody"):
@@ -624,9 +629,9 @@ def test_a_missing_teacher_is_told(place, tmp_path):
 def test_onnx_files_do_what_the_agent_does(place, tmp_path):
     for package in ("onnx", "onnxscript", "onnxruntime"):
         pytest.importorskip(package, reason="the extra onnx is not installed")
-    from mitigate.shipping.onnx_programs import check_onnx, save_onnx
+    from mitigate.shipping.programs import check_onnx, save_onnx
 
-    agent = hardened.load_hardened(place / "hardened/adapted")
+    agent = loading.load_hardened(place / "hardened/adapted")
     files = save_onnx(agent, SIZE, tmp_path, export.EXPORTED)
     assert [file.name for file in files] == ["perceive.onnx", "decide.onnx"]
     with pytest.raises(ValueError, match="differ from the agent"):
@@ -673,8 +678,8 @@ SHIPPED = sorted(p.name for p in (ROOT / "checkpoints/hardened").glob("[!.]*"))
 @pytest.mark.parametrize("name", SHIPPED)
 def test_load_hardened_loads_a_shipped_folder_without_its_program(name):
     folder = ROOT / "checkpoints/hardened" / name
-    assert not (folder / hardened.PROGRAM).exists(), "the tree holds no programs"
-    assert hardened.load_hardened(folder).vocabulary
+    assert not (folder / loading.PROGRAM).exists(), "the tree holds no programs"
+    assert loading.load_hardened(folder).vocabulary
 
 
 @pytest.mark.slow
@@ -682,15 +687,15 @@ def test_load_hardened_loads_a_shipped_folder_without_its_program(name):
 def test_export_writes_the_program_of_a_shipped_folder(name, tmp_path, monkeypatch, capsys):
     folder = tmp_path / name
     shutil.copytree(ROOT / "checkpoints/hardened" / name, folder)
-    before = hardened.read_card(folder)
+    before = loading.read_card(folder)
     monkeypatch.setattr(sys, "argv", ["export", str(folder), "--programs"])
     export_command.main()
-    assert f"wrote {folder / hardened.PROGRAM}" in capsys.readouterr().out
-    agent = hardened.load_hardened(folder, base=base_of(before))
-    card = hardened.read_card(folder)
-    assert card["agent"] == before["agent"] and hardened.PROGRAM in card["files"]
+    assert f"wrote {folder / loading.PROGRAM}" in capsys.readouterr().out
+    agent = loading.load_hardened(folder, base=base_of(before))
+    card = loading.read_card(folder)
+    assert card["agent"] == before["agent"] and loading.PROGRAM in card["files"]
     given = programs.probe(agent, SIZE)
-    program = programs.load_programs(folder / hardened.PROGRAM)
+    program = programs.load_programs(folder / loading.PROGRAM)
     wanted = programs.outputs(programs.networks(agent), given)
     assert programs.difference(wanted, programs.outputs(program, given)) <= export.EXPORTED
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from huggingface_hub import ModelCard
 
-from mitigate.agents import hardened
+from mitigate.agents import loading
+from mitigate.core import folders, older_folders
 from mitigate.evaluation.rows import gather
-from mitigate.shipping.card import readme
-from mitigate.shipping.front_matter import front_matter
+from mitigate.shipping.card import front_matter, readme
 from tools.renew_cards import renew
 
 ROOT = Path(__file__).parents[2]
@@ -79,7 +79,7 @@ def test_a_page_shows_the_words_of_rows_as_they_are():
     assert r"suite 1.1 \<script>alert(1)\</script> \`x\`." in text
 
 
-def test_renewing_a_folder_changes_its_readme_and_the_sums_alone(tmp_path):
+def test_renew_changes_the_readme_and_the_manifest_alone(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
     before = card_of(folder)
     page = folder / "README.md"
@@ -89,16 +89,19 @@ def test_renewing_a_folder_changes_its_readme_and_the_sums_alone(tmp_path):
     assert page.read_text(encoding="utf-8") == "# old\n"  # as it was
     page.write_text(readme(before), encoding="utf-8")
     renew(folder)
-    assert hardened.check(folder) == before and [p.name for p in tmp_path.iterdir()] == ["mine"]
+    kept = older_folders.without_sums(before)
+    assert loading.check_hardened(folder) == {**kept, "format": loading.FORMAT}
+    assert folders.read_manifest(folder).files.keys() == {*before["files"], "card.json"}
+    assert [p.name for p in tmp_path.iterdir()] == ["mine"]
 
 
 def test_renewing_adds_the_agent_of_rows_to_a_card_that_lacks_it(tmp_path):
     folder = Path(shutil.copytree(ROOT / "checkpoints/hardened/conv_adapter", tmp_path / "mine"))
     old = {k: v for k, v in card_of(folder).items() if k != "rows_agent"}
-    resigned = {**old, "sha256": hardened.card_sha(old)}
+    resigned = {**old, "sha256": older_folders.card_sha(old)}
     (folder / "card.json").write_text(json.dumps(resigned), encoding="utf-8")
     renew(folder, [{"agent": "a" * 12, "weights": "0" * 12}])  # of other weights
     assert "rows_agent" not in card_of(folder) and "in rows the agent" not in readme(old)
     renew(folder, [{"agent": "a" * 12, "weights": old["run_agent"]}])
-    assert hardened.check(folder)["rows_agent"] == ["a" * 12]
+    assert loading.check_hardened(folder)["rows_agent"] == ["a" * 12]
     assert f"Weights `{old['agent']}`, in rows the agent `{'a' * 12}`" in readme(card_of(folder))

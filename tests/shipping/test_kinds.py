@@ -9,8 +9,8 @@ from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core import conf
 from mitigate.core.checkpoint import weights_sha
-from mitigate.shipping import export, export_command, others
-from mitigate.shipping.finished import finished
+from mitigate.shipping import export, export_command
+from mitigate.shipping.export import finished
 from mitigate.training import train
 
 SMALL = ["agent.size=16", "env.size=16", "init=null", "trainer.steps=1", "workers=0"]
@@ -25,7 +25,7 @@ KINDS = {
     "kind", ["frontier", pytest.param("recurrent_rgb", marks=pytest.mark.slow)]
 )
 def test_a_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
-    monkeypatch.setattr(others, "WALKS", 1)
+    monkeypatch.setattr(export, "WALKS", 1)
     made, own = KINDS[kind]
     options = [f"agent={kind}", *SMALL, *own]
     cfg = conf.load_config("train", ["recipe=imitation", "debug=smoke", *options])

@@ -7,9 +7,7 @@ import warnings
 import pytest
 import yaml
 
-from mitigate.agents.given import check_same, give_settings
-from mitigate.agents.hardened import load_hardened
-from mitigate.agents.loading import load
+from mitigate.agents.loading import check_same, give_settings, load, load_hardened
 from mitigate.shipping.card import rows_agent
 from mitigate.shipping.export import _of_one_agent
 from tests.evaluation.made_rows import row

@@ -18,6 +18,7 @@ import torch
 from torch import Tensor, nn
 
 from mitigate.agents import observation as checked
+from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.agent import Agent, Output
 from mitigate.agents.controller import Controller
@@ -31,7 +32,6 @@ from mitigate.agents.frontier.grid import (
     object_cells,
     routes,
 )
-from mitigate.agents.schema import SENSES
 from mitigate.agents.text import CONCEPTS, NEAR, ROOM_NAMES, THING_NAMES
 from mitigate.core.names import unknown
 from mitigate.core.observation import (
@@ -82,6 +82,9 @@ class FrontierAgent(Agent, nn.Module):
 
     fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"  # in published fingerprints
 
+    settings_schema = schema.Schema(
+        {**schema.ENCODERS, "width": schema.whole(4, 1024), "eye": schema.number(0.05, 5)}
+    )
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)  # it finds objects, it follows no routes
     together = 8  # episodes side by side (ours): encoding one frame alone takes twice as long
@@ -99,8 +102,8 @@ class FrontierAgent(Agent, nn.Module):
     ) -> None:
         super().__init__()
         for name in blind:
-            if name not in SENSES:
-                raise ValueError(unknown("sense to blank (agent.blind)", name, SENSES))
+            if name not in schema.SENSES:
+                raise ValueError(unknown("sense to blank (agent.blind)", name, schema.SENSES))
         self._settings = copy.deepcopy(
             {"width": width, "adapters": adapters, "blind": list(blind), "size": size, "eye": eye}
         )

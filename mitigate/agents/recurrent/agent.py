@@ -18,6 +18,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents import observation as checked
+from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters
 from mitigate.agents.agent import Agent, Output, check_logits
 from mitigate.agents.encoders import (
@@ -43,6 +44,13 @@ LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
 LIMIT = 90  # steps of a training walk (heuristic): the expert takes 53 on average
 _SCALE = 5.0  # metres: the unit of the predicted distance
 
+POLICY = {  # allowed values of the keyword arguments of ``Policy``
+    "width": schema.whole(4, 1024),
+    "heads": schema.whole(1, 64),
+    "text_layers": schema.whole(0, 32),
+    "dropout": schema.number(0, 1),
+}
+
 
 @dataclass
 class Walk:
@@ -66,6 +74,18 @@ class RecurrentAgent(Agent, nn.Module):
 
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"  # in published fingerprints
 
+    settings_schema = schema.Schema(
+        {
+            **schema.ENCODERS,
+            "sensors": schema.some_of((RGB, DEPTH)),
+            "rgb_width": schema.whole(4, 1024),
+            "depth_width": schema.whole(4, 1024),
+            "policy": POLICY,
+            "vocabulary": schema.VOCABULARY,
+        },
+        part="policy",
+        usual=(160, 4),
+    )
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS

@@ -19,6 +19,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 from mitigate.agents import observation as checked
+from mitigate.agents import schema
 from mitigate.agents.adapters import insert_adapters, remove_adapters
 from mitigate.agents.agent import Agent, Output, check_logits
 from mitigate.agents.controller import Controller
@@ -32,7 +33,6 @@ from mitigate.agents.encoders import (
     presence_loss,
     taught,
 )
-from mitigate.agents.schema import RGB_ENCODERS, SENSES
 from mitigate.agents.text import THINGS, Vocabulary, pad
 from mitigate.agents.topological.mapping import TopologicalMap
 from mitigate.agents.topological.perception import ImageNetEncoder, WaypointHead, select
@@ -54,9 +54,22 @@ PARTS = (*PERCEPTION, "planner")
 # perception (what views show, where one can go); chosen for the shipped agents
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
 _SCALE = 5.0  # metres: the planner's distance is in units of it
-OWN, IMAGENET = RGB_ENCODERS
+OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
 BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")  # what does not train of an encoder not ours
 FEATURES = 1 << 25  # bytes of features kept while remembering (heuristic): about 900 panoramas
+
+PLANNER = {  # allowed values of the keyword arguments of ``Planner``
+    "width": schema.whole(4, 1024),
+    "heads": schema.whole(1, 64),
+    "text_layers": schema.whole(0, 32),
+    "layers": schema.whole(0, 32),
+    "dropout": schema.number(0, 1),
+    "fusion": {
+        "learned": schema.TRUTH,
+        "rate": schema.number(0, 1e6),
+        "cap": schema.number(0, 1e6),
+    },
+}
 
 
 class TopologicalAgent(Agent, nn.Module):
@@ -77,6 +90,17 @@ class TopologicalAgent(Agent, nn.Module):
         "mitigate.agents.topological.agent.TopologicalAgent"  # in published fingerprints
     )
 
+    settings_schema = schema.Schema(
+        {
+            **schema.ENCODERS,
+            "width": schema.whole(4, 1024),
+            "planner": PLANNER,
+            "vocabulary": schema.VOCABULARY,
+            "encoder": schema.one_of(RGB_ENCODERS),
+        },
+        part="planner",
+        usual=(128, 4),
+    )
     views, sensors = VIEWS, (RGB, DEPTH, POSE)
     rgb_encoder: RGBEncoder | ImageNetEncoder
     _started = False
@@ -94,10 +118,10 @@ class TopologicalAgent(Agent, nn.Module):
         super().__init__()
         if encoder not in (OWN, IMAGENET):
             raise ValueError(names.unknown("encoder", encoder, (OWN, IMAGENET)))
-        unknown = set(blind) - set(SENSES)
+        unknown = set(blind) - set(schema.SENSES)
         if unknown:
             raise ValueError(
-                f"blind={sorted(unknown)} is unknown; choose from {', '.join(SENSES)}."
+                f"blind={sorted(unknown)} is unknown; choose from {', '.join(schema.SENSES)}."
             )
         self.blind = tuple(blind)
         self._settings: dict[str, Any] = copy.deepcopy(

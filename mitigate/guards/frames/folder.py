@@ -1,4 +1,4 @@
-"""A restorer on disk: ``model.safetensors``, its sha256 beside it, and ``card.json``, plain data.
+"""A restorer on disk: ``model.safetensors``, ``card.json`` (plain data) and the manifest.
 
 Reading one builds our own class with the card's numbers, which are bounded, and runs nothing else.
 """
@@ -9,8 +9,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mitigate.core import checkpoint, checksums
-from mitigate.core.files import atomic_text, make_folder
+from mitigate.core import checkpoint, folders
+from mitigate.core.files import write_text
 from mitigate.core.json_files import read_json
 from mitigate.core.observation import DEPTH, RGB
 
@@ -26,15 +26,13 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=rest
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
     """Write ``restorer`` into ``folder``; return it. The card says what the weights add up to, as
     they are read again."""
-    folder = Path(folder)
-    make_folder(folder)
-    checkpoint.save_weights(restorer, folder, half=half)
-    if half:
-        checkpoint.load_weights(restorer, folder)
-    held = {"format": FORMAT, "hash": restorer.hash, "settings": restorer.settings()}
-    with atomic_text(folder / CARD) as file:
-        json.dump(held, file, indent=1)
-    return folder
+    with folders.write_folder(folder, "restorer") as draft:
+        checkpoint.write_tensors(restorer, draft / checkpoint.WEIGHTS, half=half)
+        if half:
+            checkpoint.load_weights(restorer, draft)
+        card = {"format": FORMAT, "hash": restorer.hash, "settings": restorer.settings()}
+        write_text(draft / CARD, json.dumps(card, indent=1))
+    return Path(folder)
 
 
 def card(folder: str | Path) -> dict[str, Any]:
@@ -47,6 +45,9 @@ def card(folder: str | Path) -> dict[str, Any]:
             f"There is no restorer at {folder}: {', '.join(missing)} missing. Train one with `make "
             "train RECIPE=restore` (its folder is runs/.../agent), or name checkpoints/restorer."
         )
+    damage = folders.problem(folder / CARD)
+    if damage:
+        raise ValueError(f"{folder / CARD} is cut short or damaged: it {damage}. {_AGAIN}")
     found = read_json(folder / CARD, _AGAIN)
     wrong = _wrong(found)
     if wrong:
@@ -94,9 +95,9 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
             f"{own[other[0]]!r:.60}: set agent.{other[0]} to that, or start anew (init=null)."
         )
     file = Path(folder) / checkpoint.WEIGHTS
-    if not checksums.sidecar(file).is_file():
-        raise ValueError(f"{file} has no {checksums.sidecar(file).name} beside it. {_AGAIN}")
-    wrong = checksums.problem(file)
+    if not folders.is_listed(file):
+        raise ValueError(f"{file} has no {folders.MANIFEST} beside it that lists it. {_AGAIN}")
+    wrong = folders.problem(file)
     if wrong:  # said here: load_weights would advise to delete the checksum, which must be there
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)

@@ -62,7 +62,7 @@ class Restorer(nn.Module, Guard):
 
     @property
     def encoders(self) -> dict[str, tuple[str, ...]]:
-        """By sensor, the part that is for it (``training/stages.py``)."""
+        """By sensor, the part that is for it (``training/plan.py``)."""
         return {sensor: (sensor,) for sensor in self.nets}
 
     def parts(self) -> dict[str, SensorRestorer]:

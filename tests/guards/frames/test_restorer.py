@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import torch
 
+from mitigate.core import folders
 from mitigate.core.observation import DEPTH, RGB, Observation
 from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.guards.frames import choices, ring
@@ -241,11 +242,11 @@ def damaged_weights(folder: Path) -> None:
 
 
 def damaged_sum(folder: Path) -> None:
-    (folder / "model.safetensors.sha256").write_text("x")
+    (folder / "manifest.json").write_text("x")
 
 
 def no_sum(folder: Path) -> None:
-    (folder / "model.safetensors.sha256").unlink()
+    (folder / "manifest.json").unlink()
 
 
 def card_with(**changed):
@@ -255,6 +256,7 @@ def card_with(**changed):
         card = {**card, **{k: v for k, v in changed.items() if k not in settings}}
         card["settings"] |= settings
         (folder / "card.json").write_text(json.dumps(card))
+        folders.seal(folder, "restorer")
 
     return change
 
@@ -263,8 +265,8 @@ def card_with(**changed):
     ("change", "words"),
     [
         (damaged_weights, "cut short or damaged"),
-        (damaged_sum, "cannot be compared with model.safetensors.sha256 .* Fetch the folder again"),
-        (no_sum, "no model.safetensors.sha256"),
+        (damaged_sum, "cannot be compared with its manifest .* Fetch the folder again"),
+        (no_sum, "no manifest.json"),
         (card_with(hash="0" * 12), "not those of its card"),
         (card_with(width=1 << 30), "whole number from 4 to 128"),
         (card_with(width=16), "do not fit"),

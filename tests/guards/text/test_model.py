@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import torch
 
-from mitigate.core import checkpoint
+from mitigate.core import checkpoint, folders
 from mitigate.guards.text.language_models.model import LanguageModel, open_adapter
 from mitigate.guards.text.language_models.tokens import collate, encode_pair
 from mitigate.guards.text.learning.data import Pair
@@ -103,7 +103,7 @@ def test_a_saved_adapter_says_the_same_after_a_reload(model, tmp_path):
     assert model.rewrite(["TURN left."]) == again.rewrite(["TURN left."])
     names = {path.name for path in (tmp_path / "adapter").iterdir()}
     weights = "adapter_model.safetensors"
-    assert names == {"adapter_config.json", weights, f"{weights}.sha256", "card.json"}
+    assert names == {"adapter_config.json", weights, "manifest.json", "card.json"}
     assert len({path.stat().st_mode for path in (tmp_path / "adapter").iterdir()}) == 1
     card = json.loads((tmp_path / "adapter" / "card.json").read_text())
     assert len(card["base_sha256"]) == 64 and card["base"] == model.base
@@ -158,6 +158,7 @@ def test_only_rank_alpha_dropout_and_targets_of_an_adapters_config_are_read(mode
         "peft_type": "TRAP",
     }
     file.write_text(json.dumps({**json.loads(file.read_text("utf-8")), **named}), "utf-8")
+    folders.seal(tmp_path, "safeguard")
     assert open_adapter(tmp_path).rewrite(["Go."]) == model.rewrite(["Go."])
 
 
@@ -205,6 +206,7 @@ def test_a_damaged_adapter_is_told_before_its_base_is_loaded(model, tmp_path, mo
     said = json.loads(config.read_text("utf-8"))
     for change in ({"r": 3}, {"target_modules": ["v_proj"]}):
         config.write_text(json.dumps({**said, **change}), "utf-8")
+        folders.seal(tmp_path, "safeguard")
         with pytest.raises(ValueError, match="does not fit its adapter_config.json.* is no LoRA"):
             open_adapter(tmp_path)
     assert not loaded

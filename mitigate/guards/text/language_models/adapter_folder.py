@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-import shutil
-import tempfile
 from pathlib import Path
 from typing import Any
 
 from torch import Tensor
 
-from mitigate.core import checksums, output
+from mitigate.core import folders
 from mitigate.core.checkpoint import load_tensors
-from mitigate.core.files import make_folder
+from mitigate.core.files import write_text
 from mitigate.core.json_files import read_json
 
 CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
@@ -35,19 +32,14 @@ def write_adapter(
 ) -> None:
     """Write the adapter of a PEFT ``network``, its weights ``tensors``, and ``card``.
 
-    Files appear whole or not at all; beside the weights lies their sha256.
+    The files are replaced together and listed in a manifest.
     """
-    folder = Path(folder)
-    make_folder(folder)
-    with tempfile.TemporaryDirectory(f".{os.getpid()}.tmp", ".adapter-", folder) as temporary:
-        network.save_pretrained(temporary, state_dict=tensors, save_embedding_layers=False)
-        (Path(temporary) / CARD).write_text(json.dumps(card, indent=1) + "\n", "utf-8")
-        shutil.copymode(Path(temporary) / CARD, Path(temporary) / ADAPTER)  # which was private
-        digest = checksums.announce(folder / ADAPTER, Path(temporary) / ADAPTER)
-        for name in (CONFIG, ADAPTER, CARD):
-            output.check(folder / name)
-            os.replace(Path(temporary) / name, folder / name)
-    checksums.settle(folder / ADAPTER, digest)
+    with folders.write_folder(folder, "safeguard") as draft:
+        network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
+        for file in draft.iterdir():
+            if file.name not in (CONFIG, ADAPTER):
+                file.unlink()  # PEFT's README template
+        write_text(draft / CARD, json.dumps(card, indent=1) + "\n")
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -94,6 +86,9 @@ def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Ten
 
 def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
     """Return the JSON object in ``file``, whose entries must be of ``kinds``."""
+    damage = folders.problem(file)
+    if damage:
+        raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")
     found = read_json(file, _AGAIN)
     for name, kind in kinds.items():
         value = found.get(name) if isinstance(found, dict) else None

@@ -1,0 +1,294 @@
+"""Folders of weights: written as a whole, listed in one manifest, compared with it before use.
+
+Every folder that this project ships or trains has the same layout::
+
+    manifest.json      the kind of folder, and the size and sha256 of every file
+    config.yaml        settings: plain data (``core/settings.py``), never instantiated as it stands
+    *.safetensors      weights
+    card.json, README.md, program.*    optional
+
+A folder of an ecosystem keeps its own names beside the manifest, such as ``adapter_config.json`` of
+PEFT. Folders that earlier versions wrote are read by ``core/older_folders.py``.
+
+Files are replaced one by one. Meanwhile, the manifest lists the new files and the files that they
+replace, so a folder is either the old one or the new one, or it is rejected.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from mitigate.core import checksums, older_folders, output
+from mitigate.core.files import make_folder, sha256, write_text, writing
+from mitigate.core.json_files import read_object
+from mitigate.core.names import short
+
+MANIFEST = "manifest.json"
+FORMAT = 1
+MOST_FILES = 1000  # entries of a manifest (heuristic; a hardened folder has 8)
+LONGEST = 255  # bytes of a file name (Linux, NAME_MAX)
+AGAIN = "Fetch the folder again, or write it again with the command that made it."
+_SHA256 = re.compile(r"[0-9a-f]{64}")
+
+
+class Entry(NamedTuple):
+    """A file of a manifest; ``size`` in bytes, None where an older layout does not record it."""
+
+    sha256: str
+    size: int | None = None
+
+
+class Manifest(NamedTuple):
+    """What a folder holds.
+
+    Attributes:
+        kind: "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard".
+        files: by name.
+        replaced: the files before, while a folder is being replaced.
+        source: name of the file that lists them: the manifest, or the card of an older folder.
+    """
+
+    kind: str
+    files: dict[str, Entry]
+    replaced: dict[str, Entry]
+    source: str = MANIFEST
+
+
+@contextmanager
+def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
+    """Yield an empty draft whose files replace those of ``folder`` if the block ends without error.
+
+    Files of the earlier manifest that are not in the draft are deleted; files that no manifest
+    lists stay.
+
+    Raises:
+        OSError: The folder cannot be written.
+        ValueError: It holds files of another kind.
+    """
+    folder = make_folder(folder)
+    _check_kind(folder, kind)
+    with writing(folder):
+        draft = tempfile.TemporaryDirectory(f".{os.getpid()}.tmp", ".draft-", folder)
+    with draft as place:
+        yield Path(place)
+        _replace(Path(place), folder, kind)
+
+
+def _check_kind(folder: Path, kind: str) -> None:
+    try:
+        manifest = read_manifest(folder)
+    except ValueError:  # damaged: it is written again
+        return
+    loose = {"weights", "agent"}
+    if manifest is not None and manifest.kind != kind and not {manifest.kind, kind} <= loose:
+        raise ValueError(
+            f"{folder} holds files of another kind ({manifest.kind}, not {kind}), which are not "
+            "replaced. Name another folder, or delete this one."
+        )
+
+
+def _replace(draft: Path, folder: Path, kind: str) -> None:
+    new = _entries(draft)
+    old = _sound_files(folder, new)
+    _write_manifest(folder, Manifest(kind, new, old if old != new else {}))
+    mode = (folder / MANIFEST).stat().st_mode  # safetensors writes files for their owner alone
+    for name in new:
+        (draft / name).chmod(mode)
+        with open(draft / name, "rb+") as file:
+            os.fsync(file.fileno())
+        output.check(folder / name)
+        with writing(folder / name):
+            os.replace(draft / name, folder / name)
+    if old and old != new:
+        for name in old.keys() - new.keys():
+            (folder / name).unlink(missing_ok=True)
+        _write_manifest(folder, Manifest(kind, new, {}))
+    for name in new:
+        checksums.sidecar(folder / name).unlink(missing_ok=True)  # of the older layout
+
+
+def seal(folder: str | Path, kind: str) -> None:
+    """Write the manifest of the files that ``folder`` holds, which is no longer changed by others.
+
+    Use it for a folder that is made aside and renamed into place as a whole.
+    """
+    _write_manifest(Path(folder), Manifest(kind, _entries(Path(folder)), {}))
+
+
+def add_file(folder: str | Path, name: str, text: str) -> None:
+    """Write a text file into ``folder`` and list it, if the folder has a manifest."""
+    folder = Path(folder)
+    manifest = check(folder)
+    if manifest is not None:
+        raw = text.encode()
+        entry = Entry(hashlib.sha256(raw).hexdigest(), len(raw))
+        new = Manifest(manifest.kind, {**manifest.files, name: entry}, {})
+        _write_manifest(folder, new._replace(replaced=manifest.files))
+        write_text(folder / name, text)
+        _write_manifest(folder, new)
+    else:
+        write_text(folder / name, text)
+
+
+def _entries(folder: Path) -> dict[str, Entry]:
+    files = [file for file in sorted(folder.iterdir()) if file.name != MANIFEST]
+    return {file.name: Entry(sha256(file), file.stat().st_size) for file in files}
+
+
+def _sound_files(folder: Path, new: Iterable[str]) -> dict[str, Entry]:
+    """Return the files that are replaced, none if they are damaged: they must not become sound."""
+    try:
+        manifest = check(folder)
+        if manifest is not None:
+            return manifest.files
+        held = [folder / name for name in new if (folder / name).is_file()]
+        sound = not any(checksums.problem(file) for file in held)
+        entries = {file.name: Entry(sha256(file), file.stat().st_size) for file in held}
+        return entries if sound else {}
+    except (ValueError, OSError):
+        return {}
+
+
+def _write_manifest(folder: Path, manifest: Manifest) -> None:
+    def plain(files: dict[str, Entry]) -> dict[str, dict[str, Any]]:
+        return {name: {"bytes": e.size, "sha256": e.sha256} for name, e in files.items()}
+
+    text = {"format": FORMAT, "kind": manifest.kind, "files": plain(manifest.files)}
+    if manifest.replaced:
+        text["replaced"] = plain(manifest.replaced)
+    write_text(folder / MANIFEST, json.dumps(text, indent=1) + "\n")
+
+
+def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
+    """Return the manifest of ``folder``, or of the card of an older hardened folder; else None.
+
+    Raises:
+        ValueError: It is damaged. The message ends with ``again``.
+    """
+    folder = Path(folder)
+    file = folder / MANIFEST
+    if not file.is_file():
+        listed = older_folders.card_files(folder, again)
+        if listed is None:
+            return None
+        entries = {name: Entry(str(digest)) for name, digest in listed.items()}
+        _check_names(folder / older_folders.CARD, entries)
+        return Manifest("hardened", entries, {}, older_folders.CARD)
+    held = read_object(file, again)
+    kind = held.get("kind")
+    if held.get("format") != FORMAT or not isinstance(kind, str) or "files" not in held:
+        raise ValueError(f"{file} must be a manifest of format {FORMAT} with kind, files. {again}")
+    return Manifest(
+        kind,
+        _read_entries(file, held["files"], again),
+        _read_entries(file, held.get("replaced", {}), again),
+    )
+
+
+def _read_entries(file: Path, held: Any, again: str) -> dict[str, Entry]:
+    if not isinstance(held, dict) or len(held) > MOST_FILES:
+        raise ValueError(f"{file} must list at most {MOST_FILES} files by name. {again}")
+    entries = {}
+    for name, entry in held.items():
+        size, digest = (entry.get(k) if isinstance(entry, dict) else None for k in _KEYS)
+        if type(size) is not int or not isinstance(digest, str) or not _SHA256.fullmatch(digest):
+            raise ValueError(f"{file} must give bytes and sha256 of {short(name)}. {again}")
+        entries[name] = Entry(digest, size)
+    _check_names(file, entries)
+    return entries
+
+
+_KEYS = ("bytes", "sha256")
+
+
+def _check_names(file: Path, names: Iterable[str]) -> None:
+    for name in names:
+        plain = Path(name).name == name and name not in ("", ".", "..") and name.isprintable()
+        if not plain or len(name.encode()) > LONGEST:
+            raise ValueError(
+                f"{file} lists {short(name)}, which is no plain file name. Do not use this folder: "
+                "its manifest was not written by this project."
+            )
+
+
+def check(
+    folder: str | Path, *, optional: Iterable[str] = (), again: str = AGAIN
+) -> Manifest | None:
+    """Compare every file of ``folder`` with its manifest; return it, or None if there is none.
+
+    Args:
+        folder: the folder.
+        optional: names that may be missing.
+        again: what to do about a damaged folder, the end of each message.
+
+    Raises:
+        FileNotFoundError: A file is missing.
+        ValueError: A file was changed or cut short, or the manifest is damaged.
+    """
+    folder = Path(folder)
+    manifest = read_manifest(folder, again)
+    if manifest is None:
+        return None
+    try:
+        _compare(folder, manifest, manifest.files, optional, again)
+    except (ValueError, FileNotFoundError):
+        if not manifest.replaced:
+            raise
+        _compare(folder, manifest, manifest.replaced, optional, again)
+        return manifest._replace(files=manifest.replaced, replaced={})
+    return manifest
+
+
+def _compare(
+    folder: Path, manifest: Manifest, files: dict[str, Entry], optional: Iterable[str], again: str
+) -> None:
+    for name, entry in files.items():
+        file = folder / name
+        if name in optional and not os.path.lexists(file):
+            continue
+        if not file.is_file():
+            raise FileNotFoundError(f"{folder} is incomplete: {name} is missing. {again}")
+        if not _matches(file, entry):
+            raise ValueError(
+                f"{file} does not have the sha256 that {manifest.source} states: it was changed or "
+                f"cut short. {again}"
+            )
+
+
+def _matches(file: Path, entry: Entry) -> bool:
+    """Compare a file with its entry; one of another size is not read."""
+    return entry.size in (None, file.stat().st_size) and sha256(file) == entry.sha256
+
+
+def problem(file: Path) -> str:
+    """Return what is wrong with ``file`` by the manifest of its folder, or by the sidecar of an
+    older version: a predicate such as "does not have the sha256 ...". Empty: nothing is wrong, or
+    nothing lists the file.
+
+    Raises:
+        PermissionError: The file cannot be read, which is no damage.
+    """
+    try:
+        manifest = read_manifest(file.parent)
+    except ValueError as error:
+        return f"cannot be compared with its manifest ({error})"
+    entries = [m.get(file.name) for m in (manifest.files, manifest.replaced)] if manifest else []
+    listed = [entry for entry in entries if entry is not None]
+    if manifest is None or not listed:
+        return checksums.problem(file)
+    sound = any(_matches(file, entry) for entry in listed)
+    return "" if sound else f"does not have the sha256 in {manifest.source}"
+
+
+def is_listed(file: Path) -> bool:
+    """Return whether a manifest, or a sidecar of an older version, holds the sha256 of ``file``."""
+    manifest = read_manifest(file.parent)
+    return bool(manifest and file.name in manifest.files) or checksums.sidecar(file).is_file()

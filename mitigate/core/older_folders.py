@@ -1,0 +1,49 @@
+"""Layouts of folders that earlier versions wrote, for ``core/folders.py`` alone.
+
+- Weights, adapters, encoders, restorers and safeguards had a sidecar ``<file>.sha256`` beside the
+  weights (``core/checksums.py``), or nothing.
+- Hardened folders had the sha256 of every file in ``card.json``, and of the card itself.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+from mitigate.core.json_files import read_object
+
+CARD = "card.json"
+FORMAT = 1
+
+
+def card_files(folder: Path, again: str) -> dict[str, Any] | None:
+    """Return the sha256 of every file that the card of a hardened ``folder`` lists, by name; None
+    for another folder.
+
+    Raises:
+        ValueError: The card is damaged. The message ends with ``again``.
+    """
+    file = folder / CARD
+    card = read_object(file, again) if file.is_file() else {}
+    if "sha256" not in card:
+        return None
+    if card.get("format") != FORMAT:
+        raise ValueError(f"{file} is no card of format {FORMAT}, the one this code reads. {again}")
+    if card["sha256"] != card_sha(card):
+        raise ValueError(f"{file} does not have the sha256 that it states: it was changed. {again}")
+    if not isinstance(card.get("files"), dict):
+        raise ValueError(f"{file} lacks files. {again}")
+    return dict(card["files"])
+
+
+def card_sha(card: dict[str, Any]) -> str:
+    """Return the sha256 of a card's entries except "sha256" itself, as sorted JSON."""
+    entries = {name: value for name, value in card.items() if name != "sha256"}
+    return hashlib.sha256(json.dumps(entries, sort_keys=True).encode()).hexdigest()
+
+
+def without_sums(card: dict[str, Any]) -> dict[str, Any]:
+    """Return a card as it is written today, when the manifest holds the sums."""
+    return {name: value for name, value in card.items() if name not in ("sha256", "files")}
