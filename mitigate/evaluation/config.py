@@ -1,15 +1,20 @@
-"""The options of ``conf/evaluate.yaml`` as dataclasses, and parts that trainings share."""
+"""The options of ``conf/evaluate.yaml`` as dataclasses, parts that trainings share, and names of
+columns and folders that follow from options.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
+from pathlib import Path
 from typing import Any, TypeVar
 
 from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
 from mitigate.core import conf, seeding
+from mitigate.core.conf import CONF
 from mitigate.guards.text.addresses import check_choice
 
 # the report that a training of an agent ends with
@@ -152,3 +157,37 @@ def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
             f"workers={config.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
             "null for one a core."
         )
+
+
+def changed(overrides: Sequence[str]) -> list[str]:
+    """Return the options of a command line that change the agent or what it sees, as parts of a
+    column's name."""
+    own = [option.lstrip("+") for option in overrides]
+    own = [option for option in own if option.startswith(("agent.", "env.size="))]
+    return [_plain(option.removeprefix("agent.")).strip("-") for option in own]
+
+
+def column_of(name: str, seed: int, folder: Path) -> str:
+    """Return the column of a training: the recipe, and the options that its folder's name holds, so
+    that other settings are no other seeds of it."""
+    options = folder.name.partition(f"-seed{seed}-")[2]
+    return f"{name}+{options}" if options else name
+
+
+def default_folder(config: EvaluateConfig, name: str) -> str:
+    """Return ``runs/evaluate/<name>-[<world>-]<split>-s<severity>``; the world is named unless its
+    config is of this project, whose worlds have splits of their own."""
+    own = not (CONF / "env" / f"{config.env.name}.yaml").is_file()
+    split = f"{config.env.name}-{config.split}" if own else config.split
+    return f"{config.runs}/evaluate/{name}-{split}-s{_severities(config)}"
+
+
+def _severities(config: EvaluateConfig) -> str:
+    """The severities, as part of a folder's name."""
+    depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
+    return f"{config.severity:g}{depth}"
+
+
+def _plain(text: str) -> str:
+    """Return ``text`` with a dash for all that a file's name should not hold."""
+    return re.sub(r"[^A-Za-z0-9.@-]+", "-", text)

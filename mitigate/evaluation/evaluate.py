@@ -21,9 +21,8 @@ from mitigate.core.contracts import lacking
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted, name_of
 from mitigate.evaluation import config as options
-from mitigate.evaluation.columns import changed, default_folder
 from mitigate.evaluation.conditions import check_sensors, conditions
-from mitigate.evaluation.config import EvaluateConfig
+from mitigate.evaluation.config import EvaluateConfig, changed, default_folder
 from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
 from mitigate.guards.text.addresses import check_arguments

@@ -9,7 +9,7 @@ from torch import nn
 
 from mitigate.core import conf
 from mitigate.evaluation import evaluate, rows
-from mitigate.evaluation.columns import default_folder
+from mitigate.evaluation.config import default_folder
 from mitigate.evaluation.page import command
 from tests.evaluation.made_rows import cell
 from tests.evaluation.straight import Straight

@@ -15,7 +15,7 @@ from safetensors.torch import load_file
 
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
-from mitigate.evaluation.columns import column_of
+from mitigate.evaluation.config import column_of
 from mitigate.training import config as options
 from mitigate.training import plan, states, train
 from tests.tiny import TinyAgent

@@ -9,8 +9,8 @@ from torch import nn
 
 from mitigate.core import build
 from mitigate.evaluation import provenance
-from mitigate.evaluation.columns import column_of
 from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.config import column_of
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import write_table
 from mitigate.evaluation.evaluator import evaluate

@@ -6,18 +6,18 @@ import pytest
 
 from mitigate.core.files import sha256
 from mitigate.evaluation import rows
-from mitigate.evaluation.episode_lists import keep_list_hash as keep
+from mitigate.evaluation.episode_lists import keep_list_hash
 from tests.evaluation.made_rows import cell
 
 
 def test_another_list_of_a_split_is_refused_and_another_split_is_not(tmp_path):
     for name in ("a", "b"):
         (tmp_path / f"{name}.json").write_text(name)
-    keep(tmp_path, "mine", str(tmp_path / "a.json"))
-    keep(tmp_path, "mine", str(tmp_path / "a.json"))
-    keep(tmp_path, "theirs", str(tmp_path / "b.json"))
+    keep_list_hash(tmp_path, "mine", str(tmp_path / "a.json"))
+    keep_list_hash(tmp_path, "mine", str(tmp_path / "a.json"))
+    keep_list_hash(tmp_path, "theirs", str(tmp_path / "b.json"))
     with pytest.raises(ValueError, match="rows of another list of mine"):
-        keep(tmp_path, "mine", str(tmp_path / "b.json"))
+        keep_list_hash(tmp_path, "mine", str(tmp_path / "b.json"))
 
 
 def test_the_note_of_an_older_version_counts_where_there_is_no_newer_one(tmp_path):
@@ -32,8 +32,8 @@ def test_the_note_of_an_older_version_counts_where_there_is_no_newer_one(tmp_pat
     ):
         old.write_text(known)
         with pytest.raises(ValueError, match="rows of another list of mine"):
-            keep(tmp_path, "mine", str(source))
-    keep(tmp_path, "another", str(a))  # of which there are no rows
+            keep_list_hash(tmp_path, "mine", str(source))
+    keep_list_hash(tmp_path, "another", str(a))  # of which there are no rows
     old.write_text(f"{sha256(b)}  of/theirs.json\n{sha256(a)}  of/mine.json\n")
-    keep(tmp_path, "mine", str(a))
+    keep_list_hash(tmp_path, "mine", str(a))
     assert (tmp_path / "episodes-mine.sha256").is_file()
