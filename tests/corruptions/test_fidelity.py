@@ -18,7 +18,7 @@ from tests.r2r_ce import FOLDER, needs_r2r_ce
 
 HANDWRITTEN = [
     line
-    for line in (Path(__file__).parents[1] / "safeguard/handwritten.txt").read_text().splitlines()
+    for line in (Path(__file__).parents[1] / "guards/text/handwritten.txt").read_text().splitlines()
     if line and not line.startswith("#")
 ]
 OURS = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"

@@ -265,7 +265,7 @@ def test_the_suite_knows_the_families():
 
 def test_the_words_of_this_suite_version():
     """A change here changes results: raise SUITE_VERSION with it."""
-    path = Path(__file__).parents[1] / "safeguard/handwritten.txt"
+    path = Path(__file__).parents[1] / "guards/text/handwritten.txt"
     texts = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     said = [
         corrupt_instruction(text, name, severity, Key(0, str(index)))

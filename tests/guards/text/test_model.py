@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 import torch
-from tests.safeguard.conftest import LORA, write_tiny_model
 
 from mitigate.core import checkpoint
 from mitigate.guards.text.language_models.model import LanguageModel, open_adapter
@@ -20,6 +19,7 @@ from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.training import states
 from mitigate.training.recipe import accumulate
 from mitigate.training.trainer import Trainer
+from tests.guards.text.conftest import LORA, write_tiny_model
 
 
 @pytest.fixture

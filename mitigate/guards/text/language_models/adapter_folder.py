@@ -14,8 +14,9 @@ from torch import Tensor
 from mitigate.core import checksums
 from mitigate.core.checkpoint import load_tensors
 from mitigate.core.json_files import read_json
+from mitigate.guards.text.choices import ADAPTER_CONFIG, ADAPTER_WEIGHTS
 
-CARD, CONFIG, ADAPTER = "card.json", "adapter_config.json", "adapter_model.safetensors"
+CARD, CONFIG, ADAPTER = "card.json", ADAPTER_CONFIG, ADAPTER_WEIGHTS
 ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {  # what is read of a card and of PEFT's config
     CARD: {"base": (str,), "base_sha256": (str,), "prompt": (str,)},
     CONFIG: {
