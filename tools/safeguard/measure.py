@@ -34,9 +34,9 @@ Repair = Callable[[str], str]
 LIGHT = bag(
     """
     a an the and or but so then now of to in on at by for from with into onto is are was were be
-    been am do does did will would shall should can could may might must have has had that this these
-    those it its it's you your yours me my i i'm i'd i'll we us our he she they them there here just
-    very really quite rather please kindly thanks thank cheers hi hey hello ok okay well oh ah um uh
+    been am do does did will would shall should can could may might must have has had that this
+    these those it its it's you your yours me my i i'm i'd i'll we us our he she they them there
+    here just very really quite rather please kindly thanks thank cheers hi hey hello ok okay well oh ah um uh
     er hm sorry dear friend robot pal mate buddy sir madam good morning afternoon evening day let's
     as if when while because which who what where how also too only like some any all one's get got
     """
@@ -243,9 +243,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
             return given
 
         found = measure(repair, options.half, r2r, options.each, options.seed, options.sample)
-        print(
-            f"## {name}, {options.half} half\n\n| measure | % [95 % interval] (cases) |\n| --- | --- |"
-        )
+        print(f"## {name}, {options.half} half\n")
+        print("| measure | % [95 % interval] (cases) |\n| --- | --- |")
         for label, rate in found.items():
             print(f"| {label} | {rate} |")
         print(f"\n{1000 * calls[1] / max(1, calls[0]):.1f} ms per text\n", flush=True)

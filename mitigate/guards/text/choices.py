@@ -1,4 +1,4 @@
-"""What can be chosen as a safeguard: names, folders, endpoints; labels for tables, content hashes."""
+"""What can be chosen as a safeguard: names, folders and endpoints; their labels and hashes."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Which pieces of an instruction do not belong to it: logistic regression over words and letters.
+"""Which clauses of an instruction do not belong to it: logistic regression and a small network.
 
-Two steps. A piece alone: TF-IDF of its words, word pairs and letter groups. A piece in its place:
-that score beside those of its neighbours, its clauses or its sentence, where it stands, and how much
-it resembles the rest. Inference needs numpy alone; :mod:`fit` makes the weights.
+First step: a logistic regression over TF-IDF of words, word pairs and letter groups of a clause.
+Second step: a network compares every run of clauses (a span) with the rest of the text. Inference
+needs numpy alone; :mod:`fit` makes the weights.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import math
 import re
 import zlib
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -35,14 +35,8 @@ LIMIT = 8.0  # of a score that goes into the second step
 MARKS = ("code", "cipher", "leet", "spelled", "wide", "alike", "case")
 
 
-Clusters = Mapping[str, Sequence[int]]  # word -> its numbers among few and among many clusters
-
-
-def terms(said: Decoded, original: str, block: bool, clusters: Clusters) -> dict[int, float]:
-    """Return hashed term -> count of a piece: words, pairs, clusters of words, letter groups, marks.
-
-    Words of one cluster are used alike, so that an attack in new words resembles known ones.
-    """
+def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
+    """Return hashed term -> count of a piece: words, pairs, letter groups, marks."""
     lower = said.text.lower().replace("’", "'")
     tokens = [
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
@@ -51,9 +45,6 @@ def terms(said: Decoded, original: str, block: bool, clusters: Clusters) -> dict
     names = [f"w {w}" for w in words]
     names += [f"p {a} {b}" for a, b in zip(["^", *words], [*words, "$"], strict=True)]
     names += [f"s {a} {c}" for a, c in zip(words, words[2:], strict=False)]
-    groups = [clusters.get(w, (w, "?")) for w in words]
-    names += [f"k {fine}" for fine, _ in groups] + [f"K {coarse}" for _, coarse in groups]
-    names += [f"kk {a} {b}" for (_, a), (_, b) in zip(groups, groups[1:], strict=False)]
     names += [f"m {t}" for t in tokens if not t[0].isalnum()]
     for word in words:
         edged = f"<{word}>"
@@ -68,9 +59,9 @@ def terms(said: Decoded, original: str, block: bool, clusters: Clusters) -> dict
         names.append("= signs")
     if script(original) == "other":
         names.append("= script")
-    found: dict[int, float] = Counter()
+    found: Counter[int] = Counter()
     for name in names:
-        found[zlib.crc32(name.encode()) & (SIZE - 1)] += 1.0
+        found[zlib.crc32(name.encode()) & (SIZE - 1)] += 1
     return found
 
 
@@ -96,7 +87,7 @@ FEATURES = (
     "at the start", "at the end", "starts in a sentence", "ends in a sentence",
     "share of words", "words", "words of the rest", "block", "hidden", "hidden in the rest",
     "other script", "other script in the rest", "like the rest", "one part", "lowest sentence",
-    "difference",
+    "difference", "beside a cut", "whole beside a cut",
 )  # fmt: skip
 
 
@@ -110,7 +101,6 @@ class Classifier:
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
         self.config = config
         self.known = frozenset(config["words"])
-        self.clusters: Clusters = config["clusters"]
         self.bias = float(config["bias"])
         self.arrays = {name: array.astype(np.float32) for name, array in arrays.items()}
         self.idf, self.alone = self.arrays["idf"], self.arrays["alone"]
@@ -123,7 +113,7 @@ class Classifier:
             for piece in clause_pieces(text, sentence):
                 said = piece.of(text)
                 plain = decode(said, self.known)
-                index, value = weighted(terms(plain, said, piece.block, self.clusters), self.idf)
+                index, value = weighted(terms(plain, said, piece.block), self.idf)
                 product = float(self.alone[index] @ value)
                 square = float(value @ value)
                 found.append(
@@ -143,9 +133,7 @@ class Classifier:
 
     def styled(self, text: str) -> bool:
         """Return whether a sentence is in a style, not in the words of a plain route."""
-        index, value = weighted(
-            terms(decode(text, self.known), text, False, self.clusters), self.idf
-        )
+        index, value = weighted(terms(decode(text, self.known), text, False), self.idf)
         norm = math.sqrt(float(value @ value)) + 1e-6
         product = float(self.arrays["style"][index] @ value)
         return product / norm + float(self.config["style_bias"]) > 0
@@ -156,15 +144,20 @@ class Classifier:
         return rows @ self.arrays["linear"] + inner @ self.arrays["out"]
 
 
-def weighted(found: dict[int, float], idf: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return indices and TF-IDF values of terms."""
     index = np.fromiter(found, np.int64, len(found))
     count = np.fromiter(found.values(), np.float32, len(found))
     return index, (1 + np.log(count)) * idf[index] if len(index) else count
 
 
-def spans(found: Sequence[Segment], bias: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return first and last segment of every span that may be cut, and its features [N, F]."""
+def spans(
+    found: Sequence[Segment], bias: float, cuts: Collection[int] = ()
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return first and last segment of every span that may be cut, and its features [N, F].
+
+    ``cuts``: places between the segments where something was cut out before.
+    """
     n = len(found)
     first, last = np.triu_indices(n)
     keep = ~((first == 0) & (last == n - 1))
@@ -197,9 +190,11 @@ def spans(found: Sequence[Segment], bias: float) -> tuple[np.ndarray, np.ndarray
     hidden, hidden_rest = total([float(s.hidden) for s in found])
     other, other_rest = total([s.words * (s.script == "other") for s in found])
     block, _ = total([float(s.piece.block) for s in found])
+    beside = np.isin(first, list(cuts)) | np.isin(last + 1, list(cuts))
     table = np.stack(
         [
-            np.ones(len(first)), whole, rest, np.log1p(evidence), np.log1p(route), np.log1p(evidence_rest),
+            np.ones(len(first)), whole, rest,
+            np.log1p(evidence), np.log1p(route), np.log1p(evidence_rest),
             lowest[first, last], highest[first, last], np.maximum(below, above),
             score[first], score[last], padded[first], padded[last + 2],
             first == 0, last == n - 1,
@@ -209,6 +204,7 @@ def spans(found: Sequence[Segment], bias: float) -> tuple[np.ndarray, np.ndarray
             other / np.maximum(words, 1), other_rest / np.maximum(words_rest, 1),
             _likeness(found, first, last), first == last,
             _ranges(by_sentence, np.minimum)[first, last], whole - rest,
+            beside, whole * beside,
         ],
         axis=1,
     )  # fmt: skip

@@ -12,6 +12,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterator, Set
 from dataclasses import dataclass
+from functools import partial
 
 _ALIKE = str.maketrans(
     "аеорсухікѕјһԁԛԝАВЕКМНОРСТУХІЅЈαορινυκτγηΑΒΕΖΗΙΚΜΝΟΡΤΥΧɡᴀʙᴄᴅᴇɢʜɪᴊᴋʟᴍɴᴏᴘʀᴛᴜᴠᴡʏᴢ",
@@ -33,40 +34,11 @@ _BASE64 = re.compile(r"(?<![\w/+])[A-Za-z0-9+/_-]{12,}={0,2}(?![\w/+=])")
 _BASE32 = re.compile(r"(?<![\w])[A-Z2-7]{16,}={0,6}(?![\w=])")
 _MORSE = re.compile(r"(?<![.\-\w])[.\-]{1,5}(?:[ /|]+[.\-]{1,5}){3,}(?![.\-\w])")
 _WORD = re.compile(r"[A-Za-z]+(?:['’][a-z]+)?")
-_MORSE_LETTERS = dict(
-    zip(
-        [
-            ".-",
-            "-...",
-            "-.-.",
-            "-..",
-            ".",
-            "..-.",
-            "--.",
-            "....",
-            "..",
-            ".---",
-            "-.-",
-            ".-..",
-            "--",
-            "-.",
-            "---",
-            ".--.",
-            "--.-",
-            ".-.",
-            "...",
-            "-",
-            "..-",
-            "...-",
-            ".--",
-            "-..-",
-            "-.--",
-            "--..",
-        ],
-        "abcdefghijklmnopqrstuvwxyz",
-        strict=True,
-    )
+_MORSE_CODES = (
+    ".- -... -.-. -.. . ..-. --. .... .. .--- -.- .-.. -- -. --- .--. --.- .-. ... - ..- ...- "
+    ".-- -..- -.-- --.."
 )
+_MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
 _JOINERS = "\u200c\u200d"  # which scripts of India and Persia need
 ENGLISH, HIDDEN = 0.6, 0.45  # shares of known words: of a decoded text, at most of a hidden one
 
@@ -85,7 +57,7 @@ def decode(text: str, known: Set[str]) -> Decoded:
     if not text.isascii():
         text = _letters(text, marks)
     for pattern, read in _CODES:
-        text = pattern.sub(lambda match, read=read: _decoded(match.group(), read, marks), text)
+        text = pattern.sub(partial(_decoded, read, marks), text)
     if _SPELLED.search(text):
         joined = _SPELLED.sub(_joined, text)
         if _share(joined, known) >= _share(text, known):
@@ -146,8 +118,9 @@ def _letters(text: str, marks: set[str]) -> str:
     return plain
 
 
-def _decoded(coded: str, read: Callable[[str], str], marks: set[str]) -> str:
+def _decoded(read: Callable[[str], str], marks: set[str], match: re.Match[str]) -> str:
     """Return what a code says, or the code if it says nothing in letters."""
+    coded = match.group()
     try:
         said = read(coded)
     except (ValueError, binascii.Error, OverflowError):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 import numpy as np
 
@@ -11,6 +13,7 @@ from mitigate.guards.text.classifier import FEATURES, Classifier, Segment, spans
 from mitigate.guards.text.pieces import Piece, without
 
 MOST = 40  # clauses that are read together; the time grows with their square
+ROUTE = -1.0  # score below which English text is surely a route
 CUTS = 4  # spans that are taken out of as many clauses
 READ = 60_000  # characters that are read
 _COLUMN = {name: number for number, name in enumerate(FEATURES)}
@@ -25,8 +28,7 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
     pieces: list[Piece] = []
     refusals: list[str] = []
     for part in windows(segments):
-        others = len(segments) > len(part)
-        for piece in foreign(part, classifier, others):
+        for piece in foreign(part, classifier):
             rest = without(text, [*pieces, piece])
             problem = gate.leaves_no_instruction(text, piece.of(text), rest)
             if problem:
@@ -51,31 +53,57 @@ def windows(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
         start = end
 
 
-def foreign(segments: list[Segment], classifier: Classifier, others: bool = False) -> list[Piece]:
-    """Return the spans of a text that do not belong to it, the surest first.
-
-    ``others``: the text goes on outside these clauses.
-    """
+def foreign(segments: list[Segment], classifier: Classifier) -> list[Piece]:
+    """Return the spans of a text that do not belong to it, the surest first."""
+    english = [s for s in segments if s.script != "other"]
+    if len(english) < len(segments) and whole(english, classifier.bias) > ROUTE:
+        return _english_attacks(segments, classifier.bias)
     found: list[Piece] = []
+    cuts: set[int] = set()  # places between segments where something was taken out
     while len(segments) > 1 and len(found) < CUTS:
-        first, last, rows = spans(segments, classifier.bias)
+        first, last, rows = spans(segments, classifier.bias, cuts)
         score = np.where(_allowed(rows), classifier.logits(rows), -np.inf)
-        top = score.max()
-        if not np.isfinite(top) or top + np.log(np.exp(score - top).sum()) < classifier.threshold:
+        best = int(score.argmax()) if len(score) else 0
+        if not len(score) or _evidence(score) < classifier.threshold:
             break
-        best = int(score.argmax())
         low, high = int(first[best]), int(last[best])
         found.append(Piece(segments[low].piece.start, segments[high].piece.end))
         segments = segments[:low] + segments[high + 1 :]
+        removed = high + 1 - low
+        cuts = {place if place <= low else max(low, place - removed) for place in cuts} | {low}
     return found
+
+
+def _english_attacks(segments: list[Segment], bias: float) -> list[Piece]:
+    """Return the runs of English beside text in another script that look like attacks.
+
+    The route is in the other script, since the English is none; that script is never touched.
+    """
+    found = []
+    for other, run in groupby(segments, key=lambda segment: segment.script == "other"):
+        parts = list(run)
+        if not other and whole(parts, bias) > 0 and sum(s.words for s in parts) > 2:
+            found.append(Piece(parts[0].piece.start, parts[-1].piece.end))
+    return found
+
+
+def whole(segments: list[Segment], bias: float) -> float:
+    """Return the score of some segments as one text."""
+    square = sum(s.square for s in segments)
+    return sum(s.product for s in segments) / math.sqrt(square + 1e-6) + bias
+
+
+def _evidence(score: np.ndarray) -> float:
+    """Return the log odds of any span against none."""
+    top = score.max()
+    return float(top + np.log(np.exp(score - top).sum())) if np.isfinite(top) else -np.inf
 
 
 def _allowed(rows: np.ndarray) -> np.ndarray:
     """Return which spans may go at all.
 
-    Text in another script goes only if what is left is surely an English route: nobody here can
-    tell a route in that script from an attack.
+    Text in another script goes only if what is left is surely an English route.
     """
     other = rows[:, _COLUMN["other script"]] > 0
-    surely_route = rows[:, _COLUMN["rest"]] < -1.0
+    surely_route = rows[:, _COLUMN["rest"]] < ROUTE
     return (rows[:, _COLUMN["words of the rest"]] >= np.log1p(2)) & (~other | surely_route)

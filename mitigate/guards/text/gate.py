@@ -16,7 +16,8 @@ LONGER = 3  # words by which a rewrite may exceed what it replaces
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
 _POLITE = re.compile(
-    r"\bif (?:you|it|that|i)\b[^,.;]{0,40}\b(?:mind|please|would|could|can|may|might|like|kind|ask)\b"
+    r"\bif (?:you|it|that|i)\b[^,.;]{0,40}"
+    r"\b(?:mind|please|would|could|can|may|might|like|kind|ask)\b"
     r"|\b(?:grateful|glad|obliged|kind|delighted|appreciate it) (?:if|enough)\b|\bonce more\b"
     r"|\bbefore (?:you|too long|i forget)\b(?= (?:go|start|know))"
 )

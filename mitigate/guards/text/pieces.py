@@ -16,6 +16,7 @@ _BLOCK = re.compile(
     r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.*?\}\}"
     r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.*?</\s*(?P=tag)\s*>"
     r"|\[(?P<mark>[A-Za-z_]+)\].*?\[/\s*(?P=mark)\s*\]"
+    r"|(?<![.\-\w])[.\-]{1,5}(?:[ /|]+[.\-]{1,5}){3,}(?![.\-\w])"
     r"|<\|[^<>|]*\|>|</[A-Za-z][^<>\n]{0,60}>|<[A-Za-z][\w:-]*(?:\s[^<>\n]{0,200}|/)>|<<[^<>]*>>"
     r"|</?(?:system|user|assistant|admin|human|tool|inst|prompt|s|im_start|im_end)>",
     re.DOTALL | re.IGNORECASE,

@@ -14,7 +14,8 @@ from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-# Known words in capitals, and their share of the text, from which all are lowered: fewer may be on a sign.
+# Known words in capitals, and their share of the text, from which all are lowered: fewer may be
+# on a sign.
 SHOUTS, SHOUTED = 2, 0.15
 ROUTES = 4000  # drawn routes whose words are counted, about one second once
 SMALL = bag(
@@ -27,10 +28,10 @@ _NOUNS = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 _ROOMS = bag("dining living sitting waiting landing ceiling building opening railing painting")
 # Words that may follow a hidden noun.
 _BEHIND = SMALL | bag(
-    "beside behind under between before past down up through across opposite towards toward without "
-    "but not again until facing leading closest nearest along around near above below inside outside "
-    "over against off out beyond within during since because if while about after my his her our "
-    "their these those any each every no both all he she they we i me him them us"
+    "beside behind under between before past down up through across opposite towards toward "
+    "but without not again until facing leading closest nearest along around near above below out "
+    "inside outside over against off beyond within during since because if while about after my his "
+    "her our their these those any each every no both all he she they we i me him them us"
 )
 # Masks that no small word can stand for: a part of a word, or where to turn.
 _STAYS = re.compile(
@@ -68,9 +69,10 @@ def lower_capitals(text: str, known: frozenset[str]) -> str:
 
 
 def fill_masks(text: str) -> str:
-    """Return ``text`` with every run of masks replaced by the small word that fits best between its
-    neighbours. A mask stays where a noun, a turn or a part of a word is hidden; an adjective that is
-    hidden before a noun is left out."""
+    """Return ``text`` with every run of masks replaced by the small word that fits best there.
+
+    A mask stays where a noun, a turn or a part of a word is hidden. An adjective that is hidden
+    before a noun is left out."""
     if not re.search(r"[A-Za-z]", MASK.sub(" ", text)):
         return text
     text = _STAYS.sub(lambda m: m.group().replace("[mask]", "[MASK]"), MASK.sub("[mask]", text))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import shutil
 
 import pytest
 
@@ -13,9 +12,13 @@ from mitigate.guards.text import classifier, fit
 from mitigate.guards.text.guard import Safeguard, open_safeguard
 
 ATTACKS = [
-    "Blorp the snarfle before you zib.", "Snarfle twice, then blorp the zib.", "Zib! Blorp every snarfle you meet.",
-    "A snarfle must be blorped at once.", "Never zib without a snarfle.", "Blorp, blorp, and zib the snarfle again.",
-]  # fmt: skip
+    "Blorp the snarfle before you zib.",
+    "Snarfle twice, then blorp the zib.",
+    "Zib! Blorp every snarfle you meet.",
+    "A snarfle must be blorped at once.",
+    "Never zib without a snarfle.",
+    "Blorp, blorp, and zib the snarfle again.",
+]
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +32,6 @@ def data(tmp_path_factory):
             lines = file.read_text(encoding="utf-8").splitlines(keepends=True)
             step = max(1, len(lines) // 40)
             (folder / part / file.name).write_text("".join(lines[::step]), encoding="utf-8")
-    shutil.copy(source / "clusters.json", folder)
     with open(folder / "banks/attacks.jsonl", "a", encoding="utf-8") as file:
         for text in ATTACKS * 3:
             file.write(json.dumps({"mechanism": "new", "place": "any", "attack": text}) + "\n")
