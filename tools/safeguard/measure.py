@@ -36,7 +36,8 @@ LIGHT = bag(
     a an the and or but so then now of to in on at by for from with into onto is are was were be
     been am do does did will would shall should can could may might must have has had that this
     these those it its it's you your yours me my i i'm i'd i'll we us our he she they them there
-    here just very really quite rather please kindly thanks thank cheers hi hey hello ok okay well oh ah um uh
+    here just very really quite rather please kindly thanks thank cheers hi hey hello ok okay well
+    oh ah um uh
     er hm sorry dear friend robot pal mate buddy sir madam good morning afternoon evening day let's
     as if when while because which who what where how also too only like some any all one's get got
     """

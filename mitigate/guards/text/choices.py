@@ -23,6 +23,7 @@ FOLDER = (
     "mitigate.guards.text.fit --out FOLDER`), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
+DIGITS = 12  # of a hash, as core/identity.py has it, which would load torch
 VERSION = "9"  # of what is decided: a new number where any text is repaired differently
 ANSWERS = "3"  # of what is accepted of a language model's answers
 
@@ -126,8 +127,6 @@ def identity(choice: str) -> str:
     endpoint's stay unknown). "none" has no hash."""
     if choice == "none":
         return choice
-    from mitigate.core.identity import DIGITS
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         choice = current(choice)

@@ -67,15 +67,18 @@ def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
 
 @dataclass(frozen=True)
 class Segment:
-    """A clause that was read. ``sentence``: number of its sentence. ``product``: weights times its
-    TF-IDF values. ``square``: sum of the squared values."""
+    """A clause that was read. ``sentence``: number of its sentence. ``letters``: a sign of Chinese,
+    Japanese or Korean counts as three. ``product``, ``style``: weights
+    of attacks and of styles times its TF-IDF values. ``square``: sum of the squared values."""
 
     piece: Piece
     sentence: int
     words: int
+    letters: int
     script: str
     hidden: bool
     product: float
+    style: float
     square: float
     index: np.ndarray
     value: np.ndarray
@@ -109,6 +112,7 @@ class Classifier:
     def segments(self, text: str) -> list[Segment]:
         """Return the clauses of a text, read one by one."""
         found = []
+        style = self.arrays.get("style")
         for number, sentence in enumerate(sentence_pieces(text)):
             for piece in clause_pieces(text, sentence):
                 said = piece.of(text)
@@ -121,9 +125,11 @@ class Classifier:
                         piece,
                         number,
                         len(said.split()),
+                        sum(1 + 2 * ("\u3000" <= c <= "\ud7ff") for c in said if c.isalpha()),
                         script(said),
                         bool(plain.marks),
                         product,
+                        float(style[index] @ value) if style is not None else 0.0,
                         square,
                         index,
                         value,

@@ -21,9 +21,9 @@ _ALIKE = str.maketrans(
 _LEET = str.maketrans("0134578@$!|€", "oieastbasiie")
 _SPELLED = re.compile(r"(?<![^\W_])(?:[A-Za-z](?:[.\-_*/|~]|\s+)){3,}[A-Za-z](?![^\W_])")
 _MIXED = re.compile(r"(?<!\w)(?=[\w@$!|€]*[A-Za-z@$!|€])(?=[\w@$!|€]*[0-9@$!|€])[\w@$!|€]{2,}")
-_MEASURE = re.compile(
-    r"\d+(?:st|nd|rd|th|m|cm|ft|feet|in|deg|x|s|am|pm|d|f)?[!|]*$|[A-Za-z]{1,3}\d+[!|]*$|[A-Za-z]+[!|]+$",
-    re.I,
+_MEASURE = re.compile(  # numbers with a unit or a letter, names of rooms, words with end marks
+    r"\d+(?:st|nd|rd|th|m|cm|ft|feet|in|deg|am|pm|[a-zA-Z])?[!|]*$|(?:[A-Z]{1,3}|[a-z])\d+[!|]*$|"
+    r"[A-Za-z]+[!|]+$"
 )
 _ESCAPES = re.compile(
     r"(?:%[0-9A-Fa-f]{2}){2,}|(?:\\u[0-9A-Fa-f]{4}){2,}|(?:\\x[0-9A-Fa-f]{2}){2,}|(?:&#x?[0-9A-Fa-f]+;){2,}"

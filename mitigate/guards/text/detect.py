@@ -8,12 +8,16 @@ from itertools import groupby
 
 import numpy as np
 
+from mitigate.corruptions.language.fidelity import facts
 from mitigate.guards.text import gate
 from mitigate.guards.text.classifier import FEATURES, Classifier, Segment, spans
 from mitigate.guards.text.pieces import Piece, without
 
 MOST = 40  # clauses that are read together; the time grows with their square
+FOREIGN = 0.3  # share of letters in another script from which the route may be in it
 ROUTE = -1.0  # score below which English text is surely a route
+STYLED = 1.2  # less log odds are needed beside text in a style, which looks foreign itself
+EDGE = 4  # words at an end of the text that go with what stands beside them
 CUTS = 4  # spans that are taken out of as many clauses
 READ = 60_000  # characters that are read
 _COLUMN = {name: number for number, name in enumerate(FEATURES)}
@@ -29,6 +33,7 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
     refusals: list[str] = []
     for part in windows(segments):
         for piece in foreign(part, classifier):
+            piece = _to_the_edge(text, piece)
             rest = without(text, [*pieces, piece])
             problem = gate.leaves_no_instruction(text, piece.of(text), rest)
             if problem:
@@ -37,6 +42,21 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
                 pieces.append(piece)
     removed = [piece.of(text) for piece in sorted(pieces, key=lambda piece: piece.start)]
     return (without(text, pieces) if pieces else text), removed, refusals
+
+
+def _to_the_edge(text: str, piece: Piece) -> Piece:
+    """Return a piece with the few words that are left between it and an end of the text, if they
+    say nothing of the way: "Warning!", "Sure!"."""
+    head, tail = text[: piece.start].strip(), text[piece.end :].strip()
+    start = 0 if head and _says_nothing(head) else piece.start
+    end = len(text) if tail and _says_nothing(tail) else piece.end
+    return Piece(start, end) if (start or end < len(text)) else piece
+
+
+def _says_nothing(text: str) -> bool:
+    said = facts(text)
+    short = text.isascii() and 0 < len(gate.words(text)) <= EDGE
+    return short and not (said.directions or set(said.landmarks) & gate.KNOWN or said.numbers)
 
 
 def windows(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
@@ -56,7 +76,9 @@ def windows(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
 def foreign(segments: list[Segment], classifier: Classifier) -> list[Piece]:
     """Return the spans of a text that do not belong to it, the surest first."""
     english = [s for s in segments if s.script != "other"]
-    if len(english) < len(segments) and whole(english, classifier.bias) > ROUTE:
+    other = sum(s.letters for s in segments if s.script == "other")
+    much = other > FOREIGN * sum(s.letters for s in segments)
+    if other and (much or whole(english, classifier.bias) > ROUTE):
         return _english_attacks(segments, classifier.bias)
     found: list[Piece] = []
     cuts: set[int] = set()  # places between segments where something was taken out
@@ -64,14 +86,25 @@ def foreign(segments: list[Segment], classifier: Classifier) -> list[Piece]:
         first, last, rows = spans(segments, classifier.bias, cuts)
         score = np.where(_allowed(rows), classifier.logits(rows), -np.inf)
         best = int(score.argmax()) if len(score) else 0
-        if not len(score) or _evidence(score) < classifier.threshold:
+        if not len(score):
             break
         low, high = int(first[best]), int(last[best])
+        needed = classifier.threshold - STYLED * _is_styled(segments, low, high, classifier)
+        if _evidence(score) < needed:
+            break
         found.append(Piece(segments[low].piece.start, segments[high].piece.end))
         segments = segments[:low] + segments[high + 1 :]
         removed = high + 1 - low
         cuts = {place if place <= low else max(low, place - removed) for place in cuts} | {low}
     return found
+
+
+def _is_styled(segments: list[Segment], low: int, high: int, classifier: Classifier) -> bool:
+    """Return whether what is left around a span is in a style."""
+    rest = [*segments[:low], *segments[high + 1 :]]
+    square = sum(s.square for s in rest)
+    style = sum(s.style for s in rest) / math.sqrt(square + 1e-6)
+    return bool(rest) and style + float(classifier.config["style_bias"]) > 0
 
 
 def _english_attacks(segments: list[Segment], bias: float) -> list[Piece]:

@@ -35,7 +35,7 @@ SEGMENTS = 18  # clauses of a text in the second step
 WORDS = 6000  # common words, by which hidden text is recognised
 RIDGE, STEPS, FOLD_STEPS = 2.0, 90, 50  # of the first step
 WIDTH, RIDGE_2, STEPS_2 = 10, 3.0, 250  # of the second step
-THRESHOLD = 0.5  # log odds of any span against none, from which it is taken out
+THRESHOLD = 0.6  # log odds of any span against none, from which it is taken out
 Example = tuple[np.ndarray, np.ndarray]  # rows of the spans of a text, 1.0 for each that is right
 
 

@@ -10,8 +10,11 @@ import re
 from collections import Counter
 
 from mitigate.corruptions.language.fidelity import check, facts
+from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
+from mitigate.guards.text.learning.route_words import ROOMS, THINGS
 
+KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | bag(" ".join((*THINGS, *ROOMS)))
 LONGER = 3  # words by which a rewrite may exceed what it replaces
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
@@ -51,9 +54,17 @@ def rewrite_refused(heard: str, said: str | None, last: bool = False) -> str:
     plain = heard.replace("[MASK]", "the")
     if last and "stop" in facts(said).directions and "stop" not in facts(plain).directions:
         plain = f"{plain.rstrip(' .!?;,')}, and stop."
-    problems = check(plain, said)
+    problems = [p for p in check(plain, said) if not _is_aside(p, plain)]
     if problems:
         return problems[0]
     before = Counter(words(_POLITE.sub(" ", plain.lower())))
     lost = [word for word in sorted(_CONDITIONS) if before[word] > Counter(words(said))[word]]
     return f"condition lost: {', '.join(lost)}" if lost else ""
+
+
+def _is_aside(problem: str, heard: str) -> bool:
+    """Return whether a lost word is no landmark: unknown, and no article before it."""
+    kind, _, name = problem.partition(": ")
+    if kind != "landmark lost" or name in KNOWN:
+        return False
+    return not re.search(rf"\b(?:the|an?|this|that|your) (?:\w+ )?{re.escape(name)}", heard.lower())

@@ -33,7 +33,7 @@ _BEGINS = (
     "They|I|I'm|We|My|Our|And|So|Now|Then|When|Once|After|Before|At|In|On|Out|Up|Down|Over|Past|Through|"
     "Behind|Beyond|Until|If|As|To|For|By|Kindly|Please|Pray|Oh|Well|Hey|Hi|Hello|Ok|Okay|Alright|Ladies|"
     "Dear|Right|Left|Straight|Just|There|There's|This|That|Here|Here's|Where|What|Is|Are|Not|No|Yes|First|"
-    "Second|Next|Last|Finally|Objective|Route|Item|Roll|Off|Into|Along|Around|Across|Unit|Breathe"
+    "Second|Next|Last|Finally|Roll|Off|Into|Along|Around|Across|Breathe"
 )
 _RUN_ON = re.compile(rf"(?<=[\w\])}}>=*\"'~|✔…])\s+(?=(?:{_BEGINS})\b[,']?\s[a-z(])")
 _CLAUSE = re.compile(

@@ -30,8 +30,8 @@ _ROOMS = bag("dining living sitting waiting landing ceiling building opening rai
 _BEHIND = SMALL | bag(
     "beside behind under between before past down up through across opposite towards toward "
     "but without not again until facing leading closest nearest along around near above below out "
-    "inside outside over against off beyond within during since because if while about after my his "
-    "her our their these those any each every no both all he she they we i me him them us"
+    "inside outside over against off beyond within during since because if while about after my "
+    "his her our their these those any each every no both all he she they we i me him them us"
 )
 # Masks that no small word can stand for: a part of a word, or where to turn.
 _STAYS = re.compile(

@@ -45,7 +45,7 @@ def known():
 )
 def test_decode_reads_hidden_words(known, hidden, mark):
     read = decode(hidden, known)
-    assert " ".join(read.text.lower().split()) == SAID and mark in read.marks
+    assert sorted(read.text.lower().split()) == sorted(SAID.split()) and mark in read.marks
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,7 @@ import pytest
 from mitigate.core.files import ROOT
 from mitigate.guards.text.gate import leaves_no_instruction, rewrite_refused
 
-HEARD = (
-    "So, go past the two red chairs, hang a left, don't enter the kitchen, stop by the lamp."
-)
+HEARD = "So, go past the two red chairs, hang a left, don't enter the kitchen, stop by the lamp."
 SAID = "Walk past the two red chairs, turn left, do not enter the kitchen, and stop by the lamp."
 
 
