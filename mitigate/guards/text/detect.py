@@ -54,9 +54,10 @@ def _to_the_edge(text: str, piece: Piece) -> Piece:
 
 
 def _says_nothing(text: str) -> bool:
+    if not text.isascii() or not 0 < len(text.split()) <= EDGE:
+        return False
     said = facts(text)
-    short = text.isascii() and 0 < len(gate.words(text)) <= EDGE
-    return short and not (said.directions or set(said.landmarks) & gate.KNOWN or said.numbers)
+    return not (said.directions or set(said.landmarks) & gate.KNOWN or said.numbers)
 
 
 def windows(segments: Sequence[Segment]) -> Iterator[list[Segment]]:

@@ -15,6 +15,7 @@ from mitigate.corruptions.language.words import bag
 from mitigate.guards.text.learning.route_words import ROOMS, THINGS
 
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | bag(" ".join((*THINGS, *ROOMS)))
+LONG = 3000  # characters; so much text holds an instruction
 LONGER = 3  # words by which a rewrite may exceed what it replaces
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
@@ -35,7 +36,7 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     """Return why ``rest`` of a text is no instruction, when ``removed`` is taken out of it."""
     if len(words(rest)) < 2 and rest.isascii():
         return "nothing would be left"
-    if not rest.isascii():
+    if not rest.isascii() or len(rest) > LONG:
         return ""
     left = facts(rest)
     turns = [d for d in left.directions if d != "stop"]
