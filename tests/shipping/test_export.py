@@ -440,7 +440,7 @@ def test_the_folder_agent_of_a_run_is_answered_with_the_run(place, tmp_path):
     [
         ("mitigate.encoders.model.Encoder", "docs/encoder.md"),
         ("mitigate.guards.frames.restorer.Restorer", "docs/restoration.md"),
-        ("mitigate.guards.text.reader.Reader", "docs/safeguard.md"),
+        ("mitigate.guards.text.language_models.model.LanguageModel", "docs/safeguard.md"),
     ],
 )
 @pytest.mark.parametrize("named", ["run", "run/agent"])
