@@ -59,6 +59,6 @@ def test_load_explains_missing_and_damaged_folders(tmp_path):
         classifier.load(tmp_path / "b")
 
 
-def test_read_data_names_a_missing_bank(tmp_path):
+def test_fit_explains_missing_data(tmp_path):
     with pytest.raises(FileNotFoundError, match="come with a checkout"):
-        fit.read_data(tmp_path)
+        fit.fit(tmp_path)
