@@ -16,11 +16,11 @@ from mitigate.bridge.cell import DONE, Cell, files_of, left_out, write_done
 from mitigate.bridge.events import EVENTS, LOCK, put_aside
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.program import GRACE, Command
-from mitigate.bridge.recording import delete_left
 from mitigate.bridge.results import Told
 from mitigate.bridge.server import Listener
 from mitigate.core import output
 from mitigate.core.files import make_folder
+from mitigate.core.locks import delete_abandoned
 from mitigate.core.names import counted
 from mitigate.core.output import open_output
 from mitigate.core.signals import unbroken
@@ -80,7 +80,7 @@ class Attempt:
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
             chosen.forget()  # of a run that came to nothing
         if cell.recording is not None:
-            delete_left(cell.recording)
+            delete_abandoned(cell.recording.glob("*/.*.tmp"))
         self.files = files_of(cell.command)
         self.listener = Listener(cell.condition, folder, cell.patience).__enter__()
         words = self._words()

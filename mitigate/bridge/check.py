@@ -5,6 +5,7 @@ Says what it sees and hears, which conditions of the suite apply, and draws what
 
 from __future__ import annotations
 
+import io
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from mitigate.bridge.condition import applicable, untold
 from mitigate.bridge.config import RunConfig, check_options, name_of
 from mitigate.bridge.plan import Plan, cells
 from mitigate.bridge.results import NEAR, NORMALISED, Told
-from mitigate.core.files import write_atomically, write_bytes
+from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
 from mitigate.core.pictures import depth_picture
@@ -55,18 +56,15 @@ class FirstLook:
             frames = {of(c.name): c.read(memory, offsets) for c in rig.cameras}
             heading = told.get("heading")
             frames[HEADING] = np.array([] if heading is None else [heading])
-            write_atomically(self.file, lambda path: _save(path, frames))
+            packed = io.BytesIO()
+            np.savez(packed, **frames)  # type: ignore[arg-type]
+            write_bytes(self.file, packed.getvalue())
 
     def end(self, told: Mapping[str, Any]) -> None:
         """Nothing: one look is enough."""
 
     def leave(self) -> None:
         """Nothing: the look stays."""
-
-
-def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
-    with open(path, "wb") as file:
-        np.savez(file, **frames)  # type: ignore[arg-type]
 
 
 def check(config: RunConfig, command: Sequence[str]) -> Path | None:

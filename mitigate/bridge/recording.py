@@ -24,7 +24,6 @@ import numpy as np
 from mitigate.bridge.cameras import Camera, Rig
 from mitigate.core import output
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
-from mitigate.core.locks import is_alive
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import open_output
 from mitigate.corruptions.frame_files import counts
@@ -34,7 +33,6 @@ CAMERAS = "cameras.json"
 LONGEST = 150  # characters of a name that are kept in a path (ours; a file name has 255 bytes)
 UNIT = 0.001  # metres of a count of 16-bit depth
 _PLAIN = re.compile(r"[^A-Za-z0-9._-]+")
-_LEFT = re.compile(r"\..+\.(\d+)\.tmp")  # the folder of an episode that a process is in
 
 
 def plain(name: str) -> str:
@@ -116,14 +114,6 @@ class Recorder:
         if self.here is not None:
             shutil.rmtree(self.here, ignore_errors=True)
         self.here = self.place = None
-
-
-def delete_left(folder: Path) -> None:
-    """Delete the episodes in a recording that processes were in which are no more."""
-    for path in folder.glob("*/.*.tmp"):
-        found = _LEFT.fullmatch(path.name)
-        if found and not is_alive(int(found[1])):
-            shutil.rmtree(path, ignore_errors=True)
 
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:

@@ -62,7 +62,7 @@ class FolderLock:
                 file.close()
                 self._root = output.register(self.folder)
                 return self
-            if _same(file, self.path):
+            if output.is_same(os.fstat(file.fileno()), self.path):
                 break
             file.close()  # the one before us deleted it in this moment
         self._file = file
@@ -91,7 +91,9 @@ class FolderLock:
             output.unregister(self._root)
             self._root = None
         if self._file is not None:
-            if _same(self._file, self.path):  # else it is the lock of another process
+            if output.is_same(
+                os.fstat(self._file.fileno()), self.path
+            ):  # else it is the lock of another process
                 self.path.unlink(missing_ok=True)
             _held.pop(self.path, None)
             self._file.close()
@@ -116,7 +118,12 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     inside = [place for place in inside if not place.is_symlink()]
     found = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
-    ended = {path: _LEFT.fullmatch(path.name) for path in found}
+    return delete_abandoned(found)
+
+
+def delete_abandoned(drafts: Iterable[Path]) -> list[Path]:
+    """Delete those of ``drafts`` whose process is no more; return them."""
+    ended = {path: _LEFT.fullmatch(path.name) for path in drafts}
     left = [p for p, own in ended.items() if own and _is_over(int(own[1]))]
     for path in left:
         if path.is_dir() and not path.is_symlink():
@@ -141,13 +148,6 @@ def is_alive(pid: int) -> bool:
     except PermissionError:
         return True
     return pid > 0
-
-
-def _same(file: IO[str], path: Path) -> bool:
-    try:
-        return os.path.samestat(os.fstat(file.fileno()), os.lstat(path))
-    except FileNotFoundError:
-        return False
 
 
 def _command() -> str:
