@@ -17,7 +17,7 @@ import numpy as np
 
 from mitigate.bridge.attempt import Attempt
 from mitigate.bridge.cameras import Group, Rig, corrupted
-from mitigate.bridge.condition import applicable, untold
+from mitigate.bridge.condition import Observer, applicable, untold
 from mitigate.bridge.config import RunConfig, check_options, name_of
 from mitigate.bridge.plan import Plan, cells
 from mitigate.bridge.results import NEAR, NORMALISED, Told
@@ -39,14 +39,11 @@ TRIED = 40  # calls, until one is taken in which a corruption acts: some come an
 
 
 @dataclass
-class FirstLook:
+class FirstLook(Observer):
     """Keeps the frames of the first call in a file."""
 
     file: Path
-    kinds: ClassVar = (RGB, DEPTH)
-
-    def episode(self, told: Mapping[str, Any]) -> None:
-        """Nothing: the events tell of it."""
+    kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
 
     def frame(
         self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
@@ -59,12 +56,6 @@ class FirstLook:
             packed = io.BytesIO()
             np.savez(packed, **frames)  # type: ignore[arg-type]
             write_bytes(self.file, packed.getvalue())
-
-    def end(self, told: Mapping[str, Any]) -> None:
-        """Nothing: one look is enough."""
-
-    def leave(self) -> None:
-        """Nothing: the look stays."""
 
 
 def check(config: RunConfig, command: Sequence[str]) -> Path | None:

@@ -22,6 +22,7 @@ import cv2
 import numpy as np
 
 from mitigate.bridge.cameras import Camera, Rig
+from mitigate.bridge.condition import Observer
 from mitigate.core import output
 from mitigate.core.files import RECORDING, atomic_text, write_bytes
 from mitigate.core.observation import DEPTH, RGB
@@ -50,7 +51,7 @@ def part(name: str) -> str:
 
 
 @dataclass
-class Recorder:
+class Recorder(Observer):
     """Writes what passes into ``folder``; of an episode that comes again the one that ended last
     stays: until its end it lies in a folder beside."""
 
@@ -58,7 +59,7 @@ class Recorder:
     here: Path | None = None
     place: Path | None = None  # where it is put at its end
     cameras: dict[str, Any] = field(default_factory=dict)  # of the episode
-    kinds: ClassVar = (RGB, DEPTH)  # of the cameras that it needs to see
+    kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
 
     def episode(self, told: Mapping[str, Any]) -> None:
         """Begin the folder of an episode."""
