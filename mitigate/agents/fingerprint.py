@@ -193,7 +193,7 @@ def _architecture(state: State) -> list[str]:
     return _lines(lines)
 
 
-def _changes(agent: nn.Module) -> list[str]:
+def _changes(agent: Any) -> list[str]:
     """Return what differs between one of our agents and a new one with its settings, beside weights
     and what it remembers of an episode: layers, buffers and plain attributes."""
     with torch.random.fork_rng(devices=[]):
