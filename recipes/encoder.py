@@ -27,9 +27,8 @@ from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality
-from mitigate.encoders.frames import Frames, collect, corrupted
 from mitigate.encoders.model import Encoder
-from mitigate.encoders.sources import TRAIN, UNSEEN, Source, source_of
+from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, Source, collect, corrupted, source_of
 from mitigate.training import success
 from mitigate.training.objective import Objective, check_weights
 from mitigate.training.parts import without_adapters

@@ -10,7 +10,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import cv2
 import numpy as np
@@ -26,9 +26,7 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
 from mitigate.core.pictures import depth_picture
 from mitigate.corruptions import Corruption, Key
-
-if TYPE_CHECKING:  # it needs torch, which a check without one does not wait for
-    from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import NO_GUARDS, Guards
 
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
 SHOWN = 4  # cameras of a panorama in a row of the sheet
@@ -85,7 +83,7 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
         frames = dict(held)
     seen = [camera for camera in told.cameras if of(camera["name"]) in frames]
     rig = Rig(seen, config.missing, config.turn)
-    print("\n".join(described(told, rig, frames, cell.condition.restorer)))
+    print("\n".join(described(told, rig, frames, cell.condition.guards)))
     fitting = []
     for other in made[1:]:
         reason = applicable(other.corruption, told)
@@ -124,7 +122,7 @@ def _wait(attempt: Attempt, file: Path) -> None:
 
 
 def described(
-    told: Told, rig: Rig, frames: Mapping[str, np.ndarray], restorer: Restorer | None = None
+    told: Told, rig: Rig, frames: Mapping[str, np.ndarray], guards: Guards = NO_GUARDS
 ) -> list[str]:
     """Return lines that say what the program is, sees and hears, and what of it is restored."""
     hello = told.hellos[0] if told.hellos else {}
@@ -144,10 +142,10 @@ def described(
         if episode.get("category"):
             said.append(f"goal category {episode['category']!r}")
         said.append(f"instruction {episode['text']!r}" if episode.get("text") else "no instruction")
-    if restorer is not None:
+    if guards.frames:
         shown = dict.fromkeys(group.cameras[0].kind for group in rig.groups)
-        own = [kind for kind in shown if kind in restorer.nets]
-        nothing = f"nothing of these, the restorer is for {', '.join(restorer.nets)}"
+        own = [kind for kind in shown if kind in guards.frames]
+        nothing = f"nothing of these, the restorer is for {', '.join(guards.frames)}"
         lines.append(f"restored: {', '.join(own) or nothing}")
     return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(said), "conditions:"]
 

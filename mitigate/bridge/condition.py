@@ -23,11 +23,11 @@ from mitigate.corruptions import Corruption, Key, corrupt_instruction
 from mitigate.corruptions.keying import digest, uniform
 from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenizer_for
+from mitigate.guards.guard import NO_GUARDS, EpisodeStart, Guards
 from mitigate.worlds.episodes import read_extras
 
 if TYPE_CHECKING:
     from mitigate.bridge.cameras import Rig
-    from mitigate.guards.frames.restorer import Restorer
 
 SETTLED = 4.0  # seconds without another environment, after which all are taken to be known (ours)
 NO_TOKENIZER = (
@@ -63,9 +63,9 @@ class Condition:
     """What a command meets: the corruption, its seed, and how it is applied.
 
     repeat: number of this run of the same condition; part of the keys where it is not 0. missing:
-    metres that a hole reads. turn: where a growing yaw turns. restorer: goes over all frames
-    behind the corruption. observers: see every
-    episode and frame, before its corruption (``recording.py``).
+    metres that a hole reads. turn: where a growing yaw turns. guards: change words and
+    frames behind the corruption. observers: see every episode and frame, before its
+    corruption (``recording.py``).
     """
 
     corruption: Corruption
@@ -75,7 +75,7 @@ class Condition:
     missing: float = 0.0
     turn: str = "left"
     keep: Callable[[list[str], int], list[int]] | None = None
-    restorer: Restorer | None = None
+    guards: Guards = NO_GUARDS
     observers: list[Observer] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
@@ -111,15 +111,19 @@ class Words:
     """Changes the words of episodes.
 
     tokenizer: for agents that read tokens; None: an agent with tokens is refused where its words
-    change, since it would read the old ones. repair: a safeguard's answer to a text; None: none.
-    length: of padded tokens; None: as the episode's own.
+    change, since it would read the old ones. length: of padded tokens; None: as the episode's own.
     """
 
     tokenizer: Tokenizer | None = None
-    repair: Callable[[str], str] | None = None
     length: int | None = None
 
-    def heard(self, told: Mapping[str, Any], corruption: Corruption, key: Key) -> dict[str, Any]:
+    def heard(
+        self,
+        told: Mapping[str, Any],
+        corruption: Corruption,
+        key: Key,
+        guards: Guards = NO_GUARDS,
+    ) -> dict[str, Any]:
         """Return ``text`` and ``tokens`` of an episode as the agent is to have them; empty where
         they stay as they are. Raises ValueError where an agent would not hear the change.
         """
@@ -142,8 +146,7 @@ class Words:
         made = text
         for part in spoken if is_english(told.get("language")) else ():
             made = corrupt_instruction(made, part.name, part.severity, key, mask_token=self._mask())
-        if self.repair is not None:
-            made = self.repair(made)
+        made = guards.begin(EpisodeStart(key, made))
         if made == text:
             return {}
         return {"text": made, "tokens": self._tokens(made, tokens)}

@@ -125,7 +125,7 @@ class Connection:
         if not self._greet():
             return
         self.channel.settimeout(None)
-        if "torch" in sys.modules:  # of a restorer or a safeguard, loaded before the fork
+        if "torch" in sys.modules:  # of a guard, loaded before the fork
             _one_thread()
         try:
             while (message := self._next()) is not None:
@@ -190,7 +190,7 @@ class Connection:
         self.rig = Rig(message["cameras"], condition.missing, condition.turn)
         wanted = (
             *condition.corruption.modalities,
-            *(condition.restorer.nets if condition.restorer is not None else ()),
+            *condition.guards.frames,
             *(k for o in condition.observers for k in o.kinds),
         )
         self.offsets, size = self.rig.lay_out(wanted)
@@ -210,7 +210,9 @@ class Connection:
         self.worked, self.calls, self.loop = 0.0, 0, message.get("loop") is True
         self.kinds = set()
         key = self.condition.key(self.scene, self.episode, 0)
-        heard = self.condition.words.heard(message, self.condition.corruption, key)
+        heard = self.condition.words.heard(
+            message, self.condition.corruption, key, self.condition.guards
+        )
         for observer in self.condition.observers:
             observer.episode(message)
         told = {n: message.get(n) for n in ("text", "category", "language")}
@@ -253,8 +255,7 @@ class Connection:
             self.condition.key(self.scene, self.episode, int(message["call"])),
             None if heading is None else float(heading),
         )
-        if self.condition.restorer is not None:
-            changed += self.rig.restore(self.shared.map, self.offsets, self.condition.restorer)
+        changed += self.rig.guard(self.shared.map, self.offsets, self.condition.guards)
         self.worked += time.perf_counter() - began
         self.calls += 1
         return {"changed": list(dict.fromkeys(changed))}
@@ -288,7 +289,7 @@ class Connection:
 
     def _check_kinds(self) -> None:
         """Raise ValueError if no call of the episode had a camera of a kind that is corrupted, or
-        none that the restorer is for."""
+        none that the guards are for."""
         for part in self.condition.corruption.parts:
             if part.modality in CHANNELS and part.modality not in self.kinds:
                 raise ValueError(
@@ -297,8 +298,7 @@ class Connection:
                     f"{', '.join(sorted(self.kinds)) or 'none'}). Leave it out: suite=rgb, or "
                     "conditions=[clean,...]."
                 )
-        if self.condition.restorer is not None:
-            self.condition.restorer.check_shown(sorted(self.kinds), f"episode {self.episode}")
+        self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Episodes of an environment, in pieces: answer which of all ``count`` it is to keep, all

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from mitigate.bridge.cell import Cell
 from mitigate.bridge.condition import Condition, Subset, Words, tokenizer_of
@@ -25,9 +25,8 @@ from mitigate.core.files import sha256
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version
 from mitigate.evaluation.conditions import conditions
-
-if TYPE_CHECKING:
-    from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import Guards
+from mitigate.guards.opening import labels, open_guards
 
 SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length")  # as they are
 
@@ -61,11 +60,15 @@ def cells(plan: Plan) -> list[Cell]:
     """All conditions of a run, clean first, then repeated clean runs."""
     config, out = plan.config, plan.out
     clean, *others = conditions(config.names, config.severity, config.severity_depth)
-    words, environment, restorer = _words(config, out), _environment(config), _restorer(config)
+    words = _words(config)
+    environment = _environment(config)
+    guards = open_guards(config.safeguard, config.restore, log=out / "safeguard.jsonl")
+    _check_guards(guards)
+    restored = guards.frames_hash()
     chosen = None if config.episodes is None else Subset(config.episodes, out)
     keep = None if chosen is None else chosen.keep
     text, adapters = shlex.join(plan.command), adapters_of(config)
-    label = label_of(config, text, plan.name, restorer, adapters)
+    label = label_of(config, text, plan.name, restored, adapters)
     made: list[Cell] = []
     for corruption, repeat in [
         *((clean, number) for number in range(config.repeats)),
@@ -82,7 +85,7 @@ def cells(plan: Plan) -> list[Cell]:
             config.missing,
             config.turn,
             keep,
-            restorer=restorer,
+            guards=guards,
             observers=[] if recording is None else [Recorder(recording)],
         )
         made.append(
@@ -95,7 +98,7 @@ def cells(plan: Plan) -> list[Cell]:
                 condition,
                 label,
                 config.rule,
-                settings_of(config, text, corruption, restorer, adapters),
+                settings_of(config, text, corruption, restored, adapters),
                 config.patience,
                 environment,
                 clean=made[0].folder if made else None,
@@ -107,23 +110,19 @@ def cells(plan: Plan) -> list[Cell]:
     return made
 
 
-def _restorer(config: RunConfig) -> Restorer | None:
-    if config.restore is None:
-        return None  # without a wait for torch
-    from mitigate.guards.frames.restorer import restorer_of
+def _check_guards(guards: Guards) -> None:
+    """Raise ValueError for a guard that changes the agent, which runs in another process."""
+    if guards.adapts:
+        raise ValueError(
+            f"The guard {guards.label} adapts the agent itself, and the agent of another program "
+            "cannot be reached through the bridge: leave restore= out, or name a guard that "
+            "changes frames or instructions only."
+        )
 
-    return restorer_of(config.restore)
 
-
-def _words(config: RunConfig, out: Path) -> Words:
-    from mitigate.guards.text.guard import open_safeguard
-
-    guard = open_safeguard(config.safeguard, log=out / "safeguard.jsonl")
-    return Words(
-        None if config.tokenizer is None else tokenizer_of(config.tokenizer),
-        None if guard is None else lambda text: guard.canonicalise(text).text,
-        config.token_length,
-    )
+def _words(config: RunConfig) -> Words:
+    tokenizer = None if config.tokenizer is None else tokenizer_of(config.tokenizer)
+    return Words(tokenizer, config.token_length)
 
 
 def _environment(config: RunConfig) -> dict[str, str]:
@@ -144,13 +143,13 @@ def settings_of(
     config: RunConfig,
     command: str,
     corruption: Corruption,
-    restorer: Restorer | None,
+    restored: str | None,
     adapters: str | None,
 ) -> dict[str, Any]:
     """What a condition's result depends on, by which a finished one is known again."""
     told = {name: vars(config)[name] for name in SETTINGS}
     told |= met(corruption)
-    told |= {"restore": None if restorer is None else restorer.hash, "adapters": adapters}
+    told |= {"restore": restored, "adapters": adapters}
     return {"command": command, **told, "safeguard": _guard(config), "watch": watched(config)}
 
 
@@ -186,13 +185,13 @@ def _watch(config: RunConfig) -> str | None:
 
 
 def label_of(
-    config: RunConfig, command: str, name: str, restorer: Restorer | None, adapters: str | None
+    config: RunConfig, command: str, name: str, restored: str | None, adapters: str | None
 ) -> dict[str, Any]:
     """What the rows say of the agent: with a restorer, a safeguard, adapters or what is watched it
     is another one, by their hashes."""
     sha = _digest(command)
     guard = None if config.safeguard == "none" else _guard(config)
-    for part in (restorer and restorer.hash, guard, adapters, _watch(config)):
+    for part in (restored, guard, adapters, _watch(config)):
         sha = sha if part is None else _digest(f"{sha} {part}")
     return {"agent": sha, "name": _column(config, name), "split": config.split, "seed": config.seed}
 
@@ -235,15 +234,8 @@ def place_of(adapters: str) -> tuple[str, str, str]:
 
 
 def _column(config: RunConfig, name: str) -> str:
-    """The column of the table: the command's name, and what stands in front of the agent."""
-    from mitigate.guards.frames.choices import label as restoring
-
-    parts = [name]
-    if config.safeguard != "none":
-        from mitigate.guards.text.choices import label
-
-        parts.append(label(config.safeguard))
-    parts += [restoring(config.restore)] if config.restore is not None else []
+    """The column of the table: the command's name, and the labels of guards."""
+    parts = [name, *labels(config.safeguard, config.restore)]
     parts += ["adapters"] if config.adapters is not None else []
     return "+".join(parts)
 

@@ -57,25 +57,23 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     met = conditions(config.condition_names, config.severity, config.severity_depth)
     # nothing slow is imported before the options are checked
     from mitigate.core import build
-    from mitigate.evaluation import making, walked
+    from mitigate.evaluation import provenance
     from mitigate.evaluation.evaluator import evaluate
-    from mitigate.guards.frames.restorer import restorer_of
+    from mitigate.guards.opening import open_guards
     from mitigate.guards.text import choices
-    from mitigate.guards.text.guard import open_safeguard
 
     agent = load(config.agent, config.checkpoint, config.seed, overrides)
     check_walks(agent)
     world = build.maker(env.world)
     name = _column(config, overrides)
-    first, made_by = making.first(world)
-    restorer = restorer_of(config.restore, first.sensors)
+    first, made_by = provenance.first_world(world)
     check_sensors(met, first.sensors, env.name)
     choices.check(config.safeguard)
     out = Path(config.out or default_folder(config, name))
+    guards = open_guards(config.safeguard, config.restore, first.sensors, log=out / DECISIONS)
     with FolderLock(out) as lock:
-        walked.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
-        lock.expect(out / ROWS, *walked.notes(out, config.split))
-        safeguard = open_safeguard(config.safeguard, log=out / DECISIONS)
+        provenance.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
+        lock.expect(out / ROWS, *provenance.notes(out, config.split))
         print(  # when all is checked: a mistake is told alone
             f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
@@ -94,8 +92,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
             seed=config.seed,
             workers=config.workers,
             launcher=where,
-            safeguard=safeguard,
-            restorer=restorer,
+            guards=guards,
             version=config.version,
         )
         write_table([out / ROWS], out, rows)
@@ -104,18 +101,11 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
 
 def _column(config: EvaluateConfig, overrides: Sequence[str]) -> str:
     """Return the table's column: the weights, options that change the agent, and its guards."""
+    from mitigate.guards.opening import labels
+
     usual = name_of(config.checkpoint or config.agent["_target_"].rpartition(".")[2])
     own = [config.name or usual, *changed(overrides)]
-    return "+".join([*own, *fronts(config.safeguard, config.restore)])
-
-
-def fronts(safeguard: str | None, restore: str | None) -> list[str]:
-    """Return the short names of what stands in front of an agent, as parts of a column's name."""
-    from mitigate.guards.frames import choices as restorers
-    from mitigate.guards.text import choices as safeguards
-
-    found = [safeguards.label(safeguard or "none"), restorers.label(restore or "none")]
-    return [name for name in found if name != "none"]
+    return "+".join([*own, *labels(config.safeguard, config.restore)])
 
 
 def check_walks(agent: Any) -> None:

@@ -27,6 +27,7 @@ from mitigate.core.locks import FolderLock
 from mitigate.core.names import name_of, short
 from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation.conditions import conditions
+from mitigate.guards.guard import NO_GUARDS, Guards
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
 UNSAVED = ("out", "runs", "suite")  # options that change no result
@@ -88,19 +89,19 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
 
     Raises ValueError and FileNotFoundError for what is missing, damaged or does not fit.
     """
-    from mitigate.guards.frames.restorer import restorer_of
+    from mitigate.guards.opening import open_guards
 
     check_options(config, paths)
     names = [name for name in config.names if name != "clean"]
     met = conditions(["clean", *names], config.severity, config.severity_depth)
-    restorer = restorer_of(config.restore)
+    guards = open_guards(None, config.restore)
     agents = load_agents(config.agents)
     out = Path(config.out or f"{config.runs}/replay/{_name(paths)}-s{config.severity:g}")
     settings = _settings(config, paths, agents)
-    settings["restorer"] = None if restorer is None else restorer.hash
+    settings["restorer"] = guards.frames_hash()
     _check_earlier(out, settings)
     views = {agent.views for agent in agents.values()}
-    recordings = load_recordings(config, paths, views, restorer)
+    recordings = load_recordings(config, paths, views, guards)
     with FolderLock(out):
         for name, corruption in product(agents, met):  # of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
@@ -113,7 +114,7 @@ def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
             out,
             severity=config.severity,
             seed=config.seed,
-            restorer=restorer,
+            guards=guards,
         )
 
 
@@ -144,10 +145,10 @@ def load_agents(weights: Sequence[str]) -> dict[str, Any]:
 
 
 def load_recordings(
-    config: ReplayConfig, paths: Sequence[str], views: set[int], restorer: Any = None
+    config: ReplayConfig, paths: Sequence[str], views: set[int], guards: Guards = NO_GUARDS
 ) -> dict[int, list[Any]]:
     """Every drive, for agents with a panorama (12) and for those with one camera (1). Raises
-    ValueError for a drive of which ``restorer`` restores nothing, before any frame is read."""
+    ValueError for a drive of which ``guards`` change no frame, before any frame is read."""
     from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
 
     step = Step(**vars(config.step))
@@ -161,8 +162,8 @@ def load_recordings(
     )
     found: dict[int, list[Any]] = {count: [] for count in views}
     sources = [source for path in paths for source in open_drives(path)]
-    for source, count in product(sources if restorer is not None else [], views):
-        restorer.check_shown(kinds(source, count), source.name)
+    for source, count in product(sources if guards else [], views):
+        guards.check_shown(kinds(source, count), source.name)
     for source, count in product(sources, views):
         drive = load(source, views=count, size=config.size, step=step)
         words = config.instruction or drive.instruction
@@ -222,10 +223,10 @@ def replay(
     *,
     severity: float,
     seed: int,
-    restorer: Any = None,
+    guards: Guards = NO_GUARDS,
 ) -> Path:
     """Walk ``agents`` (by name) along ``recordings`` (by their number of views) under the
-    corruptions ``met``, clean first, behind ``restorer`` if there is one; write the report into
+    corruptions ``met``, clean first, behind ``guards`` if there are any; write the report into
     ``out`` and return it."""
     from mitigate.core.progress import Progress
     from mitigate.replay import report
@@ -249,7 +250,7 @@ def replay(
                 for drive in drives:
                     clean = answers["clean"].get(drive.name)
                     here[drive.name] = walk(
-                        agent, drive, corruption, seed, clean=clean, restorer=restorer
+                        agent, drive, corruption, seed, clean=clean, guards=guards
                     )
                     told = {"agent": name, "condition": corruption.name}
                     told |= {"severity": corruption.severity, "seed": seed}
@@ -258,10 +259,8 @@ def replay(
                     progress.advance(note=f"{name}, {corruption.name}")
             known = answers["clean"]
             found[name] = {n: compare(drives, known, a) for n, a in answers.items()}
-            pictures += _picture(
-                name, agent, drives, met, found[name], answers, seed, out, restorer
-            )
-    text = report.table(found, severity, sum(steps), len(steps), restorer)
+            pictures += _picture(name, agent, drives, met, found[name], answers, seed, out, guards)
+    text = report.table(found, severity, sum(steps), len(steps), guards)
     with atomic_text(out / TABLE) as table:
         table.write(text)
     print(text.partition("\nFalse stops")[0])
@@ -297,7 +296,7 @@ def _picture(
     answers: Mapping[str, Mapping[str, Any]],
     seed: int,
     out: Path,
-    restorer: Any,
+    guards: Guards,
 ) -> list[Path]:
     """A picture of decisions that the worst corruption of frames changed, if it changed any."""
     from mitigate.replay import report
@@ -316,7 +315,7 @@ def _picture(
     if not steps:
         return []
     clean = answers["clean"][drive.name]
-    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, restorer=restorer)
+    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, guards=guards)
     path = _picture_file(out, name, worst.name)
     return [report.picture(drive, worst, clean, again, path)]
 

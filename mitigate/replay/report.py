@@ -17,7 +17,7 @@ from mitigate.corruptions import Corruption
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.plots import COLOURS, DPI, plain
 from mitigate.evaluation.sections import label
-from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.replay.walk import ACTIONS, FEW, Answers, Changes
 from mitigate.worlds.recorded import Recording
 
@@ -28,16 +28,16 @@ SIDE = 160  # pixels: height of a view in a picture
 
 
 def table(
-    found: Found, severity: float, steps: int, drives: int, restorer: Restorer | None = None
+    found: Found, severity: float, steps: int, drives: int, guards: Guards = NO_GUARDS
 ) -> str:
-    """The report as Markdown: one block for changed decisions, one for the rest. restorer: which
+    """The report as Markdown: one block for changed decisions, one for the rest. guards: which
     the frames went through."""
     agents = list(found)
     conditions = [name for name in _conditions(found) if name != "clean"]
     behind = ""
-    if restorer is not None:
-        kinds = " and ".join(restorer.nets)
-        behind = f" Frames of {kinds} went through the restorer `{restorer.hash}`."
+    if guards.frames:
+        kinds = " and ".join(guards.frames)
+        behind = f" Frames of {kinds} went through the restorer `{guards.frames_hash()}`."
     lines = [
         f"Decisions that a corruption of severity {severity:g} changes, in %, of {steps} steps in "
         f"{drives} drive{'s' * (drives > 1)}, against the same agent on clean frames. Brackets are "

@@ -17,11 +17,10 @@ from mitigate.corruptions import Corruption
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.episode import action_of, instructed
-from mitigate.guards.frames.restorer import Restorer
-from mitigate.guards.frames.world import Restored
+from mitigate.guards.guard import NO_GUARDS, Guards, guarded
 from mitigate.worlds.recorded import RecordedWorld, Recording
 from mitigate.worlds.recorded.recording import NONE, answered
-from mitigate.worlds.world import Corrupted, World
+from mitigate.worlds.world import Corrupted
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 FAR = 0.5  # metres, two steps (ours)
@@ -49,25 +48,23 @@ def walk(
     seed: int,
     keep: Collection[int] = (),
     clean: Answers | None = None,
-    restorer: Restorer | None = None,
+    guards: Guards = NO_GUARDS,
 ) -> Answers:
     """Show ``agent`` the drive under ``corruption`` and return its answers.
 
     After each it is told what the driver did (``taken``, ``agents/agent.py``). Where that is not
     known, it is told what it answered on clean frames (``clean``; None: this is that walk), so that
     nothing but frames and words differs. ``keep``: steps whose frames are returned.
-    ``restorer``: goes over the frames before the agent. Raises ValueError if the drive lacks what
-    the agent reads.
+    ``guards``: in front of the agent. Raises ValueError if the drive lacks what the agent reads.
     """
     world = RecordedWorld(recording)
-    met: World = Corrupted(world, corruption, seed)
-    met = met if restorer is None else Restored(met, restorer)
+    met = guarded(Corrupted(world, corruption, seed), guards)
     done = recording.driven if clean is None else recording.driven or answered(clean.actions)
     episode = world.episode()
     observation = met.reset(episode)
     actions, aims, seen = [], [], {}
     contract = as_agent(agent)
-    with instructed(agent, episode, corruption, seed):
+    with instructed(agent, episode, corruption, seed, guards):
         for step in range(len(recording.times)):
             try:
                 action = action_of(agent.act(observation), agent)

@@ -288,6 +288,6 @@ def _check_guards(config: EvaluateConfig) -> None:
     """Raise ValueError or FileNotFoundError for a missing safeguard or restorer."""
     choices.check(config.safeguard)
     if config.restore is not None:
-        from mitigate.guards.frames.restorer import restorer_of
+        from mitigate.guards.opening import open_restorer
 
-        restorer_of(config.restore, build.maker(config.env.world)().sensors)
+        open_restorer(config.restore, build.maker(config.env.world)().sensors)

@@ -14,8 +14,7 @@ import torch
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.suite import SENSOR
-from mitigate.encoders.frames import Frames, collect, corrupted
-from mitigate.encoders.sources import TRAIN, source_of
+from mitigate.encoders.sources import TRAIN, Frames, collect, corrupted, source_of
 from mitigate.training import success
 from mitigate.training.poses import Poses
 from mitigate.worlds.world import TrainingEpisodes

@@ -133,7 +133,7 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
     """Write ``table.md`` with its pictures, and ``overview.md`` with the paper beside it, from
     the rows under ``paths``."""
     from mitigate.evaluation import report, rows
-    from mitigate.evaluation.paper import beside
+    from mitigate.evaluation.report import beside
     from mitigate.evaluation.sections import sections
 
     found = rows.gather(paths)
@@ -176,9 +176,8 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     agents of the first seed, behind what their cells put in front of them; nothing if one of them
     has no cell."""
     from mitigate.evaluation import rows
-    from mitigate.evaluation.trajectories import Front, write_pictures
-    from mitigate.guards.frames.restorer import restorer_of
-    from mitigate.guards.text.guard import open_safeguard
+    from mitigate.evaluation.trajectories import write_pictures
+    from mitigate.guards.opening import open_guards
 
     held = {cell.column: cell for cell in cells(config) if cell.seed == config.seeds[0]}
     missing = [column for column in config.walks if column not in held]
@@ -193,8 +192,8 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     }
     env = next(iter(nodes.values())).env
     world, chosen = build.maker(env.world)(), episodes(env, config.split, config.episodes)
-    fronts = {
-        name: Front(open_safeguard(node.safeguard), restorer_of(node.restore, world.sensors))
+    guards = {
+        name: open_guards(node.safeguard, node.restore, world.sensors)
         for name, node in nodes.items()
     }
     drawn = {episode.episode_id for episode in chosen}
@@ -206,7 +205,7 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
         and row["episode_id"] in drawn
     ]
     folder, seed = out / "pictures", config.seeds[0]
-    return write_pictures(agents, world, chosen, found, folder, seed=seed, fronts=fronts)
+    return write_pictures(agents, world, chosen, found, folder, seed=seed, guards=guards)
 
 
 def costs(out: Path) -> dict[str, dict[str, float]]:

@@ -21,6 +21,7 @@ from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, ST
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import episode_lists
 from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import Guard, Guards
 from mitigate.replay import export_drive, replay, report
 from mitigate.replay.export_drive import write_frames
 from mitigate.replay.walk import Answers, _share, compare, walk
@@ -68,12 +69,13 @@ def test_an_agent_is_shown_every_step_and_told_what_the_driver_did():
 def test_a_restorer_goes_over_the_frames_before_the_agent_does():
     dark, looks = Corruption("low_light", 1.0), []
 
-    def brightened(frames):
-        looks.append(frames)
-        return {**frames, RGB: np.full_like(frames[RGB], 200)}
+    class Brightened(Guard):
+        def observe(self, observation):
+            looks.append(observation)
+            return {**observation, RGB: np.full_like(observation[RGB], 200)}
 
     assert set(walk(ByBrightness(), drive(), dark, 0).actions.tolist()) == {RIGHT}
-    found = walk(ByBrightness(), drive(), dark, 0, keep=[2], restorer=brightened)
+    found = walk(ByBrightness(), drive(), dark, 0, keep=[2], guards=Guards([Brightened()]))
     assert found.actions.tolist() == [FORWARD] * T and len(looks) == T
     assert (found.seen[2][RGB] == 200).all()
 
@@ -84,7 +86,7 @@ def test_the_table_says_which_restorer_the_frames_went_through():
     found = {"mine": {"clean": compare([made], answers, answers)}}
     restorer = Restorer(sensors=[RGB], width=4)
     said = f"Frames of rgb went through the restorer `{restorer.hash}`."
-    assert said in report.table(found, 0.6, T, 1, restorer)
+    assert said in report.table(found, 0.6, T, 1, Guards([restorer]))
     assert "restorer" not in report.table(found, 0.6, T, 1)
 
 
@@ -212,6 +214,13 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
     assert {line["agent"] for line in lines} == {"recurrent", "recurrent_teacher"}
     clean = [line for line in lines if line["condition"] == "clean"]
     assert all(line["action"] == line["clean"] for line in clean)
+    filtered = ("conditions=[missing_data]", f"out={tmp_path}/filtered", agents.split(",")[0] + "]")
+    status, _, wrong = mitigate(
+        "replay", str(bag), *filtered, "restore=tests.guards.filters:median"
+    )
+    assert status == 0, wrong
+    table = (tmp_path / "filtered/table.md").read_text()
+    assert "Frames of rgb went through the restorer `" in table
     assert (out / "changes.png").is_file() and (out / "table.md").is_file()
     assert json.loads((out / "replay.json").read_text())["drives"] == [str(bag)]
     assert "Foreign object" in printed

@@ -14,6 +14,7 @@ from mitigate.cluster import programs
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import plots, rows, trajectories
+from mitigate.evaluation.episode import start_of
 from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 
@@ -396,16 +397,18 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
             rows.append(cell.evaluation / "rows.jsonl", [made])
     walked = []
 
-    def run_episode(agent, world, episode, met, seed, repaired, restorer):
+    def run_episode(agent, world, episode, met, seed, guards):
         world.reset(episode)
-        walked.append((met.name, list(repaired.values()), restorer and list(restorer.nets)))
+        walked.append((met.name, guards.begin(start_of(agent, episode, met, seed)), guards.frames))
         return {"success": 1}
 
     monkeypatch.setattr(trajectories, "run_episode", run_episode)
     tables.draw_walks(cfg, tmp_path)
     plain, attacked, repaired = walked
-    assert plain == ("clean", [], None) and attacked == ("black_box", [], None)
-    assert repaired == ("black_box", [episode.instruction.text], ["rgb"])
+    text = episode.instruction.text
+    assert plain == ("clean", text, ())
+    assert attacked[0] == "black_box" and attacked[1] != text and attacked[2] == ()
+    assert repaired == ("black_box", text, ("rgb",))
 
 
 def test_no_walks_without_the_agents_cells(tmp_path):

@@ -24,7 +24,7 @@ from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
 from mitigate.evaluation.leaderboard.figures import entry_of, left_out
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.command import told
-from mitigate.evaluation.page.report import report
+from mitigate.evaluation.page.document import report
 from mitigate.evaluation.rows import Row
 
 FOLDER = "docs/leaderboard"

@@ -8,7 +8,7 @@ from typing import Any
 from torch import nn
 
 from mitigate.core import build
-from mitigate.evaluation import making, walked
+from mitigate.evaluation import provenance
 from mitigate.evaluation.columns import column_of
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
@@ -37,8 +37,8 @@ def report_before_after(
     agents = {name: agent for name, agent in agents.items() if agent is not None}
     world = build.maker(config.env.world)
     rows: list[Any] = []
-    first, made_by = making.first(world)
-    walked.keep(folder, first, made_by, quick.split, chosen, config.env.episodes[quick.split])
+    first, made_by = provenance.first_world(world)
+    provenance.keep(folder, first, made_by, quick.split, chosen, config.env.episodes[quick.split])
     for name, agent in agents.items():
         rows += evaluate(
             agent,

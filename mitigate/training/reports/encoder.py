@@ -20,10 +20,9 @@ from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import names, title
 from mitigate.encoders.folder import lines
-from mitigate.encoders.frames import Frames, collect
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.probe import Score, average, measure
-from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
+from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, collect, source_of
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
 from mitigate.evaluation.conditions import conditions
 from mitigate.training.config import TrainConfig

@@ -34,8 +34,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.corruptions.registry import title
 from mitigate.corruptions.suite import SENSOR
-from mitigate.encoders.frames import collect
-from mitigate.encoders.sources import UNSEEN
+from mitigate.encoders.sources import UNSEEN, collect
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate, mean, share
 from mitigate.evaluation.conditions import conditions
 from mitigate.guards.frames.restorer import Restorer, load_restorer

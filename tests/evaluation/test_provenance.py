@@ -19,7 +19,7 @@ from omegaconf import OmegaConf
 
 from mitigate.core.build import maker
 from mitigate.core.observation import Sensor
-from mitigate.evaluation import making, walked
+from mitigate.evaluation import provenance
 from mitigate.worlds.episodes import Episode, Goal, Instruction
 
 EPISODES = [
@@ -40,7 +40,7 @@ class Other(Maze):
 
 
 def keep(folder: Path, make, source: str | None = None) -> None:
-    walked.keep(folder, *making.first(make), "val", EPISODES, source)
+    provenance.keep(folder, *provenance.first_world(make), "val", EPISODES, source)
 
 
 def around(name: str | None = None, **kwargs) -> SimpleNamespace:
@@ -145,7 +145,7 @@ def test_what_a_function_uses_may_be_anything_and_may_change_as_it_is_called(tmp
         keep(tmp_path, make)
         make()  # as a walk does
     keep(tmp_path / "other", lambda: [Maze(), numbers, circle, odd][0])
-    assert (tmp_path / walked.NOTE).stat().st_size < 3000
+    assert (tmp_path / provenance.NOTE).stat().st_size < 3000
 
 
 def test_two_paths_of_one_file_are_one_world(tmp_path, monkeypatch):
@@ -189,7 +189,7 @@ def test_an_edited_world_is_another_one(tmp_path, monkeypatch, wrapped):
 def test_a_folder_of_before_is_taken_as_it_is_and_what_its_note_says_counts(tmp_path):
     (tmp_path / "rows.jsonl").write_text("")
     keep(tmp_path, Maze)
-    note = tmp_path / walked.NOTE
+    note = tmp_path / provenance.NOTE
     note.write_text(json.dumps({"val": {"world": f"{__name__}.Maze", "sums": {}}}))
     keep(tmp_path, partial(Maze, 3))
     note.write_text(json.dumps({"val": {"world": "toy.Toy", "sums": {}}}))
@@ -210,6 +210,6 @@ def test_a_world_is_called_by_its_class_or_by_the_environment_in_one_of_ours():
     from mitigate.worlds.seeded import SeededWorld
 
     ours = SeededWorld.__new__(SeededWorld)
-    assert walked.name_of(Maze()) == "Maze" and walked.name_of(ours) == "SeededWorld"
+    assert provenance.name_of(Maze()) == "Maze" and provenance.name_of(ours) == "SeededWorld"
     ours.env = SimpleNamespace(unwrapped=Maze())
-    assert walked.name_of(ours) == "Maze"
+    assert provenance.name_of(ours) == "Maze"
