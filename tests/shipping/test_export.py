@@ -489,7 +489,7 @@ def test_a_name_is_one_folder(place, tmp_path, name):
 def test_what_does_not_reload_to_the_same_is_not_written(place, exported, tmp_path, monkeypatch):
     monkeypatch.setattr(programs, "export_programs", lambda *_: exported)
     monkeypatch.setattr(programs, "TIMED", 1)
-    monkeypatch.setattr(export, "_CHECK", "raise ValueError('differs')")
+    monkeypatch.setattr(export, "_RUN", "raise ValueError('differs')")
     with pytest.raises(ValueError, match="differs"):
         export.export(place / "runs/whole", "mine", out=tmp_path)
     assert not list(tmp_path.iterdir())
