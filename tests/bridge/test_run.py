@@ -216,6 +216,7 @@ def test_two_runs_do_not_share_a_folder(run, tmp_path):
     [
         ("patience=0", "patience=0 must be"),
         ("severity=0", "severity=0 changes nothing"),
+        ("~suite.conditions", "suite has no conditions"),
         ("episodes=3 patience=3", "patience=3 is too little with episodes=3"),
     ],
 )
