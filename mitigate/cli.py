@@ -1,6 +1,6 @@
 """The command ``mitigate``: ``mitigate train recipe=da_per_episode``.
 
-``python -m mitigate.train`` is the same; those modules lie in ``commands/``.
+``python -m mitigate.train`` is the same. ``commands/`` holds such modules for the older commands.
 """
 
 from __future__ import annotations

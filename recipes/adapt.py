@@ -9,7 +9,7 @@ rolled-out episodes of any trainable agent, ``AdaptViews`` on random poses.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import torch
@@ -19,31 +19,28 @@ from torch import Tensor, nn
 from mitigate.agents.adapter_layers import FrameGate
 from mitigate.agents.adapters import adapted, backbone_sha, scale_adapters, trainable_share
 from mitigate.core.progress import say
-from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import Distil, DistilViews
-from mitigate.training import limits
+from mitigate.training.objective import check_weights
 from mitigate.training.parts import ADAPTERS, START
-from mitigate.worlds.world import TrainingEpisodes, World
+from mitigate.training.poses import Poses
+from mitigate.training.rollouts import Rollouts
 
 HELD, FRESH = 1_000_000, 2_000_000  # numbers of steps that no training reaches
 
 
 class Adapt(Distil):
-    """Args: as ``Distil``, whose teacher is the agent itself without its adapters; by default the
-    features alone are matched: w_il and w_kl are 0.
+    """Teach adapters on rollouts, with the agent itself without its adapters as the teacher.
 
-    Raises ValueError for an agent that has no adapters.
+    Args: as ``Distil``. By default the features alone are matched: w_il and w_kl are 0.
+
+    Raises:
+        ValueError: for an agent that has no adapters.
     """
 
     def __init__(
         self,
         agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        schedule: Schedule,
-        episodes: int = 3,
-        follow_oracle: float = 0.5,
-        seed: int = 0,
+        rollouts: Rollouts,
         losses: Mapping[str, float] | None = None,
         w_il: float = 0.0,
         w_kl: float = 0.0,
@@ -54,20 +51,15 @@ class Adapt(Distil):
         has_adapters(agent)
         super().__init__(
             agent,
-            world,
-            training,
-            schedule,
+            rollouts,
             START,
             (ADAPTERS,),
-            episodes,
-            follow_oracle,
-            seed,
             losses,
-            w_il,
-            w_kl,
-            w_feat,
-            temperature,
-            match,
+            w_il=w_il,
+            w_kl=w_kl,
+            w_feat=w_feat,
+            temperature=temperature,
+            match=match,
         )
         self.backbone = backbone_sha(agent)
 
@@ -81,13 +73,23 @@ class Adapt(Distil):
 
 
 class AdaptViews(DistilViews):
-    """Args: as ``DistilViews``; its teacher is the agent itself without its adapters. w_gate: of
-    the cross-entropy that teaches the encoders' gates, if they have any, which views are corrupted.
-    ``finish`` sets their thresholds, so that they open for a share ``touched`` of the views of
-    ``held`` clean panoramas that no step draws, and has the adapters of ``modality`` make a share
-    ``strength`` of the correction that they have learned (``agents.adapters.scale_adapters``).
+    """Teach adapters on random poses, with the agent itself without its adapters as the teacher.
 
-    Raises ValueError for an agent that has no adapters in the encoders of ``modality``.
+    ``finish`` sets the thresholds of the encoders' gates, if they have any, and scales adapters.
+
+    Args:
+        agent: its adapters in the encoders of the sensor of ``poses`` are trained in place.
+        poses: the source of views.
+        w_labels: as ``DistilViews``.
+        w_feat: as ``DistilViews``.
+        w_gate: weight of the cross-entropy that teaches the gates which views are corrupted.
+        touched: share of clean views that a gate opens for after training.
+        held: clean panoramas that set the thresholds; no step draws them.
+        strength: share of the learned correction that the adapters make after training
+            (``agents.adapters.scale_adapters``).
+
+    Raises:
+        ValueError: for an agent that has no adapters in these encoders, and for an invalid number.
     """
 
     teaches_gates = True
@@ -95,16 +97,9 @@ class AdaptViews(DistilViews):
     def __init__(
         self,
         agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        modality: str,
-        schedule: Schedule,
-        panoramas: int = 12,
-        seed: int = 0,
+        poses: Poses,
         w_labels: float = 1.0,
         w_feat: float = 1.0,
-        refresh_episodes: int = 8,
-        own: bool = False,
         w_gate: float = 1.0,
         touched: float = 0.01,
         held: int = 120,
@@ -115,25 +110,14 @@ class AdaptViews(DistilViews):
                 f"touched={touched} and strength={strength} are shares, above 0 and up to 1 "
                 f"(touched: below), and held={held} is at least 1."
             )
-        limits.check_weights(w_gate=w_gate)
-        super().__init__(
-            agent,
-            world,
-            training,
-            modality,
-            START,
-            schedule,
-            panoramas,
-            seed,
-            w_labels,
-            w_feat,
-            refresh_episodes,
-            adapters_only=True,
-            own=own,
-        )
-        encoders = [agent.parts()[name] for name in agent.encoders[modality]]
+        check_weights(w_gate=w_gate)
+        super().__init__(agent, poses, START, w_labels, w_feat, adapters_only=True)
+        encoders = [agent.parts()[name] for name in agent.encoders[self.modality]]
         has_adapters(agent, *encoders)
-        self.w_gate, self.touched, self.held, self.strength = w_gate, touched, held, strength
+        self.w_gate = w_gate
+        self.touched = touched
+        self.held = held
+        self.strength = strength
         self.backbone = backbone_sha(agent)
         modules = (module for encoder in encoders for module in encoder.modules())
         self.gates = [module for module in modules if isinstance(module, FrameGate)]

@@ -11,30 +11,45 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import torch
 
 from mitigate.agents.agent import as_agent
 from mitigate.core.files import write_bytes
 from mitigate.core.seeding import generator
-from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import Imitate, falling_share
 from mitigate.training import success
-from mitigate.training.rollouts import batch_of
-from mitigate.worlds.world import TrainingEpisodes, World
+from mitigate.training.rollouts import Rollouts, batch_of
 
 
 class Dagger(Imitate):
-    """Args: as ``Imitate``; episodes: walked anew every ``every`` steps. walks: that a step learns
-    from, fresh and kept ones. folder: of the kept walks, a file a piece. steps: over 0.6 of them
-    the oracle's share of the decisions falls from 1 to ``follow_oracle``.
+    """Imitate the expert on fresh rollouts and on rollouts kept on disk.
 
-    A step's walks depend on its weights alone and are written before they are learned from, so a
-    resumed run draws the same ones. Raises ValueError for an agent whose walks are no plain data,
-    and for a schedule by success, of which an agent from nothing has none.
+    The rollouts of a step depend on its weights alone and are written before they are learned from,
+    so a resumed run draws the same ones.
+
+    Args:
+        agent: trained in place.
+        rollouts: run every ``every`` steps. ``follow_oracle`` is the expert's share of decisions
+            at the end: it falls from 1 over the first 0.6 of ``steps``.
+        folder: of the kept rollouts, one file per piece.
+        steps: of the training.
+        train_parts: as ``Imitate``.
+        every: steps between two rollouts.
+        walks: rollouts that a step learns from, fresh and kept ones.
+        losses: as ``Imitate``.
+
+    Raises:
+        ValueError: for an agent whose rollouts are not plain data, and for a schedule by success,
+            which an untrained agent does not have.
     """
+
+    sources: ClassVar[Mapping[str, Callable[..., Any]]] = {
+        "rollouts": partial(Rollouts, episodes=18, follow_oracle=0.25)
+    }
 
     @classmethod
     def misfit(cls, agent: Any) -> str:
@@ -48,26 +63,21 @@ class Dagger(Imitate):
     def __init__(
         self,
         agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
+        rollouts: Rollouts,
         folder: str,
         steps: int,
-        schedule: Schedule | None = None,
         train_parts: Sequence[str] | str | None = None,
-        episodes: int = 18,
         every: int = 6,
         walks: int = 24,
-        follow_oracle: float = 0.25,
-        seed: int = 0,
         losses: Mapping[str, float] | None = None,
     ) -> None:
-        success.refuse(schedule)
-        schedule = schedule or Schedule("clean", 0.0)
-        super().__init__(
-            agent, world, training, schedule, train_parts, episodes, follow_oracle, seed, losses
-        )
-        self.folder, self.steps, self.least = Path(folder), steps, follow_oracle
-        self.every, self.walks = every, walks
+        success.refuse(rollouts.schedule)
+        super().__init__(agent, rollouts, train_parts, losses)
+        self.folder = Path(folder)
+        self.steps = steps
+        self.least = rollouts.follow_oracle
+        self.every = every
+        self.walks = walks
 
     def jobs(self, step: int) -> list[tuple]:
         """As ``Rollouts.jobs``, each with the oracle's share; none where nothing is walked."""
@@ -81,7 +91,7 @@ class Dagger(Imitate):
         return 1
 
     def work(self, job: tuple) -> Any:
-        *own, self.rollouts.expert_share = job
+        *own, self.rollouts.follow_oracle = job
         return self.rollouts.work(tuple(own))
 
     def batch(self, step: int) -> dict[str, Any]:

@@ -12,83 +12,79 @@ what the teacher's give for the clean one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import torch
 from torch import Tensor
 
 from mitigate.core import checkpoint
-from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import check_losses, imitation, loss_weights, masked
 from mitigate.recipes.pretrain import views_to_learn
-from mitigate.training import limits
+from mitigate.training.objective import check_weights
 from mitigate.training.parts import load_teacher, refuse_gates, train_only
 from mitigate.training.poses import OnViews, Poses
 from mitigate.training.rollouts import OnEpisodes, Rollouts
-from mitigate.worlds.world import TrainingEpisodes, World
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
 
 class Distil(OnEpisodes):
-    """Args: as ``recipes/imitate.py``; teacher: weights, or "start" for ``agent`` as it is now;
-    w_il, w_kl, w_feat, temperature: of the loss above; match: which of the agent's features are
-    matched, None: all. A feature that no trained weight makes is not.
+    """Distil a teacher on rollouts: imitation, the teacher's policy and its features.
 
-    With ``w_kl = w_feat = 0`` this is imitation, bit for bit. Raises FileNotFoundError for a
-    missing teacher; ValueError as imitation does, and for a negative weight.
+    With ``w_kl = w_feat = 0`` this is imitation, bit for bit.
+
+    Args:
+        agent: the student, trained in place.
+        rollouts: the source of its decisions.
+        teacher: weights, or "start" for ``agent`` as it is now.
+        train_parts: as ``recipes/imitate.py``.
+        losses: as ``recipes/imitate.py``.
+        w_il: weight of the imitation loss.
+        w_kl: weight of the policy loss.
+        w_feat: weight of the feature loss.
+        temperature: of the policy loss.
+        match: which of the agent's features are matched; None: all. A feature that no trained
+            weight makes is not matched.
+
+    Raises:
+        FileNotFoundError: for a missing teacher.
+        ValueError: as imitation does, and for an invalid weight or temperature.
     """
 
     def __init__(
         self,
         agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        schedule: Schedule,
+        rollouts: Rollouts,
         teacher: str,
         train_parts: Sequence[str] | str | None = None,
-        episodes: int = 3,
-        follow_oracle: float = 0.5,
-        seed: int = 0,
         losses: Mapping[str, float] | None = None,
         w_il: float = 1.0,
         w_kl: float = 1.0,
         w_feat: float = 1.0,
         temperature: float = 2.0,
         match: Sequence[str] | None = None,
-        prior: str | None = None,
-        refresh_every: int = 0,
-        refresh_episodes: int = 8,
     ) -> None:
         super().__init__()
-        limits.check_weights(w_il=w_il, w_kl=w_kl, w_feat=w_feat)
+        check_weights(w_il=w_il, w_kl=w_kl, w_feat=w_feat)
         if not temperature > 0:
             raise ValueError(f"recipe.temperature={temperature:g} must be above 0, as 2.")
         if not (w_il or w_kl or w_feat):
             raise ValueError(
                 "Nothing would be learned: w_il, w_kl and w_feat are 0. Set one of them above 0."
             )
-        self.agent, self.losses = agent, loss_weights(agent, losses)
+        self.agent = agent
+        self.losses = loss_weights(agent, losses)
         self.teacher: Any = load_teacher(agent, teacher)
         train_only(agent, train_parts)
-        self.w_il, self.w_kl, self.w_feat = w_il, w_kl, w_feat
-        self.temperature, self.match = temperature, match
-        self.rollouts = Rollouts(
-            agent,
-            world,
-            training,
-            schedule,
-            episodes=episodes,
-            expert_share=follow_oracle,
-            seed=seed,
-            prior=prior,
-            refresh_every=refresh_every,
-            refresh_episodes=refresh_episodes,
-            clean=True,
-            teachers=(self.teacher,),
-        )
+        self.w_il = w_il
+        self.w_kl = w_kl
+        self.w_feat = w_feat
+        self.temperature = temperature
+        self.match = match
+        self.rollouts = rollouts
+        rollouts.keep_clean(self.teacher)
 
     def identity(self) -> dict[str, str]:
         return {**self.rollouts.identity(), "teacher_sha256": checkpoint.weights_sha(self.teacher)}
@@ -132,13 +128,19 @@ class Distil(OnEpisodes):
 
 
 class DistilViews(OnViews):
-    """Args: agent, modality, world, training, schedule, panoramas, refresh_episodes: as
-    ``recipes/pretrain.py``. teacher: weights, or "start" for ``agent`` as it is now. w_labels,
-    w_feat: weights of the labels' loss and of the features'. adapters_only: train the agent's
-    adapters and nothing else. own: draw corruptions of this sensor alone, so that three quarters
-    of the frames are corrupted, not a half (RGB) or a quarter (depth).
+    """Distil a teacher's encoders on random poses.
 
-    Raises FileNotFoundError for a missing teacher, ValueError for adapters with gates.
+    Args:
+        agent: the student; its encoders of the sensor of ``poses`` are trained in place.
+        poses: the source of views.
+        teacher: weights, or "start" for ``agent`` as it is now.
+        w_labels: weight of the labels' loss.
+        w_feat: weight of the features' loss.
+        adapters_only: train the agent's adapters and nothing else.
+
+    Raises:
+        FileNotFoundError: for a missing teacher.
+        ValueError: for adapters with gates, and for an invalid weight.
     """
 
     teaches_gates: ClassVar[bool] = False
@@ -146,38 +148,24 @@ class DistilViews(OnViews):
     def __init__(
         self,
         agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        modality: str,
+        poses: Poses,
         teacher: str,
-        schedule: Schedule,
-        panoramas: int = 12,
-        seed: int = 0,
         w_labels: float = 1.0,
         w_feat: float = 1.0,
-        refresh_episodes: int = 8,
         adapters_only: bool = False,
-        own: bool = False,
     ) -> None:
         super().__init__()
-        limits.check_weights(w_labels=w_labels, w_feat=w_feat)
+        check_weights(w_labels=w_labels, w_feat=w_feat)
         if not self.teaches_gates:
-            for name in agent.encoders.get(modality, ()):
+            for name in agent.encoders.get(poses.sensor, ()):
                 refuse_gates(agent.parts()[name])
-        self.agent, self.modality = agent, modality
-        self.poses = Poses(
-            agent,
-            world,
-            training,
-            schedule,
-            panoramas=panoramas,
-            seed=seed,
-            refresh_episodes=refresh_episodes,
-            own=own,
-            **views_to_learn(agent, modality, adapters_only),
-        )
+        self.agent = agent
+        self.modality = poses.sensor
+        poses.learn(**views_to_learn(agent, self.modality, adapters_only))
+        self.poses = poses
         self.teacher: Any = load_teacher(agent, teacher)
-        self.w_labels, self.w_feat = w_labels, w_feat
+        self.w_labels = w_labels
+        self.w_feat = w_feat
 
     def identity(self) -> dict[str, str]:
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
@@ -27,29 +27,49 @@ from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality
-from mitigate.encoders.frames import Frames, collect, corrupted
 from mitigate.encoders.model import Encoder
-from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
-from mitigate.training import limits, success
+from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, Source, collect, corrupted, source_of
+from mitigate.training import success
+from mitigate.training.objective import Objective, check_weights
 from mitigate.training.parts import without_adapters
-from mitigate.training.recipe import Recipe
 
 SHOWN = 12  # frames in the log's picture
 MOST_KEPT = 1 << 30  # bytes of clean features kept from the start; more are computed at each step
 LOOKED_AT = 48  # frames that tell how much features differ where not all are kept (ours)
 
 
-class HardenEncoder(Recipe):
-    """Args:
-    agent: the encoder; its adapters, or all of its weights, are trained in place.
-    world, episodes, split, label: where frames come from (``source_of``). schedule: of corruptions;
-        those of the encoder's sensor are drawn. frames: read once, from the training scenes; of
-        files the unseen ones are read, too, so that what is wrong with one shows at once.
-    batch: frames a step. micro_batch: of them in memory at once.
-    w_feat, w_gate: of the loss above. per_channel: whether v is of each channel, so that all count
-        alike, or the mean of all.
+def frame_source(
+    agent: Encoder,
+    world: Callable[[], Any],
+    episodes: Mapping[str, str] | None = None,
+    split: str = "val_unseen",
+    label: str | None = None,
+) -> Source:
+    """Return the source of an encoder's frames (``source_of``)."""
+    return source_of(world, agent.sensor, episodes, split, label)
+
+
+class HardenEncoder(Objective):
+    """Give for corrupted frames the features of the clean ones.
+
+    Args:
+        agent: the encoder; its adapters, or all of its weights, are trained in place.
+        source: where frames come from.
+        schedule: of corruptions; those of the encoder's sensor are drawn.
+        frames: read once, from the training scenes. Of files the unseen ones are read too, so that
+            an invalid one is found at once.
+        batch: frames per step.
+        micro_batch: of them in memory at once.
+        seed: of frames and corruptions.
+        w_feat: weight of the error of features.
+        w_gate: weight of the gates' loss.
+        per_channel: whether v is of each channel, so that all count alike, or the mean of all.
+
+    Raises:
+        ValueError: for an invalid number, and for a schedule that does not fit.
     """
 
+    sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"source": frame_source}
     here = True  # the frames are in this process
     needs = ("choose_trained", "sensor", "model")
     otherwise = (
@@ -60,11 +80,8 @@ class HardenEncoder(Recipe):
     def __init__(
         self,
         agent: Encoder,
-        world: Callable[[], Any],
+        source: Source,
         schedule: Schedule,
-        episodes: Mapping[str, str] | None = None,
-        split: str = "val_unseen",
-        label: str | None = None,
         frames: int = 4800,
         batch: int = 48,
         micro_batch: int = 48,
@@ -79,9 +96,11 @@ class HardenEncoder(Recipe):
                 f"recipe.micro_batch ({micro_batch}) must be from 1 to recipe.batch ({batch}), and "
                 f"recipe.frames ({frames}) at least 1."
             )
-        limits.check_weights(w_feat=w_feat, w_gate=w_gate)
+        check_weights(w_feat=w_feat, w_gate=w_gate)
         success.refuse(schedule)
-        self.agent, self.batch_size, self.micro = agent, batch, micro_batch
+        self.agent = agent
+        self.batch_size = batch
+        self.micro = micro_batch
         agent.requires_grad_(False)  # of parameters of TorchScript that train there is no copy
         self.teacher = without_adapters(agent).eval()
         agent.choose_trained()
@@ -91,8 +110,11 @@ class HardenEncoder(Recipe):
                 f"schedule.names has no corruption of {agent.sensor}, which this encoder sees."
             )
         self.schedule = dataclasses.replace(schedule, names=names)
-        self.source = source_of(world, agent.sensor, episodes, split, label)
-        self.count, self.seed, self.w_feat, self.w_gate = frames, seed, w_feat, w_gate
+        self.source = source
+        self.count = frames
+        self.seed = seed
+        self.w_feat = w_feat
+        self.w_gate = w_gate
         self.per_channel = per_channel
         self.frames: Frames | None = None
         if self.source.files:

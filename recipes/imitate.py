@@ -9,64 +9,45 @@ has an expert.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from torch import Tensor
 
 from mitigate.agents.agent import Decisions, Output, as_agent
-from mitigate.corruptions import Schedule
-from mitigate.training import limits
+from mitigate.training.objective import check_weights
 from mitigate.training.parts import train_only
 from mitigate.training.rollouts import OnEpisodes, Rollouts
-from mitigate.worlds.world import TrainingEpisodes, World
 
 DECAY = 0.6  # share of the steps until the oracle takes follow_oracle of the decisions (ours)
 
 
 class Imitate(OnEpisodes):
-    """Args:
-    agent: trained in place. world, training, schedule: makes a world, where its episodes come from,
-    which frame is corrupted by what.
-    train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. "policy": all
-    but the encoders. None: all but the adapters.
-    episodes: a step. follow_oracle: share of rollout decisions taken by the expert.
-    losses: weights of the agent's auxiliary losses by name, where they are not its own.
-    prior, refresh_every, refresh_episodes: of a success-distributed schedule (``Rollouts``).
+    """Imitate the expert on rollouts.
 
-    Raises ValueError for an unknown part and for no episodes.
+    Args:
+        agent: trained in place.
+        rollouts: the source of its decisions.
+        train_parts: of the agent's ``parts()``, or "adapters"; the others stay frozen. "policy":
+            all but the encoders. None: all but the adapters.
+        losses: weights of the agent's auxiliary losses by name, where they differ from its own.
+
+    Raises:
+        ValueError: for an unknown part and for an invalid weight.
     """
 
     def __init__(
         self,
         agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        schedule: Schedule,
+        rollouts: Rollouts,
         train_parts: Sequence[str] | str | None = None,
-        episodes: int = 3,
-        follow_oracle: float = 0.5,
-        seed: int = 0,
         losses: Mapping[str, float] | None = None,
-        prior: str | None = None,
-        refresh_every: int = 0,
-        refresh_episodes: int = 8,
     ) -> None:
         super().__init__()
         train_only(agent, train_parts)
-        self.agent, self.losses = agent, loss_weights(agent, losses)
-        self.rollouts = Rollouts(
-            agent,
-            world,
-            training,
-            schedule,
-            episodes=episodes,
-            expert_share=follow_oracle,
-            seed=seed,
-            prior=prior,
-            refresh_every=refresh_every,
-            refresh_episodes=refresh_episodes,
-        )
+        self.agent = agent
+        self.losses = loss_weights(agent, losses)
+        self.rollouts = rollouts
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
@@ -116,7 +97,7 @@ def loss_weights(agent: Any, given: Mapping[str, float] | None) -> dict[str, flo
     Raises ValueError for one below 0, and for what is no mapping."""
     if not isinstance(given or {}, Mapping):
         raise ValueError(f"recipe.losses={given} must be weights by name, as {{distance: 0.3}}.")
-    limits.check_weights(**{f"losses.{name}": value for name, value in (given or {}).items()})
+    check_weights(**{f"losses.{name}": value for name, value in (given or {}).items()})
     return {**as_agent(agent).loss_weights, **(given or {})}
 
 

@@ -7,48 +7,31 @@ others', so two stages teach them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from torch import Tensor
 
 from mitigate.agents.adapters import adapted, adapter_parameters
 from mitigate.agents.agent import Seeing
-from mitigate.corruptions import Schedule
 from mitigate.training.parts import freeze
 from mitigate.training.poses import OnViews, Poses
-from mitigate.worlds.world import TrainingEpisodes, World
 
 
 class Pretrain(OnViews):
-    """Args: agent: its encoders of ``modality`` ("rgb" or "depth") are trained in place; it must be
-    able to ``see`` (``agents/agent.py``). world, training, panoramas, refresh_episodes: as
-    ``Poses``. schedule: which panorama is corrupted by what, None: none.
+    """Teach encoders the labels that a world gives.
+
+    Args:
+        agent: its encoders of the sensor of ``poses`` are trained in place; it must be able to
+            ``see`` (``agents/agent.py``).
+        poses: the source of views.
     """
 
-    def __init__(
-        self,
-        agent: Any,
-        world: Callable[[], World],
-        training: TrainingEpisodes,
-        modality: str,
-        schedule: Schedule | None = None,
-        panoramas: int = 12,
-        seed: int = 0,
-        refresh_episodes: int = 8,
-    ) -> None:
+    def __init__(self, agent: Any, poses: Poses) -> None:
         super().__init__()
-        self.agent, self.modality = agent, modality
-        self.poses = Poses(
-            agent,
-            world,
-            training,
-            schedule or Schedule("clean", 0.0),
-            panoramas=panoramas,
-            seed=seed,
-            refresh_episodes=refresh_episodes,
-            **views_to_learn(agent, modality),
-        )
+        self.agent = agent
+        self.modality = poses.sensor
+        poses.learn(**views_to_learn(agent, self.modality))
+        self.poses = poses
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])
@@ -56,8 +39,8 @@ class Pretrain(OnViews):
 
 
 def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> dict[str, Any]:
-    """Let the encoders of ``modality`` train, or their adapters alone, and return the settings of
-    ``Poses`` for them.
+    """Let the encoders of ``modality`` train, or their adapters alone; return what
+    ``Poses.learn`` takes for them.
 
     Of RGB every second view is learned from: neighbours overlap, and half of them teach as much.
     Ring adapters see all views of a panorama, so an agent with adapters gets all. Raises ValueError
@@ -79,4 +62,4 @@ def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> di
             trained.requires_grad_(True)
     freeze(module)
     every = 2 if modality == "rgb" and not adapted(module) else 1
-    return {"sensor": modality, "label": agent.labels[modality], "every": every}
+    return {"label": agent.labels[modality], "every": every}

@@ -13,8 +13,8 @@ maps that no longer change (``restore_gate.py``).
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
@@ -23,27 +23,32 @@ from torch import Tensor
 
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
-from mitigate.corruptions import Schedule
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
-from mitigate.training import limits, success
-from mitigate.training.recipe import Recipe
-from mitigate.training.restoration_pairs import pairs_of
-from mitigate.worlds.world import TrainingEpisodes
+from mitigate.training.objective import Objective, check_share, check_weights
+from mitigate.training.restoration_pairs import Pairs, pairs_of
 
 SCALES = (1, 4)  # pixels: errors of edges, and of surfaces (ours)
 RESTORER = "This recipe takes a restorer in an agent's place: agent=restorer (docs/restoration.md)."
 
 
-class Restore(Recipe):
-    """Args:
-    agent: the restorer; its network of ``modality`` ("rgb" or "depth") is trained in place.
-    world, training: where poses come from (``training/poses.py``), or a folder of frames.
-    schedule: of corruptions; those of the sensor are drawn. panoramas: of 12 views, a step.
-    frames: read of a folder, once. single: share of steps whose views are shown one by one.
-    w_grad, w_right, w_far: of the loss above.
+class Restore(Objective):
+    """Train a restorer on pairs of corrupted and clean frames.
+
+    Args:
+        agent: the restorer; its network of the sensor of ``pairs`` is trained in place.
+        pairs: the source of frames.
+        single: share of the steps whose views are shown one by one.
+        seed: of these steps.
+        w_grad: weight of the error of image gradients.
+        w_right: weight of the share of wrong pixels.
+        w_far: factor on the error of depth that is too far.
+
+    Raises:
+        ValueError: for an invalid number.
     """
 
+    sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
     ahead = True
     needs = ("restore", "doubt", "parts")
     otherwise = RESTORER
@@ -51,12 +56,7 @@ class Restore(Recipe):
     def __init__(
         self,
         agent: Restorer,
-        world: Callable[[], Any],
-        training: TrainingEpisodes | None,
-        modality: str,
-        schedule: Schedule,
-        panoramas: int = 4,
-        frames: int = 4800,
+        pairs: Pairs,
         single: float = 0.25,
         seed: int = 0,
         w_grad: float = 0.5,
@@ -64,22 +64,18 @@ class Restore(Recipe):
         w_far: float = 1.0,
     ) -> None:
         super().__init__()
-        if not 0 <= single <= 1 or panoramas < 1:
-            raise ValueError(
-                f"recipe.single ({single}) is a share from 0 to 1, and recipe.panoramas "
-                f"({panoramas}) at least 1."
-            )
-        limits.check_weights(w_grad=w_grad, w_right=w_right, w_far=w_far)
-        success.refuse(schedule)
-        self.agent, self.modality, self.single, self.seed = agent, modality, single, seed
-        self.w_grad, self.w_right, self.w_far = w_grad, w_right, w_far
+        check_share("single", single)
+        check_weights(w_grad=w_grad, w_right=w_right, w_far=w_far)
+        self.agent = agent
+        self.single = single
+        self.seed = seed
+        self.w_grad = w_grad
+        self.w_right = w_right
+        self.w_far = w_far
         agent.requires_grad_(False)
-        self.net: SensorRestorer = agent.parts()[modality].requires_grad_(True)
+        self.net: SensorRestorer = agent.parts()[pairs.sensor].requires_grad_(True)
         self.net.gate.requires_grad_(False)
-        self.pairs = pairs_of(
-            agent, world, training, schedule.only(modality),
-            sensor=modality, panoramas=panoramas, seed=seed, frames=frames,
-        )  # fmt: skip
+        self.pairs = pairs
         self._shown: np.ndarray | None = None
 
     def identity(self) -> dict[str, str]:

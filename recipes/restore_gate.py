@@ -11,9 +11,8 @@ training scenes that were held back: ``touched`` of them lie above it.
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar, NamedTuple
 
 import torch
 import torch.nn.functional as F
@@ -21,15 +20,12 @@ from torch import Tensor
 
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
-from mitigate.corruptions import Schedule
 from mitigate.guards.frames.network import texture
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
 from mitigate.recipes.restore import RESTORER
-from mitigate.training import success
-from mitigate.training.recipe import Recipe
-from mitigate.training.restoration_pairs import Pairs, pairs_of
-from mitigate.worlds.world import TrainingEpisodes
+from mitigate.training.objective import Objective
+from mitigate.training.restoration_pairs import Pairs, pairs_of, with_clean_share
 
 CLEAN_SHARE = 0.35  # of the instants that are learned from (ours)
 BETTER = 0.85  # of the error before: what restoring must get below to be worth it (ours)
@@ -57,14 +53,24 @@ class Judged(NamedTuple):
         return hit, hit | (self.after >= self.before) | ~kept
 
 
-class RestoreGate(Recipe):
-    """Args:
-    agent: the restorer; the gate of its network of ``modality`` is trained in place. world,
-    training, schedule, frames: as ``Restore``. instants: learned from, and as many single views.
-    held: clean instants that set the threshold. batch: of a step; a share ``single`` of the steps
-    learns from single views. touched: share of clean instants above the threshold.
+class RestoreGate(Objective):
+    """Train the gate of a restorer.
+
+    Args:
+        agent: the restorer; the gate of its network of the sensor of ``pairs`` is trained in place.
+        pairs: the source of frames.
+        instants: to learn from, and as many single views.
+        held: clean instants that set the threshold.
+        batch: instants per step.
+        single: share of the steps that learn from single views.
+        touched: share of clean instants above the threshold.
+        seed: of the batches.
+
+    Raises:
+        ValueError: for an invalid number.
     """
 
+    sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
     here = True  # a step takes milliseconds
     needs = ("restore", "doubt", "parts")
     otherwise = RESTORER
@@ -72,14 +78,10 @@ class RestoreGate(Recipe):
     def __init__(
         self,
         agent: Restorer,
-        world: Callable[[], Any],
-        training: TrainingEpisodes | None,
-        modality: str,
-        schedule: Schedule,
+        pairs: Pairs,
         instants: int = 400,
         held: int = 300,
         batch: int = 64,
-        frames: int = 4800,
         single: float = 0.3,
         touched: float = 0.005,
         seed: int = 0,
@@ -90,18 +92,18 @@ class RestoreGate(Recipe):
                 f"recipe.single ({single}) and recipe.touched ({touched}) are shares from 0 to 1; "
                 f"recipe.instants ({instants}), held ({held}) and batch ({batch}) at least 1."
             )
-        success.refuse(schedule)
-        self.modality, self.instants, self.held, self.batch_size = modality, instants, held, batch
-        self.single, self.touched, self.seed = single, touched, seed
+        self.modality = pairs.sensor
+        self.instants = instants
+        self.held = held
+        self.batch_size = batch
+        self.single = single
+        self.touched = touched
+        self.seed = seed
         self.agent = agent.requires_grad_(False)
-        self.net: SensorRestorer = agent.parts()[modality]
+        self.net: SensorRestorer = agent.parts()[self.modality]
         self.net.gate.requires_grad_(True)
-        own = schedule.only(modality)
-        how = {"sensor": modality, "panoramas": 4, "seed": seed, "frames": frames}
-        self.pairs, self.clean = (
-            pairs_of(agent, world, training, dataclasses.replace(own, clean_share=share), **how)
-            for share in (CLEAN_SHARE, 1.0)
-        )
+        self.pairs = with_clean_share(pairs, CLEAN_SHARE)
+        self.clean = with_clean_share(pairs, 1.0)
         self.learned: list[Judged] = []  # of panoramas, if there are any, and of single views
 
     def identity(self) -> dict[str, str]:

@@ -17,13 +17,13 @@ from mitigate.core.seeding import generator
 from mitigate.guards.text.language_models.model import LanguageModel
 from mitigate.guards.text.language_models.tokens import collate, encode_pair
 from mitigate.guards.text.learning.data import Pair, draw_pair, read_chats, read_texts
-from mitigate.training.recipe import Recipe
+from mitigate.training.objective import Objective
 
 Encoded = tuple[int, list[int], list[int]]  # of a pair: its number, prompt and completion
 _HELD = 10**9  # pairs from here on are for evaluation
 
 
-class SafeguardLora(Recipe):
+class SafeguardLora(Objective):
     """Args:
     agent: the language model; its adapter is trained in place.
     pairs: a step. micro_batch: pairs at once in memory.

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+from importlib import import_module
 from multiprocessing import forkserver
 
 import pytest
 
+from mitigate.cli import COMMANDS
 from mitigate.core.workers import context
 from mitigate.training.workers import PRELOAD
 
 SLOW_FIXTURES = {"cluster"}  # a Ray cluster takes long to start
+for command in ("train", "evaluate", "table1", "table2", "sweep", "run", "replay", "export_drive"):
+    import_module(COMMANDS[command].module)  # registers the types of its options
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks

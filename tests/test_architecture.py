@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-PAGE = (ROOT / "docs/where-does-my-line-go.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
 LINE = re.search(r"^`core` < .*$", PAGE, re.M)
 assert LINE, "the page lacks the line that orders the packages"
 LAYERS = [re.findall(r"`(\w+)`", layer) for layer in LINE[0].split("<")]

@@ -1,4 +1,4 @@
-"""A recipe and an agent so small that a step takes a millisecond; the trainer's tests use them."""
+"""An objective and an agent so small that a step takes a millisecond, for the trainer's tests."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import time
 import torch
 from torch import nn
 
-from mitigate.training.recipe import Recipe
+from mitigate.training.objective import Objective
 
 
 class TinyAgent(nn.Module):
@@ -19,7 +19,7 @@ class TinyAgent(nn.Module):
         self.frozen = nn.Linear(4, 4)
 
 
-class TinyRecipe(Recipe):
+class TinyRecipe(Objective):
     """Regression on noise drawn from global state; ``count`` is state beyond tensors."""
 
     def __init__(self, agent: nn.Module | None = None, *, bad_step: int = -1, pause: float = 0.0):

@@ -31,7 +31,8 @@ from mitigate.corruptions.registry import HALVES, modality, unseen_names
 from mitigate.evaluation.bootstrap import resampled_means
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.sections import label
-from mitigate.guards.frames.restorer import Restorer, restorer_of
+from mitigate.guards.guard import Guard
+from mitigate.guards.opening import open_restorer
 from mitigate.worlds.apartments.labels import free_directions, view_labels
 from mitigate.worlds.apartments.renderer import Renderer
 from mitigate.worlds.apartments.simulator import apartment_of
@@ -62,14 +63,14 @@ class Poses:
 
     @torch.no_grad()
     def counts(
-        self, agent: Any, corruption: Corruption, restorer: Restorer | None = None
+        self, agent: Any, corruption: Corruption, restorer: Guard | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """For things and for free space: float64 [2, poses], (right ones, what they are a share
         of), so that the ratio of sums is the micro F1, or the intersection over union."""
         things, free = [], []
         for index, clean in enumerate(self.observations):
             seen = corrupt_observation(clean, corruption, Key(self.seed, f"pose {index}", 0))
-            seen = seen if restorer is None else restorer(seen)
+            seen = seen if restorer is None else restorer.observe(seen)
             frames = (torch.from_numpy(seen[name])[None] for name in (RGB, DEPTH))
             _, concepts, waypoints = agent.perceive(*frames)
             said, true = concepts[0, :, THINGS].cpu().numpy() > 0, self.things[index]
@@ -84,7 +85,7 @@ def measure(
     poses: Poses,
     names: Sequence[str],
     severity: float,
-    restorer: Restorer | None = None,
+    restorer: Guard | None = None,
 ) -> dict[str, tuple[float, float, float]]:
     """Score with its 95 % interval over poses, by condition: "clean" and every RGB corruption of
     ``names`` (F1), "clean depth" and every depth corruption (overlap)."""
@@ -155,7 +156,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         agents[_column(weights, agents)] = load(_agent_node(), weights)
     poses = Poses(options.split, options.poses, options.seed)
     scores, names = {}, SUITES[options.suite]
-    restorer = restorer_of(options.restore)
+    restorer = open_restorer(options.restore)
     for name, agent in tqdm(agents.items(), desc="agents", disable=None):
         scores[name] = measure(agent, poses, names, options.severity)
         if restorer is not None:

@@ -18,7 +18,7 @@ from mitigate.agents.fingerprint import fingerprint
 from mitigate.core import build, checkpoint, conf
 from mitigate.core.files import atomic_text
 from mitigate.evaluation.evaluate import load
-from mitigate.training.train import written
+from mitigate.training.plan import agent_config
 
 
 def main() -> None:
@@ -31,7 +31,7 @@ def main() -> None:
     agent = load(node, source)
     file = checkpoint.save_weights(agent, folder, half=True)
     with atomic_text(folder / "config.yaml") as text:
-        text.write(OmegaConf.to_yaml({"agent": written(node, agent)}))
+        text.write(OmegaConf.to_yaml({"agent": agent_config(node, agent)}))
     for path in folder.iterdir():
         if path.is_file():
             path.chmod(0o644)

@@ -15,11 +15,11 @@ import hashlib
 import json
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import torch
 from torch import nn
@@ -30,9 +30,6 @@ from mitigate.core.checkpoint import CONFIG
 from mitigate.core.files import find, places, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short, unknown
-
-if TYPE_CHECKING:
-    from omegaconf import DictConfig
 
 FORMAT = 2  # of a card; 1 is read, too (core/older_folders.py)
 CARD, README = "card.json", "README.md"
@@ -264,14 +261,14 @@ def _as_json(value: Any) -> Any:
 
 
 def build_agent(
-    node: DictConfig, *, weights: str | None, seed: int, parts: Sequence[str] | None = None
+    node: Mapping[str, Any], *, weights: str | None, seed: int, parts: Sequence[str] | None = None
 ) -> nn.Module:
     """Return the agent of ``node``, its first weights drawn from ``seed`` or read from a file;
     ``parts``: of its ``parts()``, those that are read; None: all."""
     from mitigate.core.build import build, plain
 
     weights = None if weights is None else str(find(weights))
-    if is_ours(node._target_):  # numbers that would take all memory, patterns for ever
+    if is_ours(node["_target_"]):  # numbers that would take all memory, patterns for ever
         check_own(plain(node))
     seeding.seed_everything(seed, "agent")
     agent = build(node)
@@ -301,41 +298,42 @@ def build_agent(
     return agent
 
 
-def settings_of(node: DictConfig, weights: str, overrides: Sequence[str] = ()) -> DictConfig:
+def settings_of(
+    node: Mapping[str, Any], weights: str, overrides: Sequence[str] = ()
+) -> dict[str, Any]:
     """Return ``node`` with the settings that ``weights`` carry (:func:`carried`, errors too).
 
     What the command line sets counts more (``overrides``: ``agent.blind=[rgb]``); ``agent=mine``
     names the class, and what the weights do not say.
     """
-    from omegaconf import DictConfig, OmegaConf
+    from omegaconf import OmegaConf
+
+    from mitigate.core.build import plain
 
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     named = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
-    known = OmegaConf.create(OmegaConf.to_container(node, resolve=True))  # open to further settings
-    found = OmegaConf.merge(known, carried(node, weights))
-    assert isinstance(found, DictConfig)
+    found = plain(OmegaConf.merge(plain(node), carried(node, weights)))
+    given = plain(node)
     for setting in named:
-        found[setting] = node[setting]
+        found[setting] = given[setting]
     return found
 
 
-def begun_from(node: DictConfig, weights: str | None) -> DictConfig:
+def begun_from(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
     """Return ``node`` with the settings that it leaves open (null, or not named: adapters, the
     vocabulary) as in the ``weights`` that a training begins from; None: as it is. Errors as of
     :func:`carried`."""
-    from omegaconf import DictConfig, OmegaConf
+    from omegaconf import OmegaConf
 
     from mitigate.core.build import plain
 
     if weights is None:
         return node
     open_ = {k: v for k, v in carried(node, weights).items() if node.get(k) is None}
-    merged = OmegaConf.merge(OmegaConf.create(plain(node)), open_)
-    assert isinstance(merged, DictConfig)
-    return merged
+    return plain(OmegaConf.merge(plain(node), open_))
 
 
-def carried(node: DictConfig, weights: str) -> dict[str, Any]:
+def carried(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     """Return the settings of the agent that ``weights`` belong to, none if they do not say.
 
     They come, as data, from ``config.yaml`` beside the weights.
@@ -347,17 +345,17 @@ def carried(node: DictConfig, weights: str) -> dict[str, Any]:
     from mitigate.core.build import located
 
     place = find(weights)
-    if (place / LORA).is_file() and hasattr(located(node._target_), "load"):
+    if (place / LORA).is_file() and hasattr(located(node["_target_"]), "load"):
         return {}  # a language model says itself whose adapter it takes
     file = config_of(place)
     if not file.is_file():
         return {}
-    if is_ours(node._target_):
-        return agent_settings(file, node._target_)
-    made = located(node._target_)
+    if is_ours(node["_target_"]):
+        return agent_settings(file, node["_target_"])
+    made = located(node["_target_"])
     names = {*signature(made).parameters, *map(str, node)} - {"_target_"}
     names -= set(getattr(made, "own_config_only", ()))  # a class of the user's may have none
-    return settings.read_agent(file, node._target_, names)
+    return settings.read_agent(file, node["_target_"], names)
 
 
 def agent_option(options: Sequence[str], weights: str) -> list[str]:

@@ -10,16 +10,14 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from mitigate.core.observation import DEPTH, HFOV_DEGREES, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.corruptions import Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.corruptions.normalised import corrupt_normalised
-
-if TYPE_CHECKING:  # it needs torch, which a run without one does not wait for
-    from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import Guards
 
 LARGEST = 1 << 30  # bytes of all frames of a call (ours): 24 cameras of 1080 x 1920 have 5e8
 MOST = 256  # cameras of a call (ours)
@@ -223,39 +221,84 @@ class Rig:
                 changed |= dict.fromkeys(camera.name for camera in group.cameras)
         return list(changed)
 
-    def restore(self, memory: Any, offsets: Mapping[str, int], restorer: Restorer) -> list[str]:
-        """Restore the frames in ``memory``, in place; return the names of the cameras concerned.
+    def guard(self, memory: Any, offsets: Mapping[str, int], guards: Guards) -> list[str]:
+        """Let ``guards`` change the frames in ``memory``, in place; return the names of the cameras
+        concerned.
 
-        A panorama of 12 cameras is one frame; every other camera is judged by itself.
+        A panorama of 12 cameras is one frame; every other camera stands alone. One RGB and one
+        depth frame of the same place, direction and size are one observation.
         """
+        shown = [
+            frame
+            for group in self.groups
+            if group.cameras[0].kind in guards.frames
+            for frame in _frames(group, _views(memory, offsets, group))
+        ]
         changed: list[str] = []
-        for group in (g for g in self.groups if g.cameras[0].kind in restorer.nets):
-            views, cameras = _views(memory, offsets, group), group.cameras
-            whole = len(cameras) == len(views) == VIEWS and cameras[0].hfov == HFOV_DEGREES
-            alone = zip(cameras, group.views, strict=True)
-            parts: list[tuple[tuple[Camera, ...], slice]] = [(cameras, slice(None))]
-            if not whole:
-                parts = [((camera,), slice(view, view + 1)) for camera, view in alone]
-            for concerned, where in parts:
-                made = restored(cameras[0], views[where], restorer)
-                if made is not None:
-                    views[where] = made
-                    changed += [camera.name for camera in concerned]
+        for frames in _paired(shown):
+            given = {frame.kind: frame.read() for frame in frames}
+            made = guards.observe(given)
+            for frame in (f for f in frames if made[f.kind] is not given[f.kind]):
+                frame.write(made[frame.kind])
+                changed += [camera.name for camera in frame.cameras]
         return changed
 
 
-def restored(camera: Camera, views: np.ndarray, restorer: Restorer) -> np.ndarray | None:
-    """Views [V, ...] of cameras like ``camera`` as ``restorer`` leaves them; None: as they were."""
-    frames = views
-    if camera.kind == DEPTH:
-        frames = views.reshape(*views.shape[:3], 1).astype(np.float32, copy=False)
-        frames = camera.sensor.to_metres(frames) if camera.normalised else frames
-    made = restorer.restore(camera.kind, frames)
-    if made is frames:
-        return None
-    if camera.kind == DEPTH and camera.normalised:
-        made = camera.sensor.from_metres(made)
-    return made.reshape(views.shape).astype(views.dtype, copy=False)
+@dataclass(frozen=True)
+class Frame:
+    """What a guard gets as one frame: the views of a panorama or of one camera, in memory."""
+
+    cameras: tuple[Camera, ...]
+    views: np.ndarray
+
+    @property
+    def kind(self) -> str:
+        return self.cameras[0].kind
+
+    def read(self) -> np.ndarray:
+        """Return it as an observation holds it: uint8 [..., 3], or float32 metres [..., 1]."""
+        first = self.cameras[0]
+        if first.kind != DEPTH:
+            return self.views
+        frames = self.views if len(first.shape) == 3 else self.views[..., None]
+        frames = frames.astype(np.float32, copy=False)
+        return first.sensor.to_metres(frames) if first.normalised else frames
+
+    def write(self, made: np.ndarray) -> None:
+        """Put what a guard made of :meth:`read` into memory."""
+        first = self.cameras[0]
+        if first.kind == DEPTH and first.normalised:
+            made = first.sensor.from_metres(made)
+        self.views[...] = made.reshape(self.views.shape).astype(self.views.dtype, copy=False)
+
+    def geometry(self) -> tuple:
+        """What an RGB and a depth frame of the same view have in common."""
+        first = self.cameras[0]
+        where = sorted((camera.yaw, camera.place or ()) for camera in self.cameras)
+        return (*where, first.hfov, first.shape[:2])
+
+
+def _frames(group: Group, views: np.ndarray) -> list[Frame]:
+    """The panorama as one frame if it is whole, else each camera of a group."""
+    cameras = group.cameras
+    if len(cameras) == len(views) == VIEWS and cameras[0].hfov == HFOV_DEGREES:
+        return [Frame(cameras, views)]
+    pairs = zip(cameras, group.views, strict=True)
+    return [Frame((camera,), views[view]) for camera, view in pairs]
+
+
+def _paired(frames: Sequence[Frame]) -> list[list[Frame]]:
+    """Observations: an RGB and a depth frame together where both are level and there is one of each
+    with their geometry; every other frame alone."""
+    alike: dict[tuple, list[Frame]] = {}
+    for frame in frames:
+        alike.setdefault(frame.geometry(), []).append(frame)
+    found = []
+    for held in alike.values():
+        level = all(frame.cameras[0].level for frame in held)
+        one_of_each = len({frame.kind for frame in held}) == len(held)
+        found += [held] if level and one_of_each else [[frame] for frame in held]
+    return found
 
 
 def corrupted(

@@ -1,49 +1,140 @@
-"""One condition of a run: the user's command under one corruption, in a folder of its own."""
+"""One condition of a run: its settings, and what its folder says of it.
+
+``done.json`` marks a condition as finished. It records how many episodes ended, and the size and
+sha256 of the events at that moment. Whatever reads a finished condition compares them first, so
+that a damaged file is never taken for a result.
+"""
 
 from __future__ import annotations
 
-import fcntl
+import json
+import math
 import os
-import signal
-import time
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
-from mitigate.bridge import results, verdict
-from mitigate.bridge.command import GRACE, Command
-from mitigate.bridge.condition import Condition
-from mitigate.bridge.events import EVENTS, LOCK, put_aside
-from mitigate.bridge.finished import DONE, lacks, read_done, write_done
-from mitigate.bridge.identity import files_of
-from mitigate.bridge.recording import delete_left, is_whole
-from mitigate.bridge.results import Told
-from mitigate.bridge.server import Listener
-from mitigate.bridge.subset import Subset
-from mitigate.bridge.verdict import lacking
-from mitigate.core import output
-from mitigate.core.files import make_folder
-from mitigate.core.output import open_output
-from mitigate.core.signals import unbroken
+from mitigate.bridge import results
+from mitigate.bridge.condition import SETTLED, Condition, Subset
+from mitigate.bridge.events import EVENTS, damaged
+from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
+from mitigate.bridge.recording import is_whole
+from mitigate.bridge.results import CUT_OFF, NORMALISED, Told, near, without_path
+from mitigate.core.files import atomic_text, sha256
+from mitigate.core.json_files import read_object
+from mitigate.core.names import counted, short
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.rows import Row
+from mitigate.worlds.measures import RULES
 
 LOG = "output.txt"
 TAIL = 12  # lines of the command's output that an error repeats
-NOTED = 5.0  # seconds in which the server notes what they left in the middle (ours)
-SILENT = 10  # times patience, after which a command that lost an episode is taken to hang (ours)
+LARGEST = 1 << 30  # bytes of a file of the command that is hashed; of a larger one its size counts
+DONE = "done.json"
+_SHA256 = re.compile(r"[0-9a-f]{64}")
+
+
+def _is_number(value: Any) -> bool:
+    plain = isinstance(value, (int, float)) and not isinstance(value, bool)
+    return plain and math.isfinite(value)
+
+
+def _is_count(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _is_seal(value: Any) -> bool:
+    if not isinstance(value, dict) or not _is_count(value.get("bytes")):
+        return False
+    return isinstance(value.get("sha256"), str) and bool(_SHA256.fullmatch(value["sha256"]))
+
+
+SCHEMA: Mapping[str, tuple[Callable[[Any], bool], str]] = {
+    "condition": (lambda value: isinstance(value, str) and value != "", "a name"),
+    "severity": (lambda value: _is_number(value) and 0 <= value <= 1, "a number from 0 to 1"),
+    "repeat": (_is_count, "a whole number >= 0"),
+    "files": (lambda value: isinstance(value, dict), "an object"),
+    "episodes_told": (_is_count, "a whole number >= 0"),
+    "events": (_is_seal, "the size (bytes) and the sha256 of the events"),
+}
+OLDER = ("events",)  # entries that older versions did not write
+
+
+def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
+    """Mark the condition in ``folder`` as finished with ``entries``, which lack ``events``."""
+    seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
+    with atomic_text(folder / DONE) as file:
+        json.dump({**entries, "events": seal}, file)
+
+
+def read_done(folder: Path) -> dict[str, Any] | None:
+    """Return the entries of a finished condition, None if it is not finished.
+
+    Entries may be missing: older versions wrote fewer (:func:`missing_entries`).
+
+    Raises:
+        ValueError: ``done.json`` is damaged, or the events are not those that it was written with.
+            The message names the file and what to do.
+    """
+    file = folder / DONE
+    if not file.is_file():
+        return None
+    again = (
+        f"No file was changed. Move {folder} out of {folder.parent} and run the same command "
+        "again: it measures this condition again."
+    )
+    entries = read_object(file, again)
+    for name, (is_valid, kind) in SCHEMA.items():
+        if name in entries and not is_valid(entries[name]):
+            raise ValueError(f"{file}: {name} must be {kind}, got {short(entries[name])}. {again}")
+    if not missing_entries(entries):
+        _compare(folder, entries)
+    return entries
+
+
+def missing_entries(entries: Mapping[str, Any]) -> list[str]:
+    """Return the entries that every version of this file has and that are missing."""
+    return [name for name in SCHEMA if name not in entries and name not in OLDER]
+
+
+def _compare(folder: Path, entries: Mapping[str, Any]) -> None:
+    """Raise ValueError if the events in ``folder`` are not those of the finished condition."""
+    events, count = folder / EVENTS, entries["episodes_told"]
+    if not events.is_file():
+        raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
+    told = results.read(folder, count_closed=True)  # a damaged line is named by its number
+    seal = entries.get("events")
+    if seal is None:
+        counts = {len(told.ends), len(results.read(folder).ends)}
+        if count not in counts:
+            raise damaged(folder, f"{len(told.ends)} episodes ended, and {DONE} records {count}")
+        return
+    size = events.stat().st_size
+    if size != seal["bytes"]:
+        raise damaged(folder, f"it has {size} bytes, and {DONE} records {seal['bytes']}")
+    if sha256(events) != seal["sha256"]:
+        raise damaged(folder, f"its sha256 is not the one that {DONE} records")
+
+
+def check_finished(folder: Path) -> None:
+    """Raise ValueError if a finished condition in the run's ``folder`` is damaged."""
+    for file in sorted((folder / "conditions").glob(f"*/{DONE}")):
+        read_done(file.parent)
 
 
 @dataclass
 class Cell:
-    """The command under one condition. ``name`` is the condition's.
+    """The command under one condition.
 
-    settings: what its result depends on, by which a finished one is known again. files: of the
-    command, as it was started with (``identity.py``). clean: the folder of the clean condition,
-    whose episodes it is to have; None for that itself. recording: the folder that is asked for.
-    chosen: says which episodes were asked for. count_closed: see ``results.read``. loaded:
-    whether a Python process of it loaded the hook. left: its processes that ran on when it had
-    ended, described.
+    Attributes:
+        name: The condition's name, which is that of its folder.
+        settings: What its result depends on, by which a finished one is known again.
+        clean: Folder of the clean condition, whose episodes it must have; None for that itself.
+        recording: The folder that ``record=`` asks for.
+        chosen: Says which episodes were asked for.
+        count_closed: See ``results.read``.
     """
 
     name: str
@@ -57,245 +148,195 @@ class Cell:
     settings: dict[str, Any]
     patience: float = 25.0
     environment: dict[str, str] = field(default_factory=dict)
-    files: dict[str, Any] = field(default_factory=dict)
     clean: Path | None = None
     recording: Path | None = None
     chosen: Subset | None = None
     count_closed: bool = False
-    loaded: bool = False
-    left: list[str] = field(default_factory=list)
-    listener: Listener | None = None
-    lock: IO[str] | None = None
-    root: output.Root | None = None
-    process: Command | None = None
 
     @property
     def log(self) -> Path:
         return self.folder / LOG
 
-    def held(self) -> dict[str, Any] | None:
-        """What was recorded as it ended, None if it has not. Raises ValueError for damage."""
+    def entries(self) -> dict[str, Any] | None:
+        """Return the entries of ``done.json``; None if the condition is not finished.
+
+        Raises ValueError for a damaged file, and if the events are not those of the entries.
+        """
         return read_done(self.folder)
 
-    def others(self) -> list[str]:
-        """The settings with another value than it was finished with."""
-        held = self.held() or self.settings
-        return [name for name, value in self.settings.items() if held.get(name) != value]
+    def changed_settings(self) -> list[str]:
+        """Return the settings whose value is not the one that it was finished with."""
+        entries = self.entries() or self.settings
+        return [name for name, value in self.settings.items() if entries.get(name) != value]
 
     def is_done(self) -> bool:
-        """Whether it is finished and whole. Raises ValueError if it is with other settings."""
-        held, other = self.held(), self.others()
-        if held is not None and other:
+        """Return whether it is finished and complete. Raises ValueError for other settings."""
+        entries = self.entries()
+        if entries is None:
+            return False
+        if other := self.changed_settings():
             raise ValueError(
-                f"{self.folder} was run with another {', '.join(other)} ({held.get(other[0])!r}, "
-                f"now {self.settings[other[0]]!r}). Name another folder (out=...), or delete it."
+                f"{self.folder} was run with another "
+                f"{', '.join(other)} ({entries.get(other[0])!r}, now {self.settings[other[0]]!r}). "
+                "Name another folder (out=...), or delete it."
             )
-        if held is not None and (missing := lacks(held)):
+        if missing := missing_entries(entries):
             raise ValueError(
                 f"{self.folder / DONE} lacks {', '.join(missing)}: it is damaged, or of an older "
                 f"version. Move {self.folder} out of {self.folder.parent} and run the same command "
                 "again."
             )
-        return held is not None and not self.why_anew()
+        return not self.reason_to_repeat()
 
-    def why_anew(self) -> str:
-        """Why it is measured anew, though it was finished; empty if it need not be."""
-        if self.held() is None:
+    def reason_to_repeat(self) -> str:
+        """Return why a finished condition is measured again; empty if it need not be."""
+        if self.entries() is None:
             return ""
-        if missing := self.missing():
-            return lacking(self, missing)
+        if missing := self.missing_episodes():
+            return self.describe_missing(missing)
         told = self.told()
         if told.lost:  # measured with another count_closed, or by an older version
-            return verdict.left_out(told)
+            return left_out(told)
         if self.recording is not None and not is_whole(self.recording, told.ends.values()):
             return f"it was not recorded in {self.recording}, or not all of it"
         return ""
 
-    def changed(self, files: dict[str, Any]) -> list[str]:
-        """The files of the command that are not as in ``files``, if it is finished."""
-        before = (self.held() or {}).get("files", {})
+    def changed_files(self, files: dict[str, Any]) -> list[str]:
+        """Return the files of a finished condition's command that differ from ``files``."""
+        before = (self.entries() or {}).get("files", {})
         return [name for name, told in before.items() if files.get(name) != told]
 
-    def missing(self) -> list[str]:
-        """Episodes of the clean condition that did not end under this one."""
-        return sorted(self.of_clean() - self.told().ends.keys())
+    def missing_episodes(self) -> list[str]:
+        """Return the episodes of the clean condition that did not end under this one."""
+        return sorted(self.clean_episodes() - self.told().ends.keys())
 
-    def of_clean(self) -> set[str]:
-        """The episodes that ended under the clean condition; empty for itself."""
-        return (
-            set() if self.clean is None else set(results.read(self.clean, self.count_closed).ends)
-        )
+    def clean_episodes(self) -> set[str]:
+        """Return the episodes that ended under the clean condition; empty for that itself."""
+        if self.clean is None:
+            return set()
+        return set(results.read(self.clean, self.count_closed).ends)
 
-    def beyond(self) -> list[str]:
-        """Episodes that ended under this condition and not under clean, whose run lost them."""
-        held = self.of_clean()
-        return sorted(self.told().ends.keys() - held) if held else []
+    def extra_episodes(self) -> list[str]:
+        """Return the episodes that ended under this condition but not under the clean one."""
+        clean = self.clean_episodes()
+        return sorted(self.told().ends.keys() - clean) if clean else []
 
-    def start(self) -> None:
-        """Start the server and the command, in an empty folder; what an earlier, unfinished run
-        left in it is put aside. Raises ValueError if it is at work, or cannot be started."""
-        with unbroken():  # or what was just started would not be known to ``kill``
-            self._start()
-
-    def _start(self) -> None:
-        make_folder(self.folder)
-        self.lock = open_output(self.folder / LOCK, "a", encoding="utf-8")
-        try:
-            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
-            self.lock.close()
-            raise ValueError(
-                f"Another run is at work in {self.folder}: wait for it, or name another folder "
-                "(out=...)."
-            ) from error
-        self.root = output.register(self.folder, self.lock)
-        kind = "finished" if (self.folder / DONE).is_file() else "unfinished"
-        (self.folder / DONE).unlink(missing_ok=True)
-        put_aside(self.folder, kind)
-        chosen = self.chosen if self.clean is None else None
-        if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
-            chosen.forget()  # of a run that came to nothing
-        if self.recording is not None:
-            delete_left(self.recording)
-        self.files = files_of(self.command)
-        self.listener = Listener(self.condition, self.folder, self.patience).__enter__()
-        words = {
-            "{condition}": self.name,
-            "{severity}": f"{self.corruption.severity:g}",
-            "{seed}": str(self.label["seed"]),
-            "{out}": str(self.folder.resolve()),
-        }
-        filled = list(self.command)
-        for name, value in words.items():
-            filled = [word.replace(name, value) for word in filled]
-        with open_output(self.log, "w", encoding="utf-8") as log:
-            try:
-                own = {**self.listener.environment(), **self.environment}
-                marker = self.listener.address
-                self.process = Command(filled, log, {**os.environ, **own}, marker)
-            except OSError as error:
-                self.kill()
-                raise ValueError(f"{filled[0]} cannot be started: {error.strerror}.") from error
-
-    def poll(self) -> str | None:
-        """Return None while it runs, then what went wrong, empty if nothing did."""
-        try:
-            return self._poll()
-        except ValueError as error:  # its events are damaged
-            self.kill()
-            return str(error)
-
-    def _poll(self) -> str | None:
-        assert self.process is not None and self.listener is not None
-        output.check(self.folder / EVENTS)
-        status = self.process.status()
-        if status is None:
-            problem = self._stuck()
-            if problem is None:
-                return None
-            self.kill()
-            return problem
-        self.loaded = self.listener.was_loaded()
-        self.left = self.process.left()
-        self._end_command()
-        self._settle()
-        self.kill()
-        found = verdict.problem(self, status)
-        if self.clean is not None and self.beyond():  # clean is no measure of this one
-            (self.clean / DONE).unlink(missing_ok=True)
-        if not found:
-            said = {"condition": self.corruption.name, "severity": self.corruption.severity}
-            said |= {"repeat": self.repeat, "files": self.files}
-            said |= {"episodes_told": len(self.told().ends)}
-            write_done(self.folder, {**self.settings, **said})
-        return found
-
-    def kill(self) -> None:
-        """End the command with all of its processes, and the server."""
-        before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C changes nothing
-        try:
-            self._end_command()
-            if self.listener is not None:
-                self.listener.__exit__()
-                self.listener = None
-        finally:
-            signal.signal(signal.SIGINT, before)
-            if self.root is not None:
-                output.unregister(self.root)
-                self.root = None
-            if self.lock is not None:
-                self.lock.close()
-                self.lock = None
-
-    def _end_command(self) -> None:
-        """End all processes of the command: after ``GRACE`` those that are still connected, too."""
-        if self.process is not None:
-            self.process.end(self._is_connected)
-
-    def _is_connected(self) -> bool:
-        try:
-            return self.told().connected > 0
-        except ValueError:  # damaged events, which are reported elsewhere
-            return False
-
-    def _settle(self) -> None:
-        """Let the server note what the command left in the middle, also of processes that outlive
-        it (in sessions and containers of their own)."""
-        assert self.listener is not None
-        if not self._is_quiet(NOTED):
-            self.listener.close_connections()
-            self._is_quiet(GRACE)
-
-    def _is_quiet(self, seconds: float) -> bool:
-        """Whether the last connection ends within so many seconds."""
-        until = time.monotonic() + seconds
-        while self.told().connected > 0:
-            if time.monotonic() > until:
-                return False
-            time.sleep(0.05)
-        return True
-
-    def _stuck(self) -> str | None:
-        """Why a running command will not come to its end, None if it may."""
-        assert self.listener is not None
-        if not self.listener.is_alive():
-            return "the server of frames ended; the command was stopped. Run again."
-        events = self.folder / EVENTS
-        if not events.is_file():
-            return None
-        silent = time.time() - events.stat().st_mtime
-        if silent < self.patience:
-            return None
-        told = self.told()
-        if told.refused:
-            return f"{told.refused[0]}"
-        if told.lost and (told.connected < 1 or silent > SILENT * self.patience):
-            return (
-                f"a process of the command ended in the middle of episode {told.lost[0]}, and "
-                f"nothing was heard of any other for {silent:.0f} s; the command was stopped. "
-                f"{verdict.CRASH}{self.said()}"
-            )
-        return None
-
-    def said(self) -> str:
-        """What an error repeats of the command's output."""
+    def output_excerpt(self) -> str:
+        """Return what an error repeats of the command's output."""
         tail = self.tail()
         return f"\nThe end of {self.log}:\n{tail}" if tail else " It printed nothing."
 
     def tail(self) -> str:
-        """The last lines of the command's output."""
+        """Return the last lines of the command's output."""
         lines = self.log.read_text("utf-8", "replace").splitlines() if self.log.is_file() else []
         return "\n".join(f"  | {line}" for line in lines[-TAIL:])
 
     def told(self) -> Told:
-        """What its processes told so far."""
+        """Return what its processes reported so far."""
         return results.read(self.folder, self.count_closed)
 
     def rows(self) -> list[Row]:
-        """The result rows."""
+        """Return the result rows."""
         clean = None if self.clean is None else results.read(self.clean, self.count_closed)
         return results.rows(self.told(), self.corruption, self.label, self.rule, clean)
 
+    def unjudged(self) -> str:
+        """Return why ``rule=`` cannot judge every episode; empty if it can.
+
+        The success rate of some episodes alone would be another one.
+        """
+        told = self.told()
+        missing = {} if self.rule is None else results.unjudged(told, self.rule)
+        if not missing:
+            return ""
+        unknown, count = next(iter(missing.items()))
+        who = "no episode told"
+        if count < len(told.ends):
+            who = f"{count} of {counted(len(told.ends), 'episode')} did not tell"
+        what = "whether the agent said STOP" if unknown == "stopped" else "how far the goal is"
+        own = ""
+        if any("success" in end.get("metrics", {}) for end in told.ends.values()):
+            own = ", or leave rule= out to count the told success"
+        return f"rule={self.rule} needs to know {what}, which {who}: finish({unknown}=...){own}."
+
+    def describe_missing(self, missing: list[str]) -> str:
+        """Return "3 of clean's 6 episodes are missing"."""
+        verb = "is" if len(missing) == 1 else "are"
+        return (
+            f"{len(missing)} of clean's {counted(len(self.clean_episodes()), 'episode')} {verb} "
+            "missing"
+        )
+
+    def depth_warning(self) -> str:
+        """Return a warning of depth that may be normalised; empty if none may be."""
+        names = near(self.told())
+        if not names:
+            return ""
+        return (
+            f"run: the depth of {', '.join(names)} counts as metres, and read no more than 1 in "
+            f"any episode: {NORMALISED}"
+        )
+
     def summary(self) -> str:
-        """How far it is: "41 episodes, success 58.5"."""
-        return verdict.summary(self)
+        """Return its progress: "41 episodes, success 58.5 (own: ...), 2 without a path ..."."""
+        told, found = self.told(), self.rows()
+        asks = "" if self.rule is None else str(RULES[self.rule])
+        first = asks or (found[0]["rule"] if found else "")
+        own = [row["success"] for row in found if row["rule"] == first]
+        said = [counted(len(told.ends), "episode") + self._asked(told)]
+        said += [f"success {100 * sum(own) / len(own):.1f} ({first})"] if own else []
+        said += [f"{len(told.lost)} left in the middle"] if told.lost else []
+        unknown = without_path(told, self.rule)
+        rules = {row["rule"] for row in found}
+        alike = len(set(unknown.values())) == 1 and len(unknown) == len(rules)
+        for rule, count in list(unknown.items())[: 1 if alike else None]:
+            by = "" if alike else f" by {rule}"
+            said.append(f"{count} without a path{by}: SPL is success")
+        for how, name in ((RESET, "reset"), (CLOSE, "closed")):
+            left = sum(end.get("how") == how for end in told.ends.values())
+            if 0 < left < len(told.ends):
+                said.append(f"{left} {name} before the end (counted as it stood)")
+        said += [f"{told.again} ended twice (the first counts)"] if told.again else []
+        silent = len(told.ends) - len(own)
+        said += [f"{silent} without a result"] if silent and found else []
+        return ", ".join(said)
+
+    def _asked(self, told: Told) -> str:
+        """Return why many more episodes ran than were asked for; empty if they did not."""
+        count = len(told.ends) if self.chosen is None else self.chosen.count
+        if len(told.ends) <= 1.5 * count:
+            return ""
+        return (
+            f" ({count} asked for: processes came more than {SETTLED:g} s after the others, or "
+            "each of many had to keep one)"
+        )
+
+
+def left_out(told: Told) -> str:
+    """Return "2 episodes were left in the middle, such as s0/2: a process of it died ..."; one
+    whose reason is known comes first."""
+    name = next((name for name in told.lost if told.dropped[name]), told.lost[0])
+    why = told.dropped[name] or "a process of it died, or its loop gave up"
+    if told.dropped[name] not in ("", CUT_OFF):
+        why = (
+            f"it was reset or closed as an exception went by, {why}; if the program ends its "
+            "episodes by that, let it reset or close behind the except block"
+        )
+    verb = "was" if len(told.lost) == 1 else "were"
+    return f"{counted(len(told.lost), 'episode')} {verb} left in the middle, such as {name}: {why}"
+
+
+def files_of(command: Sequence[str]) -> dict[str, dict[str, Any]]:
+    """Size and sha256 of the files that the words of a command name, alone or behind a ``=``."""
+    found = {}
+    for path in dict.fromkeys(_named(command)):
+        size = path.stat().st_size
+        found[str(path)] = {"size": size, "sha256": sha256(path) if size <= LARGEST else None}
+    return found
+
+
+def _named(command: Sequence[str]) -> Iterator[Path]:
+    for word in command:
+        for text in (word, word.partition("=")[2]):
+            if os.path.isfile(text) and os.access(text, os.R_OK):  # of any text, code too
+                yield Path(text)

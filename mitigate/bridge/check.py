@@ -5,40 +5,43 @@ Says what it sees and hears, which conditions of the suite apply, and draws what
 
 from __future__ import annotations
 
+import io
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import Any, ClassVar
 
 import cv2
 import numpy as np
-from omegaconf import DictConfig
 
-from mitigate.bridge.cameras import Group, Rig
-from mitigate.bridge.conditions import applicable, cells, untold
-from mitigate.bridge.options import check_options, name_of
+from mitigate.bridge.attempt import Attempt
+from mitigate.bridge.cameras import Group, Rig, corrupted
+from mitigate.bridge.condition import Observer, applicable, untold
+from mitigate.bridge.config import RunConfig, check_options, name_of
+from mitigate.bridge.plan import Plan, cells
 from mitigate.bridge.results import NEAR, NORMALISED, Told
-from mitigate.bridge.sheet import HEADING, of, sheet
-from mitigate.core.files import write_atomically, write_bytes
+from mitigate.core.files import write_bytes
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import output_folder
-
-if TYPE_CHECKING:  # it needs torch, which a check without one does not wait for
-    from mitigate.guards.frames.restorer import Restorer
+from mitigate.core.pictures import depth_picture
+from mitigate.corruptions import Corruption, Key
+from mitigate.guards.guard import NO_GUARDS, Guards
 
 LATE = 900.0  # seconds that a program may take to its first frame (ours): models are loaded first
+SHOWN = 4  # cameras of a panorama in a row of the sheet
+SIDE, LABEL, LINE = 160, 190, 20  # pixels: height of a picture, width of the names, of their lines
+FONT, WIDE = cv2.FONT_HERSHEY_SIMPLEX, 22  # characters of a line of the names
+HEADING = "heading"  # beside the cameras in the file of the first frames
+TRIED = 40  # calls, until one is taken in which a corruption acts: some come and go (ours)
 
 
 @dataclass
-class FirstLook:
+class FirstLook(Observer):
     """Keeps the frames of the first call in a file."""
 
     file: Path
-    kinds: ClassVar = (RGB, DEPTH)
-
-    def episode(self, told: Mapping[str, Any]) -> None:
-        """Nothing: the events tell of it."""
+    kinds: ClassVar[tuple[str, ...]] = (RGB, DEPTH)
 
     def frame(
         self, told: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
@@ -48,46 +51,39 @@ class FirstLook:
             frames = {of(c.name): c.read(memory, offsets) for c in rig.cameras}
             heading = told.get("heading")
             frames[HEADING] = np.array([] if heading is None else [heading])
-            write_atomically(self.file, lambda path: _save(path, frames))
-
-    def end(self, told: Mapping[str, Any]) -> None:
-        """Nothing: one look is enough."""
-
-    def leave(self) -> None:
-        """Nothing: the look stays."""
+            packed = io.BytesIO()
+            np.savez(packed, **frames)  # type: ignore[arg-type]
+            write_bytes(self.file, packed.getvalue())
 
 
-def _save(path: Path, frames: dict[str, np.ndarray]) -> None:
-    with open(path, "wb") as file:
-        np.savez(file, **frames)  # type: ignore[arg-type]
-
-
-def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
+def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     """Run ``command`` up to its first frames; return the path of the sheet, None without cameras.
 
     Raises ValueError as a run does for its options, and if the command ends before, or shows
     nothing within ``LATE`` seconds.
     """
-    check_options(cfg, command)
-    out = Path(cfg.out or f"{cfg.runs}/run/{cfg.name or name_of(command)}-check")
-    made = cells(cfg, command, out, "check")
+    check_options(config, command)
+    name = config.name or name_of(command)
+    out = Path(config.out or f"{config.runs}/run/{name}-check")
+    made = cells(Plan(config, tuple(command), "check", out))
     cell, file = made[0], out / "first.npz"
     cell.folder = out / "check"
     file.unlink(missing_ok=True)
     cell.condition.observers[:] = [FirstLook(file)]  # nothing is recorded: it ends in mid-episode
     print(f"check: started, its output is in {cell.log}", flush=True)
+    attempt = Attempt(cell)
     try:
         with output_folder(out):
-            cell.start()
-            _wait(cell, file)
+            attempt.start()
+            _wait(attempt, file)
     finally:
-        cell.kill()
+        attempt.kill()
     told = cell.told()
     with np.load(file, allow_pickle=False) as held:
         frames = dict(held)
     seen = [camera for camera in told.cameras if of(camera["name"]) in frames]
-    rig = Rig(seen, cfg.missing, cfg.turn)
-    print("\n".join(described(told, rig, frames, cell.condition.restorer)))
+    rig = Rig(seen, config.missing, config.turn)
+    print("\n".join(described(told, rig, frames, cell.condition.guards)))
     fitting = []
     for other in made[1:]:
         reason = applicable(other.corruption, told)
@@ -103,7 +99,7 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     for kind in sorted({part.modality for part in fitting} - shown):
         print(f"the first call has no frame of {kind}: no corruption of it is drawn")
     drawn = [part for part in dict.fromkeys(fitting) if part.modality in shown]
-    picture = sheet(rig, frames, drawn, told.first, cfg.seed)
+    picture = sheet(rig, frames, drawn, told.first, config.seed)
     path = out / "sheet.png"
     png = cv2.imencode(".png", picture[..., ::-1])[1].tobytes()
     write_bytes(path, png)
@@ -111,22 +107,22 @@ def check(cfg: DictConfig, command: Sequence[str]) -> Path | None:
     return path
 
 
-def _wait(cell: Any, file: Path) -> None:
+def _wait(attempt: Attempt, file: Path) -> None:
     began = spoke = time.monotonic()
     while not file.is_file():
         time.sleep(0.1)
-        problem = cell.poll()
+        problem = attempt.poll()
         if problem is not None and not file.is_file():  # a short program may be over by now
             raise ValueError(problem or "the command ended before its first frame.")
         if time.monotonic() - began > LATE:
-            raise ValueError(f"no frame came within {LATE:g} s. Its output:\n{cell.tail()}")
+            raise ValueError(f"no frame came within {LATE:g} s. Its output:\n{attempt.cell.tail()}")
         if time.monotonic() - spoke > 10:
             spoke = time.monotonic()
             print(f"check: no frame after {spoke - began:.0f} s", flush=True)
 
 
 def described(
-    told: Told, rig: Rig, frames: Mapping[str, np.ndarray], restorer: Restorer | None = None
+    told: Told, rig: Rig, frames: Mapping[str, np.ndarray], guards: Guards = NO_GUARDS
 ) -> list[str]:
     """Return lines that say what the program is, sees and hears, and what of it is restored."""
     hello = told.hellos[0] if told.hellos else {}
@@ -146,10 +142,10 @@ def described(
         if episode.get("category"):
             said.append(f"goal category {episode['category']!r}")
         said.append(f"instruction {episode['text']!r}" if episode.get("text") else "no instruction")
-    if restorer is not None:
+    if guards.frames:
         shown = dict.fromkeys(group.cameras[0].kind for group in rig.groups)
-        own = [kind for kind in shown if kind in restorer.nets]
-        nothing = f"nothing of these, the restorer is for {', '.join(restorer.nets)}"
+        own = [kind for kind in shown if kind in guards.frames]
+        nothing = f"nothing of these, the restorer is for {', '.join(guards.frames)}"
         lines.append(f"restored: {', '.join(own) or nothing}")
     return [lines[0], "cameras:", *lines[1:], "hears: " + ", ".join(said), "conditions:"]
 
@@ -170,3 +166,77 @@ def _range(group: Group, frames: Mapping[str, np.ndarray]) -> str:
     if not first.normalised and seen.max() < NEAR:
         strange = f" - {NORMALISED}"
     return f"{said}; seen {low} to {high} (median {middle}) m{strange}"
+
+
+def of(camera: str) -> str:
+    """Return the name of a camera's frame in the file: none that `numpy.savez` takes itself."""
+    return f"camera {camera}"
+
+
+def sheet(
+    rig: Rig,
+    frames: Mapping[str, np.ndarray],
+    corruptions: Sequence[Corruption],
+    first: Mapping[str, Any],
+    seed: int,
+) -> np.ndarray:
+    """Return uint8 RGB: a row for clean and each corruption, with the cameras of its modality that
+    are most; a corruption that comes and goes is drawn at a call in which it acts."""
+    scene = str(first.get("scene", "")).rpartition("/")[2]
+    episode = f"{scene}/{first.get('episode', '')}"
+    heading = float(frames[HEADING][0]) if frames[HEADING].size else None
+    by_kind = {group.cameras[0].kind: group for group in reversed(rig.groups)}
+    clean = {kind: _views(group, frames) for kind, group in by_kind.items()}
+    drawn = [_row([f"clean {kind}"], by_kind[kind], views) for kind, views in clean.items()]
+    for corruption in corruptions:
+        group, before = by_kind[corruption.modality], clean[corruption.modality]
+        for call in range(TRIED):
+            key = Key(seed, episode, call)
+            views = corrupted(group, before.copy(), corruption, key, heading)
+            if not np.array_equal(views, before, equal_nan=True):
+                break
+        acts = f"at call {call}" if call else ""
+        if np.array_equal(views, before, equal_nan=True):
+            acts = f"no change in {TRIED} calls"
+        drawn.append(_row([corruption.name, acts], group, views))
+    wide = max(row.shape[1] for row in drawn)
+    return np.vstack(
+        [
+            np.pad(row, ((0, 4), (0, wide - row.shape[1]), (0, 0)), constant_values=255)
+            for row in drawn
+        ]
+    )
+
+
+def _views(group: Group, frames: Mapping[str, np.ndarray]) -> np.ndarray:
+    views = np.zeros(group.shape, group.cameras[0].dtype)
+    for camera, view in zip(group.cameras, group.views, strict=True):
+        views[view] = frames[of(camera.name)]
+    return views
+
+
+def _row(names: Sequence[str], group: Group, views: np.ndarray) -> np.ndarray:
+    """The names, below them the entries that are drawn, and beside them their pictures."""
+    cells = [np.full((SIDE, LABEL, 3), 255, np.uint8)]
+    shown = list(zip(group.cameras, group.views, strict=True))[:SHOWN]
+    entries = ", ".join(camera.name for camera, _ in shown)
+    lines = [*filter(None, names), *_broken(entries)]
+    for number, line in enumerate(lines[: SIDE // LINE - 1]):
+        place = (6, 2 * LINE + LINE * number)
+        grey = 0 if number == 0 else 110
+        cv2.putText(cells[0], line, place, FONT, 0.45, (grey,) * 3, 1, cv2.LINE_AA)
+    for camera, view in shown:
+        frame = views[view]
+        if camera.kind == DEPTH:
+            metres = camera.metres(frame.reshape(frame.shape[:2]).astype(np.float32))
+            frame = depth_picture(metres, camera.sensor.z_max)
+        scale = SIDE / frame.shape[0]
+        size = (max(1, round(frame.shape[1] * scale)), SIDE)
+        cells.append(cv2.resize(frame, size, interpolation=cv2.INTER_AREA))
+    return np.hstack(cells)
+
+
+def _broken(text: str) -> Iterator[str]:
+    """``text`` in lines of ``WIDE`` characters."""
+    for at in range(0, len(text), WIDE):
+        yield text[at : at + WIDE].strip()

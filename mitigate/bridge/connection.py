@@ -6,7 +6,9 @@ What happens is noted as an event (``events.py``).
 from __future__ import annotations
 
 import hmac
+import mmap
 import os
+import secrets
 import socket
 import sys
 import time
@@ -18,15 +20,10 @@ from typing import Any
 
 from mitigate.bridge.cameras import CHANNELS, Rig
 from mitigate.bridge.condition import Condition
-from mitigate.bridge.episodes import begun, ended
-from mitigate.bridge.events import EVENTS, note
+from mitigate.bridge.events import EVENTS, begun, ended, note
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import BROKEN, LONGEST, receive, send
-from mitigate.bridge.shared_memory import SharedMemory
 from mitigate.core.names import short, unknown
-
-# of messages, behind "hello"
-KINDS = ("spec", "episode", "frame", "end", "dataset", "adapted", "stopped")
 
 
 def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
@@ -55,6 +52,42 @@ def _said(kind: str, error: Exception) -> str:
     )
 
 
+class SharedMemory:
+    """Memory for frames that the server and an environment's process share.
+
+    It is a file in ``folder``, mapped as ``map``. Its name is gone as soon as both sides mapped it.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.map: mmap.mmap | None = None
+        self.file: Path | None = None
+
+    def make(self, size: int) -> dict[str, Any]:
+        """Map ``size`` new bytes; return where the other side finds them. Raises ValueError if
+        there is no room."""
+        self.forget()
+        self.file = self.folder / secrets.token_hex(8)
+        descriptor = os.open(self.file, os.O_RDWR | os.O_CREAT | os.O_EXCL, 0o600)
+        try:
+            os.posix_fallocate(descriptor, 0, size)
+            self.map = mmap.mmap(descriptor, size)
+        except OSError as error:
+            raise ValueError(
+                f"there is no room for {size >> 10} KiB of frames in {self.folder.parent} "
+                f"({error.strerror}): free some, or enlarge it (docker: --shm-size=1g)."
+            ) from error
+        finally:
+            os.close(descriptor)
+        return {"file": str(self.file), "size": size}
+
+    def forget(self) -> None:
+        """Delete the name of what was made: the memory lasts as long as it is mapped."""
+        if self.file is not None:
+            self.file.unlink(missing_ok=True)
+            self.file = None
+
+
 class Connection:
     """Serves one environment. What a message asks for is done by the method of its kind.
 
@@ -67,6 +100,15 @@ class Connection:
     ) -> None:
         self.channel, self.condition, self.folder = channel, condition, folder
         self.token, self.shared = token, SharedMemory(memory)
+        self.answers = {  # by the kind of a message, behind "hello"
+            "spec": self.on_spec,
+            "episode": self.on_episode,
+            "frame": self.on_frame,
+            "end": self.on_end,
+            "dataset": self.on_dataset,
+            "adapted": self.on_adapted,
+            "stopped": self.on_stopped,
+        }
         self.rig: Rig | None = None
         self.offsets: dict[str, int] = {}
         self.scene = self.episode = ""
@@ -83,7 +125,7 @@ class Connection:
         if not self._greet():
             return
         self.channel.settimeout(None)
-        if "torch" in sys.modules:  # of a restorer or a safeguard, loaded before the fork
+        if "torch" in sys.modules:  # of a guard, loaded before the fork
             _one_thread()
         try:
             while (message := self._next()) is not None:
@@ -100,9 +142,9 @@ class Connection:
     def _answer(self, message: Mapping[str, Any]) -> dict[str, Any]:
         kind = str(message.get("kind"))
         try:
-            if kind not in KINDS:
-                raise ValueError(unknown("kind of message", kind[:40], KINDS))
-            answer = getattr(self, f"on_{kind}")(message)
+            if kind not in self.answers:
+                raise ValueError(unknown("kind of message", kind[:40], self.answers))
+            answer = self.answers[kind](message)
             os.utime(self.folder / EVENTS)  # a sign of life
         except Exception as error:  # whatever it is, the agent must be told
             problem = _said(kind, error)
@@ -148,7 +190,7 @@ class Connection:
         self.rig = Rig(message["cameras"], condition.missing, condition.turn)
         wanted = (
             *condition.corruption.modalities,
-            *(condition.restorer.nets if condition.restorer is not None else ()),
+            *condition.guards.frames,
             *(k for o in condition.observers for k in o.kinds),
         )
         self.offsets, size = self.rig.lay_out(wanted)
@@ -168,7 +210,9 @@ class Connection:
         self.worked, self.calls, self.loop = 0.0, 0, message.get("loop") is True
         self.kinds = set()
         key = self.condition.key(self.scene, self.episode, 0)
-        heard = self.condition.words.heard(message, self.condition.corruption, key)
+        heard = self.condition.words.heard(
+            message, self.condition.corruption, key, self.condition.guards
+        )
         for observer in self.condition.observers:
             observer.episode(message)
         told = {n: message.get(n) for n in ("text", "category", "language")}
@@ -211,8 +255,7 @@ class Connection:
             self.condition.key(self.scene, self.episode, int(message["call"])),
             None if heading is None else float(heading),
         )
-        if self.condition.restorer is not None:
-            changed += self.rig.restore(self.shared.map, self.offsets, self.condition.restorer)
+        changed += self.rig.guard(self.shared.map, self.offsets, self.condition.guards)
         self.worked += time.perf_counter() - began
         self.calls += 1
         return {"changed": list(dict.fromkeys(changed))}
@@ -246,7 +289,7 @@ class Connection:
 
     def _check_kinds(self) -> None:
         """Raise ValueError if no call of the episode had a camera of a kind that is corrupted, or
-        none that the restorer is for."""
+        none that the guards are for."""
         for part in self.condition.corruption.parts:
             if part.modality in CHANNELS and part.modality not in self.kinds:
                 raise ValueError(
@@ -255,8 +298,7 @@ class Connection:
                     f"{', '.join(sorted(self.kinds)) or 'none'}). Leave it out: suite=rgb, or "
                     "conditions=[clean,...]."
                 )
-        if self.condition.restorer is not None:
-            self.condition.restorer.check_shown(sorted(self.kinds), f"episode {self.episode}")
+        self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
         """Episodes of an environment, in pieces: answer which of all ``count`` it is to keep, all

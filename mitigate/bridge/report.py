@@ -6,19 +6,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
-from mitigate.bridge.cell import DONE, Cell
-from mitigate.bridge.finished import lacks as missing_entries
-from mitigate.bridge.finished import read_done
-from mitigate.bridge.identity import met
-from mitigate.bridge.randomness import randomness
+import numpy as np
+
+from mitigate.bridge.cell import DONE, Cell, missing_entries, read_done
+from mitigate.bridge.plan import met
 from mitigate.bridge.results import OWN
-from mitigate.bridge.verdict import lacks
 from mitigate.core.files import write_bytes, write_text
 from mitigate.core.names import counted
 from mitigate.corruptions import CLEAN, Corruption
-from mitigate.evaluation import report, rows
+from mitigate.evaluation import bootstrap, report, rows
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.worlds.measures import RULES
 
@@ -103,8 +102,8 @@ def earlier(made: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str]]:
             continue
         cell, reason = _cell(made[0], file), "by an older version, or of a corruption that is gone"
         if cell is not None:
-            reason = ", ".join(f"another {name}" for name in cell.others()) or cell.why_anew()
-            reason = reason or lacks(cell)
+            reason = ", ".join(f"another {name}" for name in cell.changed_settings())
+            reason = reason or cell.reason_to_repeat() or cell.unjudged()
         if cell is None or reason:
             name = file.parent.name
             print(f"{name}: measured before, but not in the table: {reason}", flush=True)
@@ -135,4 +134,28 @@ def _cell(clean: Cell, file: Path) -> Cell | None:
         folder=folder,
         settings=clean.settings | met(corruption),
         clean=clean.folder,
+    )
+
+
+def randomness(runs: Sequence[Sequence[Row]]) -> str:
+    """Return a Markdown paragraph on repeated clean runs: their SR, the share of episodes that end
+    otherwise in another run, and the SR difference of the first two with its interval.
+
+    Only episodes that all runs hold count, by the rule of the first row.
+    """
+    rule = runs[0][0]["rule"]
+    held = [{r["episode_id"]: r["success"] for r in run if r["rule"] == rule} for run in runs]
+    names = sorted(set.intersection(*(set(run) for run in held)))
+    if not names:
+        return "The repeated clean runs have no episode in common.\n"
+    won = np.array([[run[name] for name in names] for run in held])
+    flips = np.mean([np.mean(a != b) for a, b in combinations(won, 2)])
+    moved = bootstrap.mean(won[1] - won[0])
+    rates = ", ".join(f"{100 * rate:.1f}" for rate in won.mean(axis=1))
+    return (
+        f"## The agent's own randomness\n\n{len(runs)} clean runs of the same {len(names)} "
+        f"episodes: SR {rates}. From one run to another {100 * flips:.1f} % of the episodes end "
+        f"otherwise; second minus first {100 * moved.value:+.1f} "
+        f"{moved.interval('+.1f', 100)}. A difference between two conditions "
+        "that is not larger says nothing.\n"
     )

@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.bridge.episodes import MEASURES, name_of
-from mitigate.bridge.events import damaged, read_events
+from mitigate.bridge.events import MEASURES, damaged, name_of, read_events
 from mitigate.bridge.hook.mitigate_hook import CLOSE, OVER
 from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import version

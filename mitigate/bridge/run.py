@@ -7,68 +7,37 @@ output folder; the same command again goes on where it stopped.
 
 from __future__ import annotations
 
+import os
 import shlex
 import signal
 import sys
 import time
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import ClassVar
 
 import hydra
-from hydra.core.config_store import ConfigStore
-from omegaconf import MISSING, DictConfig
+from omegaconf import DictConfig
 
-from mitigate.bridge import verdict
-from mitigate.bridge.options import check_options, name_of
-from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
+from mitigate.bridge.attempt import Attempt
+from mitigate.bridge.cell import Cell, check_finished, files_of
+from mitigate.bridge.condition import NO_TOKENIZER, applicable, untold
+from mitigate.bridge.config import RunConfig
+from mitigate.bridge.plan import Plan, cells, make_plan
+from mitigate.cluster.launcher import chosen, results
 from mitigate.core import conf
 from mitigate.core.output import output_folder
+from mitigate.core.progress import Progress
 from mitigate.core.signals import raise_ended
+from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.guards.text.addresses import check_arguments
 
-if TYPE_CHECKING:  # torch and the corruptions are slow to import
-    from mitigate.bridge.cell import Cell
-
 EVERY = 15.0  # seconds between two lines of progress (ours)
-
-
-@dataclass
-class RunConfig:
-    """Types of ``conf/run.yaml``; the meaning of each entry is written there."""
-
-    name: str | None = None
-    out: str | None = None
-    runs: str = "runs"
-    corruption: str | None = None
-    conditions: list[str] | None = None
-    severity: float = 0.6
-    severity_depth: float | None = None
-    seed: int = 0
-    episodes: int | None = None
-    repeats: int = 1
-    jobs: int = 1
-    launcher: Any = MISSING
-    split: str = "unnamed"
-    rule: str | None = None
-    safeguard: str = "none"
-    restore: str | None = None
-    tokenizer: str | None = None
-    token_length: int | None = None
-    missing: float = 0.0
-    turn: str = "left"
-    patience: float = 25.0
-    record: str | None = None
-    adapters: str | None = None
-    watch: list[str] | None = None
-    count_closed: bool = False
-    check: bool = False
-    suite: Any = MISSING
-
-
-ConfigStore.instance().store(name="run_schema", node=RunConfig)
+PAUSE = 0.2  # seconds between two looks at a command that runs
+REASON = 100  # characters of why a condition failed, before it is told in full (ours)
 
 
 def split_command(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -79,45 +48,38 @@ def split_command(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
     return list(arguments[:at]), list(arguments[at + 1 :])
 
 
-def run(cfg: DictConfig, command: Sequence[str]) -> Path:
+def run(config: RunConfig, command: Sequence[str]) -> Path:
     """Run ``command`` under all conditions; return the output folder.
 
     Raises ValueError for options that make no sense and, behind all others, for conditions whose
     command failed.
     """
-    from mitigate.bridge.conditions import cells
-    from mitigate.bridge.finished import check_finished
-    from mitigate.bridge.identity import default_folder
-
-    check_options(cfg, command)
-    name = cfg.name or name_of(command)
-    out = Path(cfg.out or default_folder(cfg, name))
-    made = cells(cfg, command, out, name)
-    check_finished(out)
-    with output_folder(out):
-        return _measure(cfg, command, out, name, made)
+    plan = make_plan(config, command)
+    made = cells(plan)
+    check_finished(plan.out)
+    with output_folder(plan.out):
+        return _measure(plan, made)
 
 
-def _measure(
-    cfg: DictConfig, command: Sequence[str], out: Path, name: str, made: Sequence[Cell]
-) -> Path:
-    """Run the cells ``made`` and write the report into ``out``; raise as :func:`run` does."""
+def _measure(plan: Plan, made: Sequence[Cell]) -> Path:
+    """Run the cells ``made`` and write the report; raise as :func:`run` does."""
     from mitigate.bridge.report import write_report
-    from mitigate.bridge.words import NO_TOKENIZER
 
+    out = plan.out
     clean = made[0]
     many = "1 condition" if len(made) == 1 else f"{len(made)} conditions"
     print(
-        f"run: {shlex.join(command)}\nrun: {many} at severity {cfg.severity:g}, rows in {out}",
+        f"run: {shlex.join(plan.command)}\nrun: {many} at severity {plan.config.severity:g}, "
+        f"rows in {out}",
         flush=True,
     )
     known = _warn_of_changes(made, out)
     before = clean.is_done()
-    problems = _run_all(cfg, command, out, name, [clean])
+    problems = _run_all(plan, [clean])
     if problems:
         raise ValueError("\n".join(problems))
     _check_rule([clean])
-    strange = verdict.strange(clean)
+    strange = clean.depth_warning()
     if strange:
         print(strange, flush=True)  # before hours of the others, and at the end
     fitting, unheard = _fitting(made)
@@ -132,11 +94,11 @@ def _measure(
             "(out=...), or remove this one.",
             flush=True,
         )
-    problems += _run_all(cfg, command, out, name, fitting)
+    problems += _run_all(plan, fitting)
     _warn_of_changes([clean, *fitting], out, known if nothing else ())
     problems += _vanished(fitting, problems)
     if not clean.is_done():  # a condition showed that it is not whole
-        raise ValueError("\n".join(problems) or f"{clean.name}: {clean.why_anew()}")
+        raise ValueError("\n".join(problems) or f"{clean.name}: {clean.reason_to_repeat()}")
     try:
         write_report([clean, *fitting], out)
     except ValueError as error:  # conditions that failed are told first
@@ -154,14 +116,14 @@ def _vanished(made: Sequence[Cell], problems: Sequence[str]) -> list[str]:
     return [
         f"{cell.name}: its result in {cell.folder} was removed or replaced by another program."
         for cell in made
-        if cell.name not in failed and cell.held() is None
+        if cell.name not in failed and cell.entries() is None
     ]
 
 
 def _check_rule(made: Sequence[Cell]) -> None:
     """Raise ValueError for a condition that was measured before and that ``rule=`` cannot judge."""
     for cell in made:
-        if cell.is_done() and (lacking := verdict.lacks(cell)):
+        if cell.is_done() and (lacking := cell.unjudged()):
             raise ValueError(
                 f"{cell.name}: {lacking} It was measured before; out=... names another folder."
             )
@@ -170,9 +132,6 @@ def _check_rule(made: Sequence[Cell]) -> None:
 def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
     """The conditions beside clean that reach the agent, and the names of those whose words it would
     not hear; say which do not, and which words are in other languages."""
-    from mitigate.bridge.conditions import applicable, untold
-    from mitigate.corruptions.language.text import is_english, passed_through
-
     fitting, unheard, told = [], [], made[0].told()
     for cell in made[1:]:
         reason = applicable(cell.corruption, told)
@@ -191,12 +150,10 @@ def _fitting(made: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
     """Say which files of the command, but those that are ``known``, are others than conditions were
     finished with; return these."""
-    from mitigate.bridge.identity import files_of
-
     changed: dict[str, list[str]] = {}
     now = files_of(made[0].command)
     for cell in made:
-        for file in cell.changed(now):
+        for file in cell.changed_files(now):
             changed.setdefault(file, []).append(cell.name)
     for file, names in changed.items():
         if file in known:
@@ -212,20 +169,18 @@ def _warn_of_changes(made: Sequence[Cell], out: Path, known: Sequence[str] = ())
     return list(changed)
 
 
-def _run_all(
-    cfg: DictConfig, command: Sequence[str], out: Path, name: str, waiting: Sequence[Cell]
-) -> list[str]:
-    """Run cells, ``cfg.jobs`` at a time, where the launcher says; return what went wrong."""
-    if cfg.launcher.name == "local":
-        return _run_here(waiting, cfg.jobs)
-    from mitigate.bridge.spread import run_there
-
-    return run_there(cfg, command, out, name, waiting)
+def _run_all(plan: Plan, waiting: Sequence[Cell]) -> list[str]:
+    """Run cells, ``plan.config.jobs`` at a time, where the launcher says; return what went "
+    "wrong."""
+    if plan.config.launcher.name == "local":
+        return _run_here(waiting, plan.config.jobs)
+    return run_there(plan, waiting)
 
 
 def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
-    left, problems = list(waiting), []
-    running: list[Cell] = []
+    left = list(waiting)
+    problems: list[str] = []
+    running: list[Attempt] = []
     spoke = time.monotonic()
     try:
         while left or running:
@@ -233,35 +188,37 @@ def _run_here(waiting: Sequence[Cell], jobs: int) -> list[str]:
                 cell = left.pop(0)
                 if cell.is_done():
                     print(f"{cell.name}: done before, {cell.summary()}", flush=True)
-                else:
-                    running.append(cell)  # before: whatever interrupts its start, it is ended
-                    if refused := _begin(cell):  # the others go on
-                        running.remove(cell)
-                        problems.append(f"{cell.name}: {refused}")
-            time.sleep(0.2)
-            for cell in list(running):
-                problem = cell.poll()
+                    continue
+                attempt = Attempt(cell)
+                running.append(attempt)  # before: whatever interrupts its start, it is ended
+                if refused := _begin(attempt):  # the others go on
+                    running.remove(attempt)
+                    problems.append(f"{cell.name}: {refused}")
+            time.sleep(PAUSE)
+            for attempt in list(running):
+                problem = attempt.poll()
                 if problem is None:
                     continue
-                running.remove(cell)
-                print(
-                    f"{cell.name}: {verdict.outcome(cell, problem, len(waiting) == 1)}", flush=True
-                )
+                running.remove(attempt)
+                cell = attempt.cell
+                print(f"{cell.name}: {_outcome(cell, problem, len(waiting) == 1)}", flush=True)
                 problems += [f"{cell.name}: {problem}"] if problem else []
             if running and time.monotonic() - spoke > EVERY:
                 spoke = time.monotonic()
-                print("\n".join(f"{cell.name}: {cell.summary()}" for cell in running), flush=True)
+                for attempt in running:
+                    print(f"{attempt.cell.name}: {attempt.cell.summary()}", flush=True)
     finally:
-        for cell in running:
-            cell.kill()
+        for attempt in running:
+            attempt.kill()
     return problems
 
 
-def _begin(cell: Cell) -> str:
-    """Start a condition; return why it cannot be, empty if it was."""
-    again = f", measured anew: {why}" if (why := cell.why_anew()) else ""
+def _begin(attempt: Attempt) -> str:
+    """Start an attempt; return why it cannot be, empty if it was."""
+    cell = attempt.cell
+    again = f", measured anew: {why}" if (why := cell.reason_to_repeat()) else ""
     try:
-        cell.start()
+        attempt.start()
     except ValueError as error:
         print(f"{cell.name}: {error}", flush=True)
         return str(error)
@@ -269,15 +226,96 @@ def _begin(cell: Cell) -> str:
     return ""
 
 
+def _outcome(cell: Cell, problem: str, alone: bool) -> str:
+    """One line on a condition that ended: its summary, or that it failed. Why is told in full at
+    the end, which is now where it ran ``alone``."""
+    if not problem:
+        return cell.summary()
+    first = problem.splitlines()[0]
+    return "failed" if alone else f"failed: {first[:REASON]}{'...' * (len(first) > REASON)}"
+
+
+class ConditionTask:
+    """Runs conditions by name (``core/workers.py``) as jobs on other machines.
+
+    The result of a job is what went wrong, empty if nothing did. The folder of the run is on a file
+    system that all machines see. A condition that ended is kept; one whose machine died is measured
+    again on another, since a program that no one may change cannot be resumed.
+
+    Args:
+        plan: The run; its output folder is absolute.
+        here: The folder in which the command is to run.
+    """
+
+    preload: ClassVar[str] = "mitigate.bridge.run"
+
+    def __init__(self, plan: Plan, here: Path) -> None:
+        self.plan = plan
+        self.here = here
+        self.cells: dict[str, Cell] = {}
+
+    @contextmanager
+    def ready(self) -> Iterator[None]:
+        before = os.getcwd()
+        os.chdir(self.here)
+        try:
+            self.cells = {cell.name: cell for cell in cells(self.plan)}
+            yield
+        finally:
+            os.chdir(before)
+
+    def work(self, jobs: Sequence[str]) -> Iterator[str]:
+        """Run the command under each condition to its end."""
+        for name in jobs:
+            attempt = Attempt(self.cells[name])
+            try:
+                attempt.start()
+                while (problem := attempt.poll()) is None:
+                    time.sleep(PAUSE)
+            except ValueError as error:  # it cannot be started: the others can
+                problem = str(error)
+            finally:
+                attempt.kill()
+            yield problem
+
+    def name(self, job: str) -> str:
+        return job
+
+
+def run_there(plan: Plan, waiting: Sequence[Cell]) -> list[str]:
+    """Run ``waiting`` on the machines of the launcher, ``jobs`` at a time; return what went wrong.
+    Raises WorkersDied for a condition that no worker survives."""
+    left = [cell for cell in waiting if not cell.is_done()]
+    for cell in waiting:
+        if cell not in left:
+            print(f"{cell.name}: done before, {cell.summary()}", flush=True)
+    if not left:
+        return []
+    task = ConditionTask(replace(plan, out=plan.out.resolve()), Path.cwd())
+    groups, launcher = [[cell.name] for cell in left], chosen(plan.config.launcher)
+    problems = []
+    with Progress("conditions", len(left), unit="condition") as progress:
+        for found in results(launcher, task, groups, plan.config.jobs, progress):
+            if found is None:
+                continue
+            cell, problem = left[found[0]], str(found[1])
+            progress.say(f"{cell.name}: {_outcome(cell, problem, len(waiting) == 1)}")
+            problems += [f"{cell.name}: {problem}"] if problem else []
+            progress.advance()
+    return problems
+
+
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")
 def hydra_main(cfg: DictConfig) -> None:
     """Hydra's entry."""
-    if cfg.check:
+    config = conf.typed(cfg, "run")
+    assert isinstance(config, RunConfig)
+    if config.check:
         from mitigate.bridge.check import check
 
-        check(cfg, _command)
+        check(config, _command)
     else:
-        run(cfg, _command)
+        run(config, _command)
 
 
 _command: list[str] = []  # behind --

@@ -1,38 +1,39 @@
-"""From a config to objects: the only place that instantiates ``_target_`` nodes.
+"""Build the objects that configs describe: the only place that instantiates ``_target_`` nodes.
 
-Only configs of this checkout and of the user's own (``--config-dir``) are ever built; one that came
+Only configs of this checkout and of the user (``--config-dir``) are ever built. A config that came
 with downloaded weights is read as data, because a ``_target_`` in it could run anything.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from inspect import signature
 from typing import Any
 
 from hydra.errors import InstantiationException
 from hydra.utils import get_object, instantiate
-from omegaconf import DictConfig, OmegaConf
+from omegaconf import OmegaConf
 
 from mitigate.core.names import unknown
 
-NOT_LOADED = "Error loading"  # so begins what Hydra says of a _target_ that it cannot import
-PARTIAL = "_partial_"  # Hydra's mark: give a function that makes this
+NOT_LOADED = "Error loading"  # how Hydra's message begins for a _target_ that it cannot import
+PARTIAL = "_partial_"  # Hydra's mark: return a function that makes the object
+COLLECT = "builtins.dict"  # as a _target_: collects built arguments without calling anything
 
 
-def build(node: DictConfig, **given: Any) -> Any:
+def build(node: Mapping[str, Any], **given: Any) -> Any:
     """Return the object that ``node`` describes; ``given`` are further keyword arguments.
 
     Lists and mappings inside arrive as plain lists and dicts, and an entry with ``_partial_: true``
     as a :class:`Maker`. The ValueError or FileNotFoundError of a constructor reaches the user as
     it was raised.
     """
+    config = plain(node)
+    makers = {k: Maker(v) for k, v in config.items() if isinstance(v, dict) and v.get(PARTIAL)}
+    rest = OmegaConf.create({k: v for k, v in config.items() if k not in makers})
     try:
-        held = plain(node)
-        makers = {k: Maker(v) for k, v in held.items() if isinstance(v, dict) and v.get(PARTIAL)}
-        rest = OmegaConf.create({k: v for k, v in held.items() if k not in makers})
         make = instantiate(rest, _partial_=True, _convert_="all")
-        _check_arguments(held, (*held, *given))
+        _check_arguments(config, (*config, *given))
         return make(**makers, **given)  # not through instantiate, which would copy what is given
     except InstantiationException as error:
         cause = error.__cause__
@@ -45,40 +46,67 @@ def build(node: DictConfig, **given: Any) -> Any:
         raise
 
 
-def _check_arguments(node: dict[str, Any], names: Iterable[str]) -> None:
+def arguments_of(node: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments in ``node``, each built as :func:`build` builds it."""
+    return dict(build({**node, "_target_": COLLECT}))
+
+
+def argument_names(kind: Any) -> list[str]:
+    """Return the arguments that a config may give to ``kind``.
+
+    A class with ``sources`` (``mitigate.training.objective``) takes those of its sources too, and
+    no source itself.
+    """
+    sources: Mapping[str, Any] = getattr(kind, "sources", {})  # of objectives alone
+    names = [name for name in signature(kind).parameters if name not in sources]
+    for source in sources.values():
+        names += [name for name in signature(source).parameters if name not in names]
+    return names
+
+
+def _check_arguments(node: Mapping[str, Any], names: Iterable[str]) -> None:
     """Raise ValueError for arguments that the class or function of ``node`` does not take."""
     target = str(node["_target_"])
     try:
-        taken = signature(get_object(target)).parameters
-    except (ValueError, TypeError):  # of C, of which nobody knows
+        parameters = signature(get_object(target)).parameters
+    except (ValueError, TypeError):  # a callable written in C has no signature
         return
-    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in taken.values()):
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
         return
     for name in names:
-        if not name.startswith("_") and name not in taken:
-            raise ValueError(f"{target}: {unknown('argument', name, [*taken])}")
+        if not name.startswith("_") and name not in parameters:
+            raise ValueError(f"{target}: {unknown('argument', name, [*parameters])}")
 
 
 class Maker:
-    """Makes what a config describes, anew each time and with all that is inside it; it can be
-    pickled, so that worker processes make their own."""
+    """Make what a config describes, a new object with every call.
 
-    def __init__(self, node: dict[str, Any]) -> None:
+    It can be pickled, so that worker processes make their own.
+    """
+
+    def __init__(self, node: Mapping[str, Any]) -> None:
         self.node = {name: value for name, value in node.items() if name != PARTIAL}
 
     def __call__(self) -> Any:
-        return build(OmegaConf.create(self.node))
+        return build(self.node)
 
 
-def plain(node: DictConfig) -> dict[str, Any]:
-    """A node of a config as plain data."""
-    held = OmegaConf.to_container(node, resolve=True)
-    assert isinstance(held, dict)
-    return {str(name): value for name, value in held.items()}
+def plain(node: Any) -> dict[str, Any]:
+    """Return a node of a config as plain data, with references resolved."""
+    if OmegaConf.is_config(node):
+        data = OmegaConf.to_container(node, resolve=True)
+        assert isinstance(data, dict)
+    else:
+        data = dict(node)
+    return {str(name): value for name, value in data.items()}
 
 
 def located(target: str) -> Any:
-    """Return what ``target`` names (``module.Name``). Raises ValueError if nothing is there."""
+    """Return the object that ``target`` names (``module.Name``).
+
+    Raises:
+        ValueError: if there is no such object.
+    """
     try:
         return get_object(target)
     except ImportError as error:
@@ -92,6 +120,6 @@ def _not_loaded(error: object) -> str:
     )
 
 
-def maker(node: DictConfig) -> Maker:
+def maker(node: Mapping[str, Any]) -> Maker:
     """Return a function that makes what ``node`` describes."""
     return Maker(plain(node))

@@ -1,10 +1,13 @@
-"""Run a Hydra program so that a user's mistake ends in one paragraph: cause, choices, fix.
+"""Compose, type and explain the options of a command; run its Hydra program.
 
-Set ``HYDRA_FULL_ERROR=1`` to see the whole traceback instead.
+Each command registers the dataclass of its options when its module is imported (:func:`register`).
+A user's mistake ends in one paragraph: cause, choices, fix. Set ``HYDRA_FULL_ERROR=1`` to see the
+whole traceback instead.
 """
 
 from __future__ import annotations
 
+import difflib
 import os
 import re
 import shlex
@@ -14,19 +17,19 @@ import textwrap
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, redirect_stderr
-from importlib import import_module
-from inspect import signature
 from itertools import takewhile
 from pathlib import Path
 from typing import Any, TextIO
 
 from hydra import compose, initialize_config_dir
+from hydra.core.config_store import ConfigStore
 from hydra.core.global_hydra import GlobalHydra
 from hydra.errors import HydraException, MissingConfigException, OverrideParseException
 from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
+from mitigate.core.build import argument_names
 from mitigate.core.errors import said, too_much
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import unknown
@@ -34,22 +37,12 @@ from mitigate.core.options import (
     check_dashes,
     config_folder,
     flags_first,
-    notices,
     without_config_folder,
 )
 from mitigate.core.signals import raise_ended
 
 CONF = PACKAGE / "conf"  # of a checkout: a link to its conf/
-TYPES = {  # module that registers the types of conf/<name>.yaml when it is imported
-    "evaluate": "mitigate.evaluation.evaluate",
-    "export_drive": "mitigate.replay.export_drive",
-    "replay": "mitigate.replay.replay",
-    "run": "mitigate.bridge.run",
-    "sweep": "mitigate.training.sweep",
-    "table1": "mitigate.training.table1",
-    "table2": "mitigate.training.table2",
-    "train": "mitigate.training.train",
-}
+TYPES: dict[str, type] = {}  # the dataclass of each conf/<name>.yaml that is registered
 FULL = "HYDRA_FULL_ERROR"  # what Hydra asks whether errors are shown whole
 OURS = (
     "MITIGATE_FULL_ERROR"  # set beside it by main: programs that it starts do not show them whole
@@ -62,6 +55,29 @@ KINDS = {
     "bool": "true or false",
     "String": "text",
 }
+
+
+def register(primary: str, kind: type, schema: str | None = None) -> None:
+    """Register the dataclass ``kind`` as the types of ``conf/<primary>.yaml``.
+
+    The file names ``<schema>_schema`` in its defaults; by default ``schema`` is ``primary``.
+    """
+    TYPES[primary] = kind
+    ConfigStore.instance().store(name=f"{schema or primary}_schema", node=kind)
+
+
+def typed(cfg: DictConfig, primary: str) -> Any:
+    """Return composed options as an object of the dataclass of ``conf/<primary>.yaml``.
+
+    Entries that the dataclass does not declare become attributes; nodes without types are dicts.
+
+    Raises:
+        ValueError: for an entry that refers to a missing one, or that is mandatory and not set.
+    """
+    try:
+        return OmegaConf.to_object(cfg)
+    except OmegaConfBaseException as error:
+        raise ValueError(explain(error, primary)) from error
 
 
 def main(
@@ -172,17 +188,64 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
 def load_config(
     primary: str, overrides: Iterable[str] = (), further: Path | None = None
 ) -> DictConfig:
-    """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program; ``further``: a
-    folder with more configs, which ``overrides`` may name, too (``--config-dir=mine``)."""
+    """Compose ``conf/<primary>.yaml`` with ``overrides``, outside a Hydra program.
+
+    ``further`` is a folder with more configs, which ``overrides`` may name too
+    (``--config-dir=mine``).
+
+    Raises:
+        ValueError: if no imported module has registered the types of this file.
+    """
+    if primary not in TYPES:
+        raise ValueError(
+            f"The types of conf/{primary}.yaml are not registered: import the module of the "
+            "command first (mitigate/cli.py names it)."
+        )
     own, overrides = without_config_folder([*overrides])
     further = further or config_folder(own)
     if further is not None:
         place = str(further.resolve()).replace("\\", "\\\\").replace('"', '\\"')
         overrides = [*overrides, f'hydra.searchpath=["file://{place}"]']
-    import_module(TYPES[primary])
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(CONF), version_base="1.3"):
         return compose(primary, list(overrides))
+
+
+def notices(primary: str, options: Sequence[str]) -> list[str]:
+    """What is to be said of the entries that ``options`` add to ``conf/<primary>.yaml``
+    (``+columns.mine=[...]``): Hydra puts a new list or mapping in the place of one that is there,
+    and adds an entry that no program reads, without a word."""
+    added = {
+        option[1:].partition("=")[0]: option.partition("=")[2][:1] in "[{"
+        for option in options
+        if re.match(r"\+[^+]", option)
+    }
+    if not added:
+        return []
+    others = [o for o in options if re.match(r"[^-+].*=|~", o)]
+    try:
+        cfg = load_config(primary, others, config_folder(options))
+    except (HydraException, OmegaConfBaseException):  # which the program itself explains
+        return []
+    folders = [folder for folder in (CONF, config_folder(options)) if folder is not None]
+    return [
+        told
+        for key, whole in added.items()
+        if not any((folder / key.partition("@")[0]).is_dir() for folder in folders)
+        and (told := _notice(key, whole, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)]))
+    ]
+
+
+def _notice(key: str, whole: bool, there: bool, names: list[str]) -> str:
+    if there and not whole:
+        return ""  # which Hydra refuses
+    if there:
+        return f"{key} is there already, and +{key}= replaces it. To add one, give it another name."
+    if "." in key:
+        return ""
+    near = difflib.get_close_matches(key, names, n=1)
+    hint = f" Did you mean {near[0]}=...?" if near else ""
+    return f"+{key}= adds an option that only configs of your own can use.{hint}"
 
 
 def help_text(about: str, primary: str) -> str:
@@ -278,7 +341,7 @@ def _arguments(node: DictConfig) -> list[str]:
     if not target.startswith(f"{PACKAGE.name}."):
         return []
     given = ("agent", *map(str, node))
-    return [name for name in signature(get_object(target)).parameters if name not in given]
+    return [name for name in argument_names(get_object(target)) if name not in given]
 
 
 def _misfit(key: str, value: str, cfg: DictConfig) -> str:

@@ -1,4 +1,4 @@
-"""Memory that stays bounded: results that are kept for a while, and what was freed."""
+"""Keep the memory of a process bounded: a cache with a limit, and the release of freed memory."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from typing import Any
 
 
 class Memory:
-    """Keeps the results used last, ``limit`` bytes of them at most.
+    """Cache of the most recently used results, at most ``limit`` bytes.
 
-    A result is a tuple of arrays or tensors (anything with ``nbytes``). They are given out as they
-    are kept: a caller that lets others change them gives copies away.
+    A result is a tuple of arrays or tensors (anything with ``nbytes``). Results are returned
+    without a copy: callers must not change them.
     """
 
     def __init__(self, limit: int) -> None:
@@ -24,7 +24,7 @@ class Memory:
         return len(self._kept)
 
     def recall(self, key: Hashable, make: Callable[[], tuple]) -> Any:
-        """Return the result of ``key``, made now if it is not kept."""
+        """Return the cached result of ``key``, or call ``make`` and cache its result."""
         if key in self._kept:
             self._kept.move_to_end(key)
             return self._kept[key]
@@ -37,9 +37,11 @@ class Memory:
 
 
 def give_back() -> None:
-    """Return freed memory to the system where the C library keeps it (glibc): among arrays of ever
-    other sizes it keeps more and more. Takes a few milliseconds."""
-    with suppress(AttributeError, OSError, TypeError):  # another C library
+    """Return freed memory to the system; takes a few milliseconds.
+
+    glibc keeps freed memory, and keeps more and more of it when array sizes vary.
+    """
+    with suppress(AttributeError, OSError, TypeError):  # not glibc
         ctypes.CDLL(None).malloc_trim(0)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -12,8 +11,6 @@ from hydra._internal.utils import get_args_parser
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.core.override_parser.types import Override
 from hydra.errors import HydraException
-from omegaconf import OmegaConf
-from omegaconf.errors import OmegaConfBaseException
 
 MULTIRUN = ("-m", "--multirun")
 CONFIG_DIR = ("--config-dir", "-cd")
@@ -83,45 +80,6 @@ def flags_first(words: Sequence[str]) -> list[str]:
     flags = [word for word in words if word in MULTIRUN]
     folder, others = without_config_folder([word for word in words if word not in MULTIRUN])
     return [*flags[:1], *folder, *others]
-
-
-def notices(primary: str, options: Sequence[str]) -> list[str]:
-    """What is to be said of the entries that ``options`` add to ``conf/<primary>.yaml``
-    (``+columns.mine=[...]``): Hydra puts a new list or mapping in the place of one that is there,
-    and adds an entry that no program reads, without a word."""
-    from mitigate.core.conf import CONF, load_config
-
-    added = {
-        option[1:].partition("=")[0]: option.partition("=")[2][:1] in "[{"
-        for option in options
-        if re.match(r"\+[^+]", option)
-    }
-    if not added:
-        return []
-    others = [o for o in options if re.match(r"[^-+].*=|~", o)]
-    try:
-        cfg = load_config(primary, others, config_folder(options))
-    except (HydraException, OmegaConfBaseException):  # which the program itself explains
-        return []
-    folders = [folder for folder in (CONF, config_folder(options)) if folder is not None]
-    return [
-        told
-        for key, whole in added.items()
-        if not any((folder / key.partition("@")[0]).is_dir() for folder in folders)
-        and (told := _notice(key, whole, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)]))
-    ]
-
-
-def _notice(key: str, whole: bool, there: bool, names: list[str]) -> str:
-    if there and not whole:
-        return ""  # which Hydra refuses
-    if there:
-        return f"{key} is there already, and +{key}= replaces it. To add one, give it another name."
-    if "." in key:
-        return ""
-    near = difflib.get_close_matches(key, names, n=1)
-    hint = f" Did you mean {near[0]}=...?" if near else ""
-    return f"+{key}= adds an option that only configs of your own can use.{hint}"
 
 
 def positive(text: str) -> int:

@@ -1,4 +1,4 @@
-"""Frames as pictures, for logs and reports."""
+"""Draw observations and paths for logs and reports."""
 
 from __future__ import annotations
 
@@ -15,7 +15,14 @@ NO_READING = (255, 255, 255)  # the colour of invalid depth
 
 
 def side_by_side(views: np.ndarray) -> np.ndarray:
-    """Views [V, H, W, 3] uint8, or [V, H, W, 1] metres drawn as grey, as uint8 [H, V * W, 3]."""
+    """Join views side by side.
+
+    Args:
+        views: uint8 [V, H, W, 3], or metres [V, H, W, 1], which are drawn as grey.
+
+    Returns:
+        uint8 [H, V * W, 3].
+    """
     if views.shape[-1] == 1:
         grey = np.nan_to_num(views, posinf=0.0) / max(1e-6, float(np.nanmax(views)))
         views = np.repeat((255 * grey.clip(0, 1)).astype(np.uint8), 3, axis=-1)
@@ -23,7 +30,7 @@ def side_by_side(views: np.ndarray) -> np.ndarray:
 
 
 def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.ndarray:
-    """The 12 views side by side, each cropped to its own 30 degrees, ahead in the middle."""
+    """Join the 12 views of a panorama, each cropped to 30 degrees, the front centred."""
     size = views.shape[2]
     half = int(round(np.tan(np.radians(15)) * size / 2))
     low, high = size // 2 - half, size // 2 + half
@@ -31,7 +38,7 @@ def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.n
 
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
-    """RGB, or else depth, of an observation as uint8 [H, W, 3]; None if it holds neither."""
+    """Return RGB, or else depth, of an observation as uint8 [H, W, 3]; None if it has neither."""
     held = observation or {}
     frame = next((np.asarray(held[name]) for name in (RGB, DEPTH) if name in held), None)
     if frame is None:
@@ -47,7 +54,7 @@ def draw_path(
     label: str | None = None,
     style: str = "-",
 ) -> None:
-    """A walked or reference path (plan metres [n, 2]) on matplotlib axes."""
+    """Draw a path (metres on the floor plan, [n, 2]) on matplotlib axes."""
     points = np.asarray(path)
     axes.plot(points[:, 0], points[:, 1], style, color=colour, lw=2, label=label, zorder=6)
     axes.plot(*points[0], "o", color=colour, ms=6, zorder=7)
@@ -55,7 +62,8 @@ def draw_path(
 
 
 def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
-    """uint8 RGB [H, W, 3] of depth [H, W]: near is bright, ``far`` metres dark, no value white."""
+    """Return depth [H, W] as uint8 RGB [H, W, 3]: near is bright, ``far`` metres is dark, and
+    missing values are white."""
     valid = np.isfinite(depth) & (depth > 0)
     near = 1.0 - np.where(valid, np.clip(depth / far, 0.0, 1.0), 0.0)
     picture = cv2.applyColorMap(np.rint(255.0 * near).astype(np.uint8), cv2.COLORMAP_VIRIDIS)

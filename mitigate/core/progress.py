@@ -1,9 +1,9 @@
-"""How far a long job is: a bar in a terminal, else plain lines that keep coming.
+"""Report the progress of a long job: a tqdm bar in a terminal, plain lines elsewhere.
 
-While a :class:`Progress` is open, one daemon thread (the clock) tells how far the innermost one
-is whenever nothing was printed for ``EVERY`` seconds, whatever the code inside does meanwhile. So
-there is a line at once and then at least every 20 seconds, unless that code keeps Python's
-interpreter lock for ten seconds in a single call; torch, numpy, sleeps and subprocesses do not.
+While a :class:`Progress` is open, a daemon thread (the clock) prints the progress of the innermost
+one whenever nothing was printed for ``EVERY`` seconds, even if the job does not advance; tqdm
+prints only when it does. The clock stops while a single call holds the interpreter lock; torch,
+numpy, sleeps and subprocesses release it.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from mitigate.core.names import counted
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-EVERY = 10.0  # seconds without a line after which the clock prints one (ours)
-REDRAW = 1.0  # seconds between the clock's redraws of a bar (ours)
+EVERY = 10.0  # seconds without a line after which the clock prints one
+REDRAW = 1.0  # seconds between redraws of a bar
 
 _lock = threading.RLock()  # of what follows and of standard output
 _changed = threading.Condition(_lock)  # wakes the clock
@@ -197,7 +197,7 @@ def _tell() -> float:
 
 
 def _after_fork_in_child() -> None:
-    """Forget what the parent tells: a child has no clock."""
+    """Drop the jobs of the parent process: a forked child has no clock."""
     global _thread
     _open.clear()
     _thread = None

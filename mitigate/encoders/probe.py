@@ -13,8 +13,8 @@ import torch
 
 from mitigate.core.progress import Progress
 from mitigate.corruptions import Corruption, Key
-from mitigate.encoders.frames import Frames, corrupted
 from mitigate.encoders.model import Encoder
+from mitigate.encoders.sources import Frames, corrupted
 from mitigate.evaluation.bootstrap import LEVEL, Estimate
 
 RESAMPLES = 1000  # of the scenes (ours)

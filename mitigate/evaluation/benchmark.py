@@ -28,16 +28,15 @@ from mitigate.core.progress import duration
 from mitigate.core.workers import packed
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import evaluate as evaluation
-from mitigate.evaluation import making, walked
+from mitigate.evaluation import provenance
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import check_count, check_episodes, spread
-from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate, front_of
-from mitigate.evaluation.known import Known
+from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
+from mitigate.evaluation.provenance import Known
 from mitigate.evaluation.rows import ROWS
-from mitigate.guards.frames.restorer import restorer_of
-from mitigate.guards.text.guard import open_safeguard
+from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.world import Corrupted, World
 
@@ -81,7 +80,8 @@ def benchmark(
         suite: a name of ``conf/suite`` or a list of corruptions. severity: from 0 to 1. seed: of
             the corruptions. workers: processes; None: one a core if there is work. More than one
             read the script again, which keeps its call under ``if __name__ == "__main__":``.
-        safeguard, restore: what stands in front of the agent: "rules", "checkpoints/restorer".
+        safeguard, restore: guards in front of the agent: "rules", "checkpoints/restorer",
+            "module:callable".
         options: of its kind and the world: "agent=recurrent", "env.views=1", "--config-dir=mine".
         world, listed: makes a world of your own, and its episodes (or their file), in place of
             those of ``options``; a world of another class than theirs needs both.
@@ -91,20 +91,22 @@ def benchmark(
     """
     cfg, met = _conditions(agent, suite, severity, seed, options)
     told = {"training_data": training_data, "link": link}
-    agent, name = _agent(agent, name, cfg, seed, evaluation.fronts(safeguard, restore))
+    agent, name = _agent(agent, name, cfg, seed, labels(safeguard, restore))
     check_texts(name=name, **told)
     made = world or maker(cfg.env.world)
     first, made_by = _first_world(made, met, agent)
     split, chosen = _episodes(first, cfg, split, episodes, listed, world is not None)
     file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
-    front = _front(safeguard, restore, first)
-    known = Known(agent, first.sensors, front_of(**front), version).check(file, name)
+    guards = open_guards(safeguard, restore, first.sensors)
+    known = Known(agent, first.sensors, guards.fingerprint(), version).check(file, name)
     label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
     with known:
         _tell(agent, made, chosen, met, workers)
         with FolderLock(file.parent):
-            walked.keep(file.parent, first, made_by, split, chosen)
-            rows = evaluate(agent, made, chosen, met, out=file, workers=workers, **label, **front)
+            provenance.keep(file.parent, first, made_by, split, chosen)
+            rows = evaluate(
+                agent, made, chosen, met, out=file, workers=workers, guards=guards, **label
+            )
     told["file"] = "" if file.is_absolute() else file.as_posix()
     shown = sensor_lines(first.sensors, as_agent(agent).sensors)
     return entry_of(rows, name, severity=severity, sensors=shown, **told)
@@ -148,23 +150,15 @@ def _conditions(
 
 
 def _agent(
-    agent: Any, name: str | None, cfg: Any, seed: int, fronts: Sequence[str]
+    agent: Any, name: str | None, cfg: Any, seed: int, guards: Sequence[str]
 ) -> tuple[Any, str]:
-    """Return the agent itself, loaded if ``agent`` is a path, and its heading, with ``fronts``."""
+    """Return the agent, loaded if it is a path, and its heading with the labels ``guards``."""
     usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
         usual = evaluation.name_of(str(agent))
         agent = evaluation.load(cfg.agent, str(agent), seed)
     evaluation.check_walks(agent)
-    return agent, "+".join([name or usual, *fronts])
-
-
-def _front(safeguard: str | None, restore: str | None, world: World) -> dict[str, Any]:
-    """Return what stands in front of the agent, as ``evaluate`` takes it."""
-    return {
-        "safeguard": open_safeguard(safeguard or "none"),
-        "restorer": restorer_of(restore, world.sensors),
-    }
+    return agent, "+".join([name or usual, *guards])
 
 
 def _plain(name: str) -> str:
@@ -181,7 +175,7 @@ def _first_world(
             f"world is a {type(make_world).__name__}: give what makes one, such as a function, "
             "since each process has its own."
         )
-    world, made_by = making.first(make_world)
+    world, made_by = provenance.first_world(make_world)
     if not hasattr(world, "sensors"):
         kind = type(world).__name__
         raise ValueError(
@@ -213,11 +207,11 @@ def _episodes(
     """Return the split and the episodes to walk; raise ValueError for none, and for a world that
     was ``given``, of another class than the config's, without a list of its own."""
     own = given and _is_own(world, cfg)
-    split = split or (walked.name_of(world) if own else cfg.split)
+    split = split or (provenance.name_of(world) if own else cfg.split)
     if listed is None and own:
         raise ValueError(
-            f"The episodes of {cfg.env.name} are none of {walked.name_of(world)}: give its own, "
-            'listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
+            f"The episodes of {cfg.env.name} are none of {provenance.name_of(world)}: give its "
+            'own, listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
             "docs/bring-your-own.md). Of a gymnasium or torchrl environment they are seeds: "
             "listed=seeded_episodes(range(20)) (mitigate.worlds.seeded)."
         )

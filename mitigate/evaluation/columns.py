@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from pathlib import Path
-
-from omegaconf import DictConfig
+from typing import TYPE_CHECKING
 
 from mitigate.core.conf import CONF
+
+if TYPE_CHECKING:
+    from mitigate.evaluation.config import EvaluateConfig
 
 
 def changed(overrides: Sequence[str]) -> list[str]:
@@ -19,25 +21,25 @@ def changed(overrides: Sequence[str]) -> list[str]:
     return [_plain(option.removeprefix("agent.")).strip("-") for option in own]
 
 
-def column_of(cfg: DictConfig, folder: Path) -> str:
+def column_of(name: str, seed: int, folder: Path) -> str:
     """Return the column of a training: the recipe, and the options that its folder's name holds, so
     that other settings are no other seeds of it."""
-    options = folder.name.partition(f"-seed{cfg.seed}-")[2]
-    return f"{cfg.name}+{options}" if options else cfg.name
+    options = folder.name.partition(f"-seed{seed}-")[2]
+    return f"{name}+{options}" if options else name
 
 
-def default_folder(cfg: DictConfig, name: str) -> str:
+def default_folder(config: EvaluateConfig, name: str) -> str:
     """Return ``runs/evaluate/<name>-[<world>-]<split>-s<severity>``; the world is named unless its
     config is of this project, whose worlds have splits of their own."""
-    own = not (CONF / "env" / f"{cfg.env.name}.yaml").is_file()
-    split = f"{cfg.env.name}-{cfg.split}" if own else cfg.split
-    return f"{cfg.runs}/evaluate/{name}-{split}-s{_severities(cfg)}"
+    own = not (CONF / "env" / f"{config.env.name}.yaml").is_file()
+    split = f"{config.env.name}-{config.split}" if own else config.split
+    return f"{config.runs}/evaluate/{name}-{split}-s{_severities(config)}"
 
 
-def _severities(cfg: DictConfig) -> str:
+def _severities(config: EvaluateConfig) -> str:
     """The severities, as part of a folder's name."""
-    depth = "" if cfg.severity_depth is None else f"-d{cfg.severity_depth:g}"
-    return f"{cfg.severity:g}{depth}"
+    depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
+    return f"{config.severity:g}{depth}"
 
 
 def _plain(text: str) -> str:

@@ -26,7 +26,7 @@ from mitigate.core.options import check_dashes, config_folder, without_config_fo
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, SUITE_VERSION
-from mitigate.evaluation import rows
+from mitigate.evaluation import config, rows  # noqa: F401 - config registers the options
 from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.worlds.episodes import Episode
@@ -68,12 +68,12 @@ class RandomAgent:
 def run(cfg: DictConfig, out: Path) -> list[rows.Row]:
     """Walk both on the episodes that ``cfg``, an evaluation's, names; return their rows, which are
     in the folder ``out`` too. Those that it has count."""
-    from mitigate.evaluation import making, walked
+    from mitigate.evaluation import provenance
 
     chosen = episodes(cfg.env, cfg.split, cfg.episodes)
     with FolderLock(out):
-        world, made_by = making.first(maker(cfg.env.world))
-        walked.keep(out, world, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
+        world, made_by = provenance.first_world(maker(cfg.env.world))
+        provenance.keep(out, world, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
         return _walked(world, cfg.split, chosen, out / rows.ROWS)
 
 

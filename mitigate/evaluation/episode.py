@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -20,8 +20,7 @@ from mitigate.corruptions import (
 from mitigate.corruptions.language.text import is_english
 from mitigate.corruptions.registry import parts
 from mitigate.evaluation.rows import MEASURES
-from mitigate.guards.frames.restorer import Restorer
-from mitigate.guards.frames.world import Restored
+from mitigate.guards.guard import NO_GUARDS, EpisodeStart, Guards, guarded
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import Corrupted, World
 
@@ -34,18 +33,16 @@ def run_episode(
     episode: Episode,
     corruption: Corruption,
     seed: int,
-    repaired: Mapping[str, str] | None = None,
-    restorer: Restorer | None = None,
+    guards: Guards = NO_GUARDS,
 ) -> dict[str, Any]:
-    """Run one episode to its end and return its measures, with ``decisions``: how often the agent
-    looked.
+    """Run one episode behind ``guards`` to its end and return its measures, with ``decisions``: how
+    many observations the agent read.
 
-    ``repaired``: what a safeguard makes of instructions; one that is not in it stays as it is.
-    ``restorer``: goes over the frames before the agent reads them. A ValueError out of a step names
-    the episode, the condition and the step; one is raised for an action that is no whole number.
+    A ValueError out of a step names the episode, the condition and the step; one is raised for an
+    action that is no whole number.
     """
-    walk = _Walk(world, episode, corruption, seed, restorer)
-    with instructed(agent, episode, corruption, seed, repaired):
+    walk = _Walk(world, episode, corruption, seed, guards)
+    with instructed(agent, episode, corruption, seed, guards):
         try:
             while not walk.done:
                 walk.step(action_of(agent.act(walk.observation), agent))
@@ -70,11 +67,10 @@ def run_side_by_side(
     agent: Agent,
     worlds: Sequence[World],
     jobs: Sequence[tuple[Episode, Corruption, int]],
-    repaired: Mapping[str, str] | None = None,
-    restorer: Restorer | None = None,
+    guards: Guards = NO_GUARDS,
 ) -> Iterator[dict[str, Any]]:
     """Run (episode, corruption, seed) of each job, as many at a time as there are worlds, and yield
-    their measures in order, as :func:`run_episode` gives them."""
+    their measures in order, as :func:`run_episode` gives them. No guard may change the agent."""
     waiting, free = deque(enumerate(jobs)), list(worlds)
     under_way: dict[int, tuple[_Walk, World, Any]] = {}
     measured: dict[int, dict[str, Any]] = {}
@@ -82,9 +78,9 @@ def run_side_by_side(
         while number not in measured:
             while waiting and free:
                 begun, job = waiting.popleft()
-                world, text = free.pop(), instruction(*job)
-                memory = agent.begin((repaired or {}).get(text, text))
-                under_way[begun] = _Walk(world, *job, restorer), world, memory
+                world = free.pop()
+                memory = agent.begin(guards.begin(start_of(agent, *job)))
+                under_way[begun] = _Walk(world, *job, guards), world, memory
             ended = [key for key, (walk, _, _) in under_way.items() if walk.done]
             for key in ended:
                 walk, world, _ = under_way.pop(key)
@@ -110,11 +106,11 @@ class _Walk:
         episode: Episode,
         corruption: Corruption,
         seed: int,
-        restorer: Restorer | None,
+        guards: Guards,
     ) -> None:
         self.name, self.steps = f"Episode {episode.episode_id}, {corruption.name}", 0
         self.met = Corrupted(world, corruption, seed)
-        self.shown: World = self.met if restorer is None else Restored(self.met, restorer)
+        self.shown = guarded(self.met, guards)
         self.observation = self.shown.reset(episode)
 
     @property
@@ -153,27 +149,38 @@ def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
     return text
 
 
+def start_of(agent: Agent, episode: Episode, corruption: Corruption, seed: int) -> EpisodeStart:
+    """Return what guards know of an episode: its instruction, and the agent's prompt, as the
+    corruption leaves them. Raises ValueError for "white_box" without a prompt."""
+    key = Key(seed, episode.episode_id)
+    prompt = as_agent(agent).system_prompt
+    if "white_box" in parts(corruption.name):
+        injected = inject_system_prompt(prompt, corruption.severity, key)
+        if isinstance(injected, NotApplicable):
+            raise ValueError(f"'white_box' is not applicable: {injected.reason}.")
+        prompt = injected
+    return EpisodeStart(key, instruction(episode, corruption, seed), prompt)
+
+
 @contextmanager
 def instructed(
     agent: Agent,
     episode: Episode,
     corruption: Corruption,
     seed: int,
-    repaired: Mapping[str, str] | None = None,
+    guards: Guards = NO_GUARDS,
 ) -> Iterator[None]:
-    """Reset the agent with the instruction, and the prompt, that the corruption leaves it; within
-    the block it has that prompt. ``repaired`` as :func:`run_episode`."""
-    text, key = instruction(episode, corruption, seed), Key(seed, episode.episode_id)
+    """Reset the agent with the instruction that the corruption and ``guards`` leave it. Within the
+    block it has the corrupted prompt, and guards are attached to it."""
     contract = as_agent(agent)
     prompt = contract.system_prompt
+    start = start_of(agent, episode, corruption, seed)
     try:
-        if "white_box" in parts(corruption.name):
-            injected = inject_system_prompt(prompt, corruption.severity, key)
-            if isinstance(injected, NotApplicable):
-                raise ValueError(f"'white_box' is not applicable: {injected.reason}.")
-            contract.system_prompt = injected
-        agent.reset((repaired or {}).get(text, text))
-        yield
+        if start.system_prompt != prompt:
+            contract.system_prompt = start.system_prompt
+        with guards.attach(agent):
+            agent.reset(guards.begin(start))
+            yield
     finally:
         if prompt is not None:
             contract.system_prompt = prompt

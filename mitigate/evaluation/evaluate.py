@@ -7,151 +7,80 @@ command again only fills what is missing.
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import hydra
-from hydra.core.config_store import ConfigStore
 from hydra.core.hydra_config import HydraConfig
-from omegaconf import MISSING, DictConfig, OmegaConf
+from omegaconf import DictConfig
 
-from mitigate.cluster import launcher  # registers the kinds of conf/launcher
-from mitigate.core import conf, seeding
+from mitigate.cluster import launcher
+from mitigate.core import conf
 from mitigate.core.contracts import lacking
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import counted, name_of
+from mitigate.evaluation import config as options
 from mitigate.evaluation.columns import changed, default_folder
 from mitigate.evaluation.conditions import check_sensors, conditions
+from mitigate.evaluation.config import EvaluateConfig
 from mitigate.evaluation.episode_lists import episodes, warn_of_tasks
 from mitigate.evaluation.rows import ROWS
-from mitigate.guards.text.addresses import check_arguments, check_choice
+from mitigate.guards.text.addresses import check_arguments
 
-# what a training of an agent ends with
-REPORT = "mitigate.training.reports.before_after.report_before_after"
 DECISIONS = "safeguard.jsonl"  # what a safeguard made of each instruction
-OF_TRAININGS = ("finetune.", "cost.")  # options that a kind of agent has for its trainings
-MOST_WORKERS = 100_000  # on all machines of a launcher (ours)
-
-
-@dataclass
-class EvaluationConfig:
-    """The evaluation that follows a training."""
-
-    enabled: bool = True
-    split: str = "val_unseen"
-    episodes: int | None = 40
-    workers: int | None = None
-
-
-@dataclass
-class WeightsConfig:
-    """The weights that are shipped for the chosen kind of agent, if any."""
-
-    base: str | None = None
-    teacher: str | None = None
-
-
-@dataclass
-class FinetuneConfig:
-    """How recipes teach a policy that is trained already, for the chosen kind of agent."""
-
-    lr: float = 4e-4
-    follow_oracle: float = 0.25
-
-
-@dataclass
-class CostConfig:
-    """How many times as long as with the topological agent something takes with the chosen kind of
-    agent, for the estimate at the start of a training: a step on random views, a step on episodes
-    that it walks, an evaluated episode. None: not known."""
-
-    views: float | None = None
-    episodes: float | None = None
-    evaluation: float | None = None
-
-
-def times(cost: float, kind: float | None) -> float | None:
-    """What ``${times:2.7,${cost.episodes}}`` is in a config: a step's cost with the chosen kind of
-    agent, None where that is not known."""
-    return None if kind is None else cost * kind
-
-
-OmegaConf.register_new_resolver("times", times, replace=True)
-
-
-@dataclass
-class EvaluateConfig:
-    """Types of ``conf/evaluate.yaml``; the meaning of each entry is written there."""
-
-    runs: str = "runs"
-    checkpoint: str | None = None
-    safeguard: str = "none"
-    restore: str | None = None
-    name: str | None = None
-    version: str | None = None
-    split: str = "val_unseen"
-    episodes: int | None = None
-    conditions: list[str] | None = None
-    severity: float = 0.6
-    severity_depth: float | None = None
-    seed: int = 0
-    workers: int | None = None
-    launcher: Any = MISSING
-    out: str | None = None
-    agent: Any = MISSING
-    weights: WeightsConfig = field(default_factory=WeightsConfig)
-    finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
-    cost: CostConfig = field(default_factory=CostConfig)
-    env: Any = MISSING
-    suite: Any = field(default=MISSING)
-
-
-ConfigStore.instance().store(name="evaluate_schema", node=EvaluateConfig)
 
 
 def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     """Evaluate the weights ``cfg.checkpoint`` and return the folder with the rows and the table.
 
-    ``overrides``: those of the command line; what they say of the agent (``agent.blind=[rgb]``)
-    counts more than the weights' own settings, and the table's
-    column names it.
-    Raises ValueError for an unknown split or condition, weights that are not named, and what is no
-    agent or is shown too little, FileNotFoundError for missing weights.
+    Args:
+        cfg: the composed options.
+        overrides: those of the command line; what they set of the agent (``agent.blind=[rgb]``)
+            counts more than the weights' own settings, and the table's column names it.
+
+    Raises:
+        ValueError: for an unknown split or condition, weights that are not named, and an object
+            that is no agent or lacks an observation.
+        FileNotFoundError: for missing weights.
     """
-    _check(cfg, overrides)
-    where = launcher.chosen(cfg.launcher)
-    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
-    chosen = episodes(cfg.env, cfg.split, cfg.episodes)
-    met = conditions(names, cfg.severity, cfg.severity_depth)
+    config = options.read(cfg)
+    options.check(config, overrides)
+    return evaluate_agent(config, overrides)
+
+
+def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Path:
+    """As :func:`run`, of typed options that were checked."""
+    env = config.env
+    where = launcher.chosen(config.launcher)
+    chosen = episodes(env, config.split, config.episodes)
+    met = conditions(config.condition_names, config.severity, config.severity_depth)
     # nothing slow is imported before the options are checked
     from mitigate.core import build
-    from mitigate.evaluation import making, walked
+    from mitigate.evaluation import provenance
     from mitigate.evaluation.evaluator import evaluate
-    from mitigate.guards.frames.restorer import restorer_of
+    from mitigate.guards.opening import open_guards
     from mitigate.guards.text import choices
-    from mitigate.guards.text.guard import open_safeguard
 
-    agent = load(cfg.agent, cfg.checkpoint, cfg.seed, overrides)
+    agent = load(config.agent, config.checkpoint, config.seed, overrides)
     check_walks(agent)
-    world, name = build.maker(cfg.env.world), _column(cfg, overrides)
-    first, made_by = making.first(world)
-    restorer = restorer_of(cfg.restore, first.sensors)
-    check_sensors(met, first.sensors, cfg.env.name)
-    choices.check(cfg.safeguard)
-    out = Path(cfg.out or default_folder(cfg, name))
+    world = build.maker(env.world)
+    name = _column(config, overrides)
+    first, made_by = provenance.first_world(world)
+    check_sensors(met, first.sensors, env.name)
+    choices.check(config.safeguard)
+    out = Path(config.out or default_folder(config, name))
+    guards = open_guards(config.safeguard, config.restore, first.sensors, log=out / DECISIONS)
     with FolderLock(out) as lock:
-        walked.keep(out, first, made_by, cfg.split, chosen, cfg.env.episodes[cfg.split])
-        lock.expect(out / ROWS, *walked.notes(out, cfg.split))
-        safeguard = open_safeguard(cfg.safeguard, log=out / DECISIONS)
+        provenance.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
+        lock.expect(out / ROWS, *provenance.notes(out, config.split))
         print(  # when all is checked: a mistake is told alone
-            f"evaluate: {cfg.checkpoint or name} on {cfg.split}, "
+            f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
-            f"{cfg.severity:g}",
+            f"{config.severity:g}",
             flush=True,
         )
-        warn_of_tasks(agent, chosen, name, cfg.env.split)
+        warn_of_tasks(agent, chosen, name, env.split)
         rows = evaluate(
             agent,
             world,
@@ -159,47 +88,24 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             met,
             name=name,
             out=out / ROWS,
-            split=cfg.split,
-            seed=cfg.seed,
-            workers=cfg.workers,
+            split=config.split,
+            seed=config.seed,
+            workers=config.workers,
             launcher=where,
-            safeguard=safeguard,
-            restorer=restorer,
-            version=cfg.version,
+            guards=guards,
+            version=config.version,
         )
         write_table([out / ROWS], out, rows)
     return out
 
 
-def _column(cfg: DictConfig, overrides: Sequence[str]) -> str:
-    """The table's column: the weights, what options change of the agent, and what stands before
-    it."""
-    usual = name_of(cfg.checkpoint or cfg.agent._target_.rpartition(".")[2])
-    own = [cfg.name or usual, *changed(overrides)]
-    return "+".join([*own, *fronts(cfg.safeguard, cfg.restore)])
+def _column(config: EvaluateConfig, overrides: Sequence[str]) -> str:
+    """Return the table's column: the weights, options that change the agent, and its guards."""
+    from mitigate.guards.opening import labels
 
-
-def fronts(safeguard: str | None, restore: str | None) -> list[str]:
-    """Return the short names of what stands in front of an agent, as parts of a column's name."""
-    from mitigate.guards.frames import choices as restorers
-    from mitigate.guards.text import choices as safeguards
-
-    found = [safeguards.label(safeguard or "none"), restorers.label(restore or "none")]
-    return [name for name in found if name != "none"]
-
-
-def _check(cfg: DictConfig, overrides: Sequence[str]) -> None:
-    """Raise ValueError for settings that are well typed but make no sense."""
-    idle = [option for option in overrides if option.lstrip("+").startswith(OF_TRAININGS)]
-    if idle:
-        raise ValueError(f"{idle[0]} is for trainings: an evaluation changes no weights.")
-    check_choice(cfg.safeguard)
-    seeding.check(cfg.seed)
-    if cfg.workers is not None and not 1 <= cfg.workers <= MOST_WORKERS:
-        raise ValueError(
-            f"workers={cfg.workers} must be a number of processes from 1 to {MOST_WORKERS}, or "
-            "null for one a core."
-        )
+    usual = name_of(config.checkpoint or config.agent["_target_"].rpartition(".")[2])
+    own = [config.name or usual, *changed(overrides)]
+    return "+".join([*own, *labels(config.safeguard, config.restore)])
 
 
 def check_walks(agent: Any) -> None:
@@ -218,7 +124,7 @@ def check_walks(agent: Any) -> None:
 
 
 def load(
-    node: DictConfig, weights: str | None, seed: int = 0, overrides: Sequence[str] = ()
+    node: Mapping[str, Any], weights: str | None, seed: int = 0, overrides: Sequence[str] = ()
 ) -> Any:
     """Return the agent of ``weights`` in eval mode, by their own settings if they carry any, else
     by ``node``; what ``overrides`` say of the agent counts more. None: the agent of ``node``, which

@@ -14,7 +14,7 @@ import warnings
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Any, ClassVar
@@ -35,10 +35,9 @@ from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.language.text import is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
-from mitigate.evaluation.episode import instruction, run_episode, run_side_by_side
-from mitigate.evaluation.known import Known
-from mitigate.guards.frames.restorer import Restorer
-from mitigate.guards.text.guard import Safeguard
+from mitigate.evaluation.episode import run_episode, run_side_by_side, start_of
+from mitigate.evaluation.provenance import Known
+from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
 
@@ -53,14 +52,12 @@ Job = tuple[Episode, Corruption, dict[str, Any]]  # the last: what the row says 
 class EpisodeTask:
     """Runs jobs (``mitigate/core/workers.py``): each one's result is its label with its measures.
 
-    make_world: each process makes one. repaired: what a safeguard makes of instructions. restorer:
-    of frames. A label holds "seed".
+    make_world: each process makes one. A label holds "seed".
     """
 
     agent: Any
     make_world: Callable[[], World]
-    repaired: dict[str, str] = field(default_factory=dict)
-    restorer: Restorer | None = None
+    guards: Guards = NO_GUARDS
     world: World | None = None
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
@@ -94,16 +91,16 @@ class EpisodeTask:
     def _measures(
         self, world: Any, told: Sequence[tuple[Episode, Corruption, int]]
     ) -> Iterator[dict[str, Any]]:
-        """Of (episode, corruption, seed) each, in order; one after the other if an agent's prompt,
-        which all its walks share, is corrupted."""
+        """Of (episode, corruption, seed) each, in order; one after the other if what all its walks
+        share is changed: the agent's prompt by a corruption, or the agent by a guard."""
         count = _together(self.agent, world)
         prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in told)
-        if count > 1 and not prompted:
+        if count > 1 and not prompted and not self.guards.adapts:
             worlds = [world, *(world.beside() for _ in range(count - 1))]
-            yield from run_side_by_side(self.agent, worlds, told, self.repaired, self.restorer)
+            yield from run_side_by_side(self.agent, worlds, told, self.guards)
             return
         for job in told:
-            yield run_episode(self.agent, world, *job, self.repaired, self.restorer)
+            yield run_episode(self.agent, world, *job, self.guards)
 
     def name(self, job: Job) -> str:
         """The episode and its condition."""
@@ -133,8 +130,7 @@ def evaluate(
     seed: int = 0,
     workers: int | None = 1,
     launcher: LauncherConfig = LOCAL,
-    safeguard: Safeguard | None = None,
-    restorer: Restorer | None = None,
+    guards: Guards = NO_GUARDS,
     version: str | None = None,
     known: Known | None = None,
 ) -> list[dict[str, Any]]:
@@ -144,11 +140,10 @@ def evaluate(
     them for PRS; "white_box" is left out with a warning if the agent has no ``system_prompt``.
     name: the table's column. split: what the rows say. seed: of the corruptions' keys. workers:
     processes, None: one a core if there is work for them; the rows do not depend on it, nor on the
-    launcher, which says on which machines (``scale/launcher.py``). safeguard: repairs instructions.
-    restorer: goes over the frames before the agent reads them. version: names what cannot be read
-    of the agent, so that its rows can be reused (``agents/fingerprint.py``). known: the agent's
-    fingerprint, if it was taken before. A row's ``agent`` is the fingerprint of the agent behind
-    the sensors, safeguard and restorer.
+    launcher, which says on which machines (``cluster/launcher.py``). guards: between the world and
+    the agent (``guards/guard.py``). version: names what cannot be read of the agent, so that its
+    rows can be reused (``agents/fingerprint.py``). known: the agent's fingerprint, if it was taken
+    before. A row's ``agent`` is the fingerprint of the agent behind the sensors and guards.
 
     Raises ValueError if ``out`` holds rows of this fingerprint and the agent cannot be read
     completely; WorkersDied if worker processes die more than once; the rows so far are in ``out``.
@@ -160,7 +155,7 @@ def evaluate(
     made = world()
     check_fits(agent, made.sensors, type(made).__name__)
     if known is None:
-        known = Known(agent, made.sensors, front_of(safeguard, restorer), version).check(out, name)
+        known = Known(agent, made.sensors, guards.fingerprint(), version).check(out, name)
     label = {
         "agent": known.hash,
         "name": name,
@@ -170,10 +165,10 @@ def evaluate(
         "rule": made.rule,
         **({"weights": weights_sha(agent)} if isinstance(agent, torch.nn.Module) else {}),
     }
-    task = EpisodeTask(agent, world, {}, restorer)
+    task = EpisodeTask(agent, world, guards)
     jobs = _jobs(episodes, conditions, label)
     with known:
-        _run_missing(task, made, jobs, out, safeguard, (workers, launcher), f"{name}, {split}")
+        _run_missing(task, made, jobs, out, (workers, launcher), f"{name}, {split}")
     return _tell_of_cuts(_in_order(out, [rows.identity(job[2]) for job in jobs]), name)
 
 
@@ -189,7 +184,6 @@ def _run_missing(
     world: World,
     jobs: list[Job],
     out: Path,
-    safeguard: Safeguard | None,
     where: tuple[int | None, LauncherConfig],
     title: str,
 ) -> None:
@@ -197,21 +191,16 @@ def _run_missing(
     finished = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     todo = [job for job in jobs if rows.identity(job[2]) not in finished]
     _warn_of_languages(todo)
-    heard = [instruction(episode, condition, label["seed"]) for episode, condition, label in todo]
-    decided = [] if safeguard is None else safeguard.canonicalise_all(heard)
-    task.repaired = {decision.original: decision.text for decision in decided}
+    if task.guards:
+        task.guards = task.guards.prepared(
+            [start_of(task.agent, episode, met, label["seed"]) for episode, met, label in todo]
+        )
     if not todo:
         print(f"{title}: {counted(len(jobs), 'walk')}, all done before, in {out}", flush=True)
         return
     at_once = _together(task.agent, world)
     groups = _groups(todo, 4 * at_once if at_once > 1 else 1)
     _run(task, groups, len(jobs), out, *where, title)
-
-
-def front_of(safeguard: Safeguard | None, restorer: Restorer | None) -> str:
-    """What stands in front of an agent, for its identity: a safeguard and a restorer by hashes."""
-    front = "none" if safeguard is None else safeguard.identity
-    return front if restorer is None else f"{front}+restorer-{restorer.hash}"
 
 
 def _jobs(

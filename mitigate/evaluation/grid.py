@@ -14,12 +14,105 @@ from itertools import chain
 
 import numpy as np
 
-from mitigate.corruptions.registry import AND
+from mitigate.corruptions.registry import AND, HALVES, UNSEEN, names, unseen_names
 from mitigate.evaluation import metrics
-from mitigate.evaluation.blocks import BLOCKS
-from mitigate.evaluation.labels import label_columns
-from mitigate.evaluation.lists import by_list
+from mitigate.evaluation.episode_lists import by_list
 from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
+
+BLOCKS = {  # of ours; a corruption of another package is no part of them
+    "RGB": names("rgb"),
+    "Depth": names("depth"),
+    "Instruction": names("instruction"),
+    "unseen RGB": unseen_names("rgb"),
+    "unseen depth": unseen_names("depth"),
+}
+FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))  # the paper's twelve
+SUITE, UNSEEN_KIND, PAIRS = "", "unseen corruptions", "pairs of corruptions"  # a table each
+PROMPT_ONLY = "white_box"  # not applicable to agents without a system prompt: these have no row
+
+
+def kind(corruption: str) -> str:
+    """Return in which table a corruption stands: the suite's and what other packages bring, the
+    unseen ones, or the pairs."""
+    return PAIRS if AND in corruption else UNSEEN_KIND if corruption in UNSEEN else SUITE
+
+
+def by_kind(rows: Iterable[Row]) -> dict[str, list[Row]]:
+    """Return the rows of each table, with the clean ones of the agents that are in it.
+
+    The suite's numbers are thus the same whatever else was measured, for whichever seeds. Agents
+    that were never corrupted stand beside the suite.
+    """
+    rows = list(rows)
+    kinds = {row["corruption"]: kind(row["corruption"]) for row in rows}
+    members: dict[tuple, set[str]] = defaultdict(set)
+    for row in rows:
+        if row["corruption"] != "clean":
+            members[_column(row)].add(kinds[row["corruption"]])
+    found: dict[str, list[Row]] = {SUITE: [], UNSEEN_KIND: [], PAIRS: []}
+    for row in rows:
+        own = {kinds[row["corruption"]]}
+        for name in (members[_column(row)] or own) if row["corruption"] == "clean" else own:
+            found[name].append(row)
+    return {name: held for name, held in found.items() if held}
+
+
+def _column(row: Row) -> tuple:
+    return tuple(row[key] for key in ("split", "suite", "rule", "name", "agent"))
+
+
+def meant(block: str, held: Sequence[str]) -> tuple[str, ...]:
+    """Return the corruptions that a PRS over ``block`` stands for where ``held`` are measured.
+
+    One that does not apply (:data:`PROMPT_ONLY`) counts only where it was measured, and a half of
+    the unseen ones only where one of it was.
+    """
+    every = tuple(n for n in BLOCKS.get(block, held) if n in held or n != PROMPT_ONLY)
+    halves = {UNSEEN[name].half for name in held if name in UNSEEN}
+    return tuple(n for n in every if n not in UNSEEN or UNSEEN[n].half in halves)
+
+
+def halves(blocks: dict[str, tuple[str, ...]]) -> dict[str, dict[str, tuple[str, ...]]]:
+    """Return by block what is measured of each half, by its heading, where both are."""
+    found = {
+        block: {
+            f"{block}, {half}": tuple(n for n in names if n in UNSEEN and UNSEEN[n].half == half)
+            for half in HALVES
+        }
+        for block, names in blocks.items()
+    }
+    return {block: parts for block, parts in found.items() if all(parts.values())}
+
+
+def label_columns(
+    measured: Iterable[tuple[str, str, int]],
+) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return label -> (name, agents) of all (name, agent sha, seed).
+
+    Agents of one name that ran with a seed each of their own are the training seeds of one column.
+    Otherwise each is a column, with its sha in the label.
+    """
+    seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
+    for name, agent, seed in measured:
+        seeds[name][agent].add(seed)
+    columns = {}
+    for name, agents in seeds.items():
+        apart = sum(len(s) for s in agents.values()) == len(set().union(*agents.values()))
+        if apart:
+            columns[name] = (name, tuple(agents))
+        else:
+            digits = _telling(agents)
+            columns |= {f"{name} ({agent[:digits]})": (name, (agent,)) for agent in agents}
+    return columns
+
+
+def _telling(agents: Iterable[str]) -> int:
+    """How many digits, 6 or more, tell ``agents`` apart."""
+    digits, agents = 6, set(agents)
+    while len({agent[:digits] for agent in agents}) < len(agents):
+        digits += 1
+    return digits
+
 
 COVERAGE = 0.9  # share of the clean episodes a corruption must hold to enter a PRS (ours)
 METRICS = {"SR": "success", "SPL": "spl"}

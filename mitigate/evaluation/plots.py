@@ -12,8 +12,7 @@ from matplotlib.figure import Figure
 
 from mitigate.core.files import write_figure
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.blocks import BLOCKS
-from mitigate.evaluation.grid import Grid
+from mitigate.evaluation.grid import BLOCKS, Grid
 from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["RdYlGn"]

@@ -12,9 +12,19 @@ import numpy as np
 from mitigate.core.names import unknown
 from mitigate.corruptions.registry import title
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.blocks import SUITE, by_kind, halves, meant
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import DRAWN, METRICS, Gap, Grid, Retention, grids
+from mitigate.evaluation.grid import (
+    DRAWN,
+    METRICS,
+    SUITE,
+    Gap,
+    Grid,
+    Retention,
+    by_kind,
+    grids,
+    halves,
+    meant,
+)
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 

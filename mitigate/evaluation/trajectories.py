@@ -19,11 +19,10 @@ from mitigate.core.files import write_bytes, write_figure
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import depth_picture, draw_path, strip
 from mitigate.corruptions import CLEAN, Corruption, Key, corrupt_observation
-from mitigate.evaluation.episode import instruction, run_episode
+from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import label
-from mitigate.guards.frames.restorer import Restorer
-from mitigate.guards.text.guard import Safeguard
+from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World, WorldWrapper, as_world, depth_sensor
 
@@ -31,18 +30,6 @@ REFERENCE, CLEAN_WALK = "#8a8a8a", "#1f77b4"
 CORRUPTED_WALKS = ("#d62728", "#2ca02c", "#9467bd", "#ff7f0e")  # one an agent, in their order
 INCHES, DPI = (9.0, 10.5), 80
 PICTURES = 4  # episodes that are drawn after a training (ours)
-
-
-@dataclass(frozen=True)
-class Front:
-    """What stands in front of an agent: it repairs what that hears, and restores what it sees."""
-
-    safeguard: Safeguard | None = None
-    restorer: Restorer | None = None
-
-    def repaired(self, text: str) -> dict[str, str]:
-        """What the agent hears in place of ``text``."""
-        return {text: self.safeguard.canonicalise(text).text} if self.safeguard else {}
 
 
 @dataclass(frozen=True)
@@ -73,7 +60,7 @@ def draw_trajectories(
     corruption: Corruption,
     out: Path | str,
     seed: int = 0,
-    fronts: Mapping[str, Front] | None = None,
+    guards: Mapping[str, Guards] | None = None,
 ) -> Path:
     """Walk an episode and write one PNG: start panorama, plan, reference path, every walk.
 
@@ -84,9 +71,9 @@ def draw_trajectories(
         agents: name -> agent; the names are the legend's.
         corruption: what the corrupted walks meet.
         out: the PNG to write; parent folders are made.
-        seed: of the corruption's keys. fronts: what stands in front of agents, by their names.
+        seed: of the corruption's keys. guards: of agents, by their names.
     """
-    walks = list(walked(agents, world, episode, corruption, seed, fronts))
+    walks = list(walked(agents, world, episode, corruption, seed, guards))
     entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
     above, below, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
@@ -147,13 +134,13 @@ def write_pictures(
     folder: Path | str,
     *,
     seed: int = 0,
-    fronts: Mapping[str, Front] | None = None,
+    guards: Mapping[str, Guards] | None = None,
 ) -> list[Path]:
     """Draw the first ``PICTURES`` episodes that training won back, and ``sheet.png`` with all.
 
     ``agents`` are before and after, by the names in ``rows`` (``won_back`` is the rule). Where
     nothing was won back, or there is one agent alone, the first corrupted row is drawn instead. Of
-    a world without poses there are none. ``fronts``: what stands in front of agents, by name.
+    a world without poses there are none. ``guards``: of agents, by name.
     """
     if POSE not in world.sensors:
         return []
@@ -167,7 +154,7 @@ def write_pictures(
         safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]  # an id may hold what no file name should
         out = Path(folder) / f"{safe}-{corruption.name}.png"
         episode = known[episode_id]
-        written.append(draw_trajectories(agents, world, episode, corruption, out, seed, fronts))
+        written.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
     return [*written, contact_sheet(written, Path(folder) / "sheet.png")] if written else []
 
 
@@ -198,11 +185,11 @@ def walked(
     episode: Episode,
     corruption: Corruption,
     seed: int,
-    fronts: Mapping[str, Front] | None = None,
+    guards: Mapping[str, Guards] | None = None,
 ) -> Iterator[Walk]:
     """Walk ``episode`` and yield the walks: the first agent's clean one, then each one's corrupted.
 
-    Keys and measures are those of an evaluation with ``seed``, and with ``fronts`` by name.
+    Keys and measures are those of an evaluation with ``seed``. ``guards``: of agents, by name.
     """
     plans: list[tuple[str, str, Corruption, str]] = []
     for index, name in enumerate(agents):
@@ -211,11 +198,9 @@ def walked(
         colour = CORRUPTED_WALKS[index % len(CORRUPTED_WALKS)]
         plans.append((f"{name}, {label(corruption.name)}", name, corruption, colour))
     for title, name, met, colour in plans:
-        traced, front = Traced(world), (fronts or {}).get(name, Front())
-        repaired = front.repaired(instruction(episode, met, seed))
-        measures: dict[str, Any] = run_episode(
-            agents[name], traced, episode, met, seed, repaired, front.restorer
-        )
+        traced = Traced(world)
+        before = (guards or {}).get(name, NO_GUARDS)
+        measures: dict[str, Any] = run_episode(agents[name], traced, episode, met, seed, before)
         left = measures.get("distance_to_goal", np.nan)
         path, won = np.array(traced.path), bool(measures["success"])
         yield Walk(title, path, won, left, colour, name, met, measures)

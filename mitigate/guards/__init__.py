@@ -1,1 +1,1 @@
-"""What stands between inputs and an agent at run time: restored frames and checked instructions."""
+"""Guards between a world and an agent: they change what an agent hears and sees at run time."""

@@ -17,8 +17,7 @@ from typing import Any
 import cv2
 import hydra
 import numpy as np
-from hydra.core.config_store import ConfigStore
-from omegaconf import MISSING, DictConfig
+from omegaconf import MISSING, DictConfig, OmegaConf
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, make_folder, write_bytes
@@ -41,7 +40,7 @@ TOPICS = {
 
 
 @dataclass
-class DriveConfig:
+class ExportDriveConfig:
     """Types of ``conf/export_drive.yaml``; the meaning of each entry is written there."""
 
     split: str = "val_unseen"
@@ -51,11 +50,11 @@ class DriveConfig:
     env: Any = MISSING
 
 
-ConfigStore.instance().store(name="export_drive_schema", node=DriveConfig)
+conf.register("export_drive", ExportDriveConfig)
 
 
-def run(cfg: DictConfig, out: Path) -> list[Path]:
-    """Write the drives of ``cfg`` into ``out`` and return their paths.
+def run(config: ExportDriveConfig, out: Path) -> list[Path]:
+    """Write the drives into ``out`` and return their paths.
 
     Each is there whole or not at all; beside a bag its words are written first. Raises ValueError
     for an unknown form or split, for a world without an expert or with more than one camera, and,
@@ -65,13 +64,13 @@ def run(cfg: DictConfig, out: Path) -> list[Path]:
     from mitigate.core.progress import Progress
     from mitigate.evaluation.episode_lists import episodes
 
-    if cfg.form not in FORMS:
-        raise ValueError(unknown("form", cfg.form, FORMS))
-    world = build.maker(cfg.env.world)()
+    if config.form not in FORMS:
+        raise ValueError(unknown("form", config.form, FORMS))
+    world = build.Maker(config.env["world"])()
     if len(world.sensors[RGB].shape) != 3:
         raise ValueError("A drive has one camera: set env.views=1.")
-    chosen, written = episodes(cfg.env, cfg.split, cfg.episodes), []
-    paths = _paths(out, [episode.episode_id for episode in chosen], cfg.form)
+    chosen, written = episodes(OmegaConf.create(config.env), config.split, config.episodes), []
+    paths = _paths(out, [episode.episode_id for episode in chosen], config.form)
     progress = Progress("export_drive", len(chosen), unit="drive")
     with output_folder(out) as root, progress:
         for episode, path in zip(chosen, paths, strict=True):
@@ -79,10 +78,10 @@ def run(cfg: DictConfig, out: Path) -> list[Path]:
             root.check()
             with tempfile.TemporaryDirectory(prefix=".drive.", dir=out) as aside:
                 draft = Path(aside) / path.stem
-                if cfg.form == "frames":
+                if config.form == "frames":
                     write_frames(draft, steps, words)
                 else:
-                    draft = write_bag(draft, steps, cfg.form)
+                    draft = write_bag(draft, steps, config.form)
                     write_bytes(path.with_suffix(".txt"), words.encode())
                 draft.rename(path)
             written.append(path)
@@ -212,7 +211,9 @@ def hydra_main(cfg: DictConfig) -> None:
     """Hydra's entry."""
     if len(_out) != 1:
         raise ValueError(f"One folder is needed, OUT, but there are {len(_out)}. See --help.")
-    written = run(cfg, Path(_out[0]))
+    config = conf.typed(cfg, "export_drive")
+    assert isinstance(config, ExportDriveConfig)
+    written = run(config, Path(_out[0]))
     print("\n".join(f"wrote {path}" for path in written))
 
 

@@ -11,24 +11,26 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
 from itertools import product
 from pathlib import Path
 from typing import Any
 
 import hydra
-from hydra.core.config_store import ConfigStore
-from omegaconf import MISSING, DictConfig, OmegaConf
+from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
-from mitigate.core.names import short
+from mitigate.core.names import name_of, short
 from mitigate.core.options import paths_and_overrides
-from mitigate.replay.inputs import load_agents, load_recordings
+from mitigate.evaluation.conditions import conditions
+from mitigate.guards.guard import NO_GUARDS, Guards
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
+UNSAVED = ("out", "runs", "suite")  # options that change no result
 
 
 @dataclass
@@ -73,48 +75,108 @@ class ReplayConfig:
     runs: str = "runs"
     suite: Any = MISSING
 
+    @property
+    def names(self) -> list[str]:
+        """The conditions that are asked for, by name."""
+        return self.suite["conditions"] if self.conditions is None else self.conditions
 
-ConfigStore.instance().store(name="replay_schema", node=ReplayConfig)
+
+conf.register("replay", ReplayConfig)
 
 
-def run(cfg: DictConfig, paths: Sequence[str]) -> Path:
-    """Take the agents of ``cfg`` along the drives at ``paths``; return the folder of the report.
+def run(config: ReplayConfig, paths: Sequence[str]) -> Path:
+    """Take agents along the drives at ``paths``; return the folder of the report.
 
     Raises ValueError and FileNotFoundError for what is missing, damaged or does not fit.
     """
-    if not paths:
-        raise ValueError(
-            "No drive is given: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
-        )
-    if not cfg.agents:
-        raise ValueError("agents=[] are none: name folders of weights.")
-    if not 16 <= cfg.size <= 1024:
-        raise ValueError(f"size={cfg.size} must be 16 to 1024 pixels.")
-    from mitigate.evaluation.conditions import conditions
+    from mitigate.guards.opening import open_guards
 
-    names = list(cfg.suite.conditions) if cfg.conditions is None else list(cfg.conditions)
-    others = [name for name in names if name != "clean"]
-    if not others or cfg.severity == 0:
-        raise ValueError("Clean walks alone have nothing to compare: name a corruption.")
-    met = conditions(["clean", *others], cfg.severity, cfg.severity_depth)
-    from mitigate.guards.frames.restorer import restorer_of
-
-    restorer = restorer_of(cfg.restore)
-    agents = load_agents(list(cfg.agents))
-    out = Path(cfg.out or f"{cfg.runs}/replay/{_name(paths)}-s{cfg.severity:g}")
-    settings = _settings(cfg, paths, agents)
-    settings["restorer"] = None if restorer is None else restorer.hash
+    check_options(config, paths)
+    names = [name for name in config.names if name != "clean"]
+    met = conditions(["clean", *names], config.severity, config.severity_depth)
+    guards = open_guards(None, config.restore)
+    agents = load_agents(config.agents)
+    out = Path(config.out or f"{config.runs}/replay/{_name(paths)}-s{config.severity:g}")
+    settings = _settings(config, paths, agents)
+    settings["restorer"] = guards.frames_hash()
     _check_earlier(out, settings)
     views = {agent.views for agent in agents.values()}
-    recordings = load_recordings(cfg, paths, views, restorer)
+    recordings = load_recordings(config, paths, views, guards)
     with FolderLock(out):
         for name, corruption in product(agents, met):  # of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
         with atomic_text(out / SETTINGS) as file:
             json.dump(settings, file, indent=1)
         return replay(
-            agents, recordings, met, out, severity=cfg.severity, seed=cfg.seed, restorer=restorer
+            agents,
+            recordings,
+            met,
+            out,
+            severity=config.severity,
+            seed=config.seed,
+            guards=guards,
         )
+
+
+def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
+    """Raise ValueError for options that make no sense, and without a drive."""
+    if not paths:
+        raise ValueError(
+            "No drive is given: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
+        )
+    if not config.agents:
+        raise ValueError("agents=[] are none: name folders of weights.")
+    if not 16 <= config.size <= 1024:
+        raise ValueError(f"size={config.size} must be 16 to 1024 pixels.")
+    if not {*config.names} - {"clean"} or config.severity == 0:
+        raise ValueError("Clean walks alone have nothing to compare: name a corruption.")
+
+
+def load_agents(weights: Sequence[str]) -> dict[str, Any]:
+    """The agents of folders of weights, by names that differ."""
+    from mitigate.agents.loading import load
+
+    if len(set(weights)) < len(weights):
+        raise ValueError(f"agents=[{','.join(weights)}] names one folder twice.")
+    names = [name_of(folder) for folder in weights]
+    if len(set(names)) < len(names):
+        names = [folder.rstrip("/") for folder in weights]
+    return {name: load(folder) for name, folder in zip(names, weights, strict=True)}
+
+
+def load_recordings(
+    config: ReplayConfig, paths: Sequence[str], views: set[int], guards: Guards = NO_GUARDS
+) -> dict[int, list[Any]]:
+    """Every drive, for agents with a panorama (12) and for those with one camera (1). Raises
+    ValueError for a drive of which ``guards`` change no frame, before any frame is read."""
+    from mitigate.worlds.recorded import Step, Topics, kinds, load, open_recording
+
+    step = Step(**vars(config.step))
+    open_drives = partial(
+        open_recording,
+        topics=Topics(**vars(config.topics)),
+        hfov=config.hfov,
+        unit=config.unit,
+        yaw=config.yaw,
+        cameras=config.cameras,
+    )
+    found: dict[int, list[Any]] = {count: [] for count in views}
+    sources = [source for path in paths for source in open_drives(path)]
+    for source, count in product(sources if guards else [], views):
+        guards.check_shown(kinds(source, count), source.name)
+    for source, count in product(sources, views):
+        drive = load(source, views=count, size=config.size, step=step)
+        words = config.instruction or drive.instruction
+        if not words:
+            raise ValueError(
+                f"{drive.name} says no instruction: give instruction='\"walk to the door\"'."
+            )
+        found[count].append(replace(drive, instruction=words))
+    for drives in found.values():
+        twice = {drive.name for drive in drives if sum(d.name == drive.name for d in drives) > 1}
+        if twice:
+            raise ValueError(f"Two drives are called {twice.pop()!r}: rename one.")
+    return found
 
 
 def _name(paths: Sequence[str]) -> str:
@@ -124,14 +186,14 @@ def _name(paths: Sequence[str]) -> str:
     return (first.stem if first.is_file() else first.name) + more
 
 
-def _settings(cfg: DictConfig, paths: Sequence[str], agents: Mapping[str, Any]) -> dict[str, Any]:
+def _settings(
+    config: ReplayConfig, paths: Sequence[str], agents: Mapping[str, Any]
+) -> dict[str, Any]:
     """What makes the report what it is, as data."""
     from mitigate.core.checkpoint import weights_sha
 
-    said = OmegaConf.to_container(cfg, resolve=True)
-    assert isinstance(said, dict)
-    kept = {str(key): value for key, value in said.items() if key not in ("out", "runs", "suite")}
-    kept["conditions"] = kept["conditions"] or list(cfg.suite.conditions)
+    kept = {key: value for key, value in asdict(config).items() if key not in UNSAVED}
+    kept["conditions"] = config.conditions or config.suite["conditions"]
     shas = {name: weights_sha(agent) for name, agent in agents.items()}
     return {**kept, "drives": [str(Path(path).resolve()) for path in paths], "weights": shas}
 
@@ -161,16 +223,16 @@ def replay(
     *,
     severity: float,
     seed: int,
-    restorer: Any = None,
+    guards: Guards = NO_GUARDS,
 ) -> Path:
     """Walk ``agents`` (by name) along ``recordings`` (by their number of views) under the
-    corruptions ``met``, clean first, behind ``restorer`` if there is one; write the report into
+    corruptions ``met``, clean first, behind ``guards`` if there are any; write the report into
     ``out`` and return it."""
     from mitigate.core.progress import Progress
-    from mitigate.replay import changes, report
-    from mitigate.replay.walk import Answers, lines, walk
+    from mitigate.replay import report
+    from mitigate.replay.walk import Answers, Changes, compare, lines, walk
 
-    found: dict[str, dict[str, changes.Changes]] = {}
+    found: dict[str, dict[str, Changes]] = {}
     pictures: list[Path] = []
     steps = [len(drive.times) for drive in next(iter(recordings.values()))]
     total = len(agents) * len(met) * len(steps)
@@ -188,7 +250,7 @@ def replay(
                 for drive in drives:
                     clean = answers["clean"].get(drive.name)
                     here[drive.name] = walk(
-                        agent, drive, corruption, seed, clean=clean, restorer=restorer
+                        agent, drive, corruption, seed, clean=clean, guards=guards
                     )
                     told = {"agent": name, "condition": corruption.name}
                     told |= {"severity": corruption.severity, "seed": seed}
@@ -196,11 +258,9 @@ def replay(
                     file.writelines(json.dumps(line) + "\n" for line in made)
                     progress.advance(note=f"{name}, {corruption.name}")
             known = answers["clean"]
-            found[name] = {n: changes.compare(drives, known, a) for n, a in answers.items()}
-            pictures += _picture(
-                name, agent, drives, met, found[name], answers, seed, out, restorer
-            )
-    text = report.table(found, severity, sum(steps), len(steps), restorer)
+            found[name] = {n: compare(drives, known, a) for n, a in answers.items()}
+            pictures += _picture(name, agent, drives, met, found[name], answers, seed, out, guards)
+    text = report.table(found, severity, sum(steps), len(steps), guards)
     with atomic_text(out / TABLE) as table:
         table.write(text)
     print(text.partition("\nFalse stops")[0])
@@ -236,7 +296,7 @@ def _picture(
     answers: Mapping[str, Mapping[str, Any]],
     seed: int,
     out: Path,
-    restorer: Any,
+    guards: Guards,
 ) -> list[Path]:
     """A picture of decisions that the worst corruption of frames changed, if it changed any."""
     from mitigate.replay import report
@@ -255,7 +315,7 @@ def _picture(
     if not steps:
         return []
     clean = answers["clean"][drive.name]
-    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, restorer=restorer)
+    again = walk(agent, drive, worst, seed, keep=steps, clean=clean, guards=guards)
     path = _picture_file(out, name, worst.name)
     return [report.picture(drive, worst, clean, again, path)]
 
@@ -270,7 +330,9 @@ _paths: list[str] = []  # the drives of the command line
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="replay")
 def hydra_main(cfg: DictConfig) -> None:
     """Hydra's entry."""
-    run(cfg, _paths)
+    config = conf.typed(cfg, "replay")
+    assert isinstance(config, ReplayConfig)
+    run(config, _paths)
 
 
 def main() -> None:

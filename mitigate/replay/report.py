@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from matplotlib.figure import Figure
 
-from mitigate.core.files import write_atomically, write_bytes
+from mitigate.core.files import write_bytes, write_figure
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.observation import DEPTH, RGB, VIEWS
 from mitigate.core.pictures import depth_picture, strip
@@ -17,9 +17,8 @@ from mitigate.corruptions import Corruption
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.plots import COLOURS, DPI, plain
 from mitigate.evaluation.sections import label
-from mitigate.guards.frames.restorer import Restorer
-from mitigate.replay.changes import FEW, Changes
-from mitigate.replay.walk import ACTIONS, Answers
+from mitigate.guards.guard import NO_GUARDS, Guards
+from mitigate.replay.walk import ACTIONS, FEW, Answers, Changes
 from mitigate.worlds.recorded import Recording
 
 Found = Mapping[str, Mapping[str, Changes]]  # agent -> condition -> changes
@@ -29,16 +28,16 @@ SIDE = 160  # pixels: height of a view in a picture
 
 
 def table(
-    found: Found, severity: float, steps: int, drives: int, restorer: Restorer | None = None
+    found: Found, severity: float, steps: int, drives: int, guards: Guards = NO_GUARDS
 ) -> str:
-    """The report as Markdown: one block for changed decisions, one for the rest. restorer: which
+    """The report as Markdown: one block for changed decisions, one for the rest. guards: which
     the frames went through."""
     agents = list(found)
     conditions = [name for name in _conditions(found) if name != "clean"]
     behind = ""
-    if restorer is not None:
-        kinds = " and ".join(restorer.nets)
-        behind = f" Frames of {kinds} went through the restorer `{restorer.hash}`."
+    if guards.frames:
+        kinds = " and ".join(guards.frames)
+        behind = f" Frames of {kinds} went through the restorer `{guards.frames_hash()}`."
     lines = [
         f"Decisions that a corruption of severity {severity:g} changes, in %, of {steps} steps in "
         f"{drives} drive{'s' * (drives > 1)}, against the same agent on clean frames. Brackets are "
@@ -109,9 +108,7 @@ def heatmap(found: Found, severity: float, path: Path) -> Path:
     axes.set_xticks(range(len(agents)), [*map(plain, agents)], rotation=25, ha="right", fontsize=9)
     axes.set_yticks(range(len(names)), [label(name) for name in names], fontsize=9)
     axes.set_title(f"changed decisions, %, severity {severity:g}", fontsize=10)
-    return write_atomically(
-        path, lambda draft: figure.savefig(draft, dpi=DPI, facecolor="white", format="png")
-    )
+    return write_figure(path, figure, dpi=DPI, facecolor="white")
 
 
 def spread(changed: Sequence[int]) -> list[int]:

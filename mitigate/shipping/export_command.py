@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from mitigate.core import build, conf, settings
 from mitigate.core.options import paths_and_overrides
+from mitigate.evaluation import config as _options  # noqa: F401 - registers them
 from mitigate.evaluation.episode_lists import episodes
 
 if TYPE_CHECKING:  # nothing slow is imported before main() has read the command line

@@ -1,4 +1,4 @@
-"""The batches of a recipe, made of pieces by workers, some steps early, or in this process.
+"""The batches of an objective, made of pieces by workers, some steps early, or in this process.
 
 How many pieces a step has does not depend on the number of workers, and each is the same wherever
 it is made. So any number of workers, none included, gives the same batches.
@@ -12,24 +12,24 @@ from typing import Any, NamedTuple
 import torch
 
 from mitigate.core import precision
+from mitigate.training.objective import Objective, do
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe, do
 from mitigate.training.workers import Workers
 
 AHEAD = 4  # steps whose pieces are ordered before they are needed (ours)
 
 
 class Batches:
-    """The batches of ``recipe`` up to ``steps``, made on ``device`` in the precision ``kind``.
+    """The batches of ``objective`` up to ``steps``, made on ``device`` in the precision ``kind``.
 
-    Pieces that do not depend on the weights (``recipe.ahead``) are ordered ``AHEAD`` steps early,
-    those that do ``lag`` steps, if that is above 0: they are made with weights that old. None is
-    ordered across a multiple of ``save_every``, so a run resumed from there makes the same ones.
+    Pieces that do not depend on the weights (``objective.ahead``) are ordered ``AHEAD`` steps
+    early. Those that do are ordered ``lag`` steps early, with weights that old. None is ordered
+    across a multiple of ``save_every``, so a run resumed from there makes the same ones.
     """
 
     def __init__(
         self,
-        recipe: Recipe,
+        objective: Objective,
         workers: Workers | None,
         steps: int,
         kind: str,
@@ -38,7 +38,7 @@ class Batches:
         lag: int = 0,
         save_every: int = 0,
     ) -> None:
-        self.recipe, self.steps, self.kind, self.device = recipe, steps, kind, device
+        self.objective, self.steps, self.kind, self.device = objective, steps, kind, device
         self.workers = workers if workers is not None and len(workers) else None
         self.ranks, self.lag, self.save_every = ranks or Ranks(), lag, save_every
         self._ordered: deque[_Order] = deque()
@@ -46,15 +46,17 @@ class Batches:
 
     def batch(self, step: int) -> dict[str, Any]:
         """Return the batch of ``step``; steps are asked for in order."""
-        recipe = self.recipe
-        early = not recipe.here and (self.workers is not None or (self.lag and not recipe.ahead))
+        objective = self.objective
+        early = not objective.here and (
+            self.workers is not None or (self.lag and not objective.ahead)
+        )
         jobs = self._jobs(step) if early and not self._ordered else []
         if not self._ordered and not jobs:
             with precision.computing(self.kind, self.device):
                 return self._alone(step)
-        fresh = self._taken and not recipe.ahead and self._last(step) > self._newest(step)
+        fresh = self._taken and not objective.ahead and self._last(step) > self._newest(step)
         if fresh and self.workers is not None:
-            self.workers.send_weights(recipe)
+            self.workers.send_weights(objective)
         if jobs:
             self._order(step, jobs)
         while self._newest(step) < self._last(step):
@@ -64,7 +66,7 @@ class Batches:
 
     def _last(self, step: int) -> int:
         """The last step whose pieces may be ordered when ``step`` is due."""
-        if self.recipe.ahead:
+        if self.objective.ahead:
             return min(step + AHEAD, self.steps - 1)
         saved = step - step % self.save_every + self.save_every if self.save_every else self.steps
         return min(step + self.lag, saved - 1, self.steps - 1)
@@ -74,25 +76,25 @@ class Batches:
         return self._ordered[-1].step if self._ordered else step - 1
 
     def _jobs(self, step: int) -> list[Any]:
-        """This rank's jobs of a step; none if the recipe makes its batches alone."""
-        jobs = self.recipe.jobs(step)
+        """This rank's jobs of a step; none if the objective makes its batches alone."""
+        jobs = self.objective.jobs(step)
         return self.ranks.share(jobs) if jobs else []
 
     def _alone(self, step: int) -> dict[str, Any]:
         """The batch of ``step``, made in this process."""
         if self.ranks.count == 1:
-            return self.recipe.batch(step)
-        jobs = self.ranks.share(self.recipe.jobs(step))
-        return self.recipe.collate(step, [do(self.recipe, job) for job in jobs])
+            return self.objective.batch(step)
+        jobs = self.ranks.share(self.objective.jobs(step))
+        return self.objective.collate(step, [do(self.objective, job) for job in jobs])
 
     def _order(self, step: int, jobs: list[Any]) -> None:
         """Have the pieces of ``step`` made, with the weights of now."""
         if self.workers is None:
             with precision.computing(self.kind, self.device):
-                self._ordered.append(_Order(step, 0, [do(self.recipe, job) for job in jobs]))
+                self._ordered.append(_Order(step, 0, [do(self.objective, job) for job in jobs]))
             return
         if not self._taken:
-            self.workers.take(self.recipe, self.kind)
+            self.workers.take(self.objective, self.kind)
             self._taken = True
         self.workers.order(jobs, self._turn(step))
         self._ordered.append(_Order(step, len(jobs), []))
@@ -102,13 +104,13 @@ class Batches:
         order = self._ordered.popleft()
         assert order.step == step, f"step {step} was asked for, {order.step} is next"
         if self.workers is None:
-            return self.recipe.collate(step, order.pieces)
-        return self.recipe.collate(step, self.workers.receive(order.awaited, self._turn(step)))
+            return self.objective.collate(step, order.pieces)
+        return self.objective.collate(step, self.workers.receive(order.awaited, self._turn(step)))
 
     def _turn(self, step: int) -> int:
         """Whose turn ``step`` is; jobs that need the weights of now are never of two steps at
         once."""
-        return step if self.recipe.ahead or self.lag else 0
+        return step if self.objective.ahead or self.lag else 0
 
 
 class _Order(NamedTuple):

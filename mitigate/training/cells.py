@@ -1,24 +1,27 @@
-"""The cells of a table: a column under one seed, what trains it, and what measures it."""
+"""The options of a table, and its cells: a column with one seed, its training and evaluations."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
-from omegaconf import DictConfig, ListConfig
+from omegaconf import MISSING, DictConfig
 
 from mitigate.cluster import programs
 from mitigate.core import build, conf
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
+from mitigate.evaluation import config as evaluate_options
 from mitigate.evaluation.conditions import conditions
+from mitigate.evaluation.config import EvaluateConfig, SuiteConfig, open_entries
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.rows import ROWS
 from mitigate.guards.text import choices
-from mitigate.training import train
+from mitigate.training import config as train_options
 
 LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
@@ -26,6 +29,43 @@ OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")  # of a training
 CELLS = ("agent", "checkpoint", "name", "seed", "out")  # a further evaluation does not say these
 PLACES = ("seed", "folder", "out", "workers", "evaluation")  # nor a column these
 MEASURED = ("split", "episodes", "conditions", "severity")  # nor, if it does not train, these
+
+
+@dataclass
+class TablesConfig:
+    """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, where each entry's meaning is."""
+
+    runs: str = "runs"
+    out: str = "runs/table"
+    rows: list[str] = field(default_factory=list)
+    columns: dict[str, Any] = field(default_factory=dict)
+    seeds: list[int] = field(default_factory=list)
+    split: str = "val_unseen"
+    episodes: int | None = None
+    suite: Any = MISSING  # read: a SuiteConfig
+    conditions: list[str] | None = None
+    severity: float = 0.6
+    evaluations: dict[str, Any] = field(default_factory=dict)
+    train: list[str] = field(default_factory=list)
+    jobs: int = 2
+    launcher: Any = MISSING  # read: a LauncherConfig
+    walks: list[str] = field(default_factory=list)
+    paper: dict[str, Any] = field(default_factory=dict)
+
+
+for _primary in ("table1", "table2"):
+    conf.register(_primary, TablesConfig, schema="tables")
+
+
+def read_options(cfg: DictConfig) -> TablesConfig:
+    """Return the composed options of a table as typed data.
+
+    Raises:
+        ValueError: for an entry that refers to a missing one.
+    """
+    config: TablesConfig = conf.typed(cfg, "table2")
+    config.suite = open_entries(SuiteConfig, config.suite)
+    return config
 
 
 @dataclass(frozen=True)
@@ -80,37 +120,37 @@ class Cell:
         files = [*(self.folder / "run").glob("*/step-*.pt")] if kind == "train" else [rows]
         return sorted((str(file), file.stat().st_mtime_ns) for file in files if file.is_file())
 
-    def commands(self, cfg: DictConfig) -> list[tuple[str, list[str]]]:
+    def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
         """What makes the cell: ("train", "evaluate" or "evaluate NAME", arguments after
         ``python -m``)."""
         found = []
         if self.trains:
             found.append(("train", ["mitigate.train", *self.training]))
-        main = [f"conditions=[{','.join(measured(cfg))}]"]
-        for name, options in {"": main, **listed(cfg, "evaluations")}.items():
+        main = [f"conditions=[{','.join(measured(config))}]"]
+        for name, options in {"": main, **listed(config.evaluations, "evaluations")}.items():
             kind = f"evaluate {name}" if name else "evaluate"
-            found.append((kind, ["mitigate.evaluate", *self.measurement(cfg, name, options)]))
+            found.append((kind, ["mitigate.evaluate", *self.measurement(config, name, options)]))
         return found
 
-    def measurement(self, cfg: DictConfig, name: str, options: Sequence[str]) -> list[str]:
+    def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
         """The options of one of the cell's evaluations; ``options`` are those that it has beside,
         or in place of, the table's; of episodes at most as many as that has."""
         return [
             f"name={self.column}",
             *self.agent,  # which may have a name of its own
             f"seed={self.seed}",
-            f"split={cfg.split}",
-            f"episodes={'null' if cfg.episodes is None else cfg.episodes}",
-            f"severity={cfg.severity}",
-            *(_at_most(cfg.episodes, option) for option in options),
+            f"split={config.split}",
+            f"episodes={'null' if config.episodes is None else config.episodes}",
+            f"severity={config.severity}",
+            *(_at_most(config.episodes, option) for option in options),
             f"out={self.further(name)}",
         ]
 
-    def chain(self, cfg: DictConfig) -> programs.Chain:
+    def chain(self, config: TablesConfig) -> programs.Chain:
         """The programs that make the cell, on one core."""
         return programs.Chain(
             f"{self.column}, seed {self.seed}",
-            tuple((kind, programs.python(*words)) for kind, words in self.commands(cfg)),
+            tuple((kind, programs.python(*words)) for kind, words in self.commands(config)),
             (self.folder / LOG).resolve(),
             Path.cwd(),
             {"OMP_NUM_THREADS": "1", "PYTHON_CPU_COUNT": "1"},
@@ -153,27 +193,27 @@ def _at_most(most: int | None, option: str) -> str:
     return f"episodes={most if value == 'null' else min(most, int(value))}"
 
 
-def cells(cfg: DictConfig) -> list[Cell]:
+def cells(config: TablesConfig) -> list[Cell]:
     """All cells of the table, seed by seed, so that a partial table holds every column."""
-    columns = listed(cfg, "columns")
-    if not cfg.seeds or not columns or cfg.jobs < 1:
+    columns = listed(config.columns, "columns")
+    if not config.seeds or not columns or config.jobs < 1:
         raise ValueError(
-            f"columns, seeds ({list(cfg.seeds)}) and jobs ({cfg.jobs}) must not be empty or 0."
+            f"columns, seeds ({config.seeds}) and jobs ({config.jobs}) must not be empty or 0."
         )
-    out = Path(cfg.out)
+    out = Path(config.out)
     return [
-        Cell(column, options, seed, out / "cells" / f"{column}-seed{seed}", tuple(cfg.train))
-        for seed in cfg.seeds
+        Cell(column, options, seed, out / "cells" / f"{column}-seed{seed}", tuple(config.train))
+        for seed in config.seeds
         for column, options in columns.items()
     ]
 
 
-def listed(cfg: DictConfig, place: str) -> dict[str, tuple[str, ...]]:
+def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]:
     """The options of each of the ``columns`` or ``evaluations``; one that is null is left out.
     Raises ValueError for what is no list of options."""
-    found = {str(name): options for name, options in cfg[place].items() if options is not None}
+    found = {str(name): options for name, options in entries.items() if options is not None}
     for name, options in found.items():
-        if not isinstance(options, ListConfig) or not all(isinstance(o, str) for o in options):
+        if not isinstance(options, list) or not all(isinstance(o, str) for o in options):
             raise ValueError(
                 f"{place}.{name}={options} must be a list of options, in quotes for the shell: "
                 f"'{place}.{name}=[\"{EXAMPLES[place]}\"]'."
@@ -181,35 +221,35 @@ def listed(cfg: DictConfig, place: str) -> dict[str, tuple[str, ...]]:
     return {name: tuple(options) for name, options in found.items()}
 
 
-def measured(cfg: DictConfig) -> list[str]:
+def measured(config: TablesConfig) -> list[str]:
     """The names of the conditions that every cell is evaluated under."""
-    return list(cfg.suite.conditions if cfg.conditions is None else cfg.conditions)
+    return list(config.suite.conditions if config.conditions is None else config.conditions)
 
 
-def check(made: Sequence[Cell], cfg: DictConfig) -> None:
+def check(made: Sequence[Cell], config: TablesConfig) -> None:
     """Raise ValueError for seeds that come twice, for options of a column or a further evaluation,
     a split and conditions that there are not, and for a cell that holds another agent's rows."""
-    from mitigate.agents import loading  # brings torch
+    from mitigate.training import plan  # brings torch
 
-    if len({*cfg.seeds}) < len(cfg.seeds):
-        raise ValueError(f"seeds={list(cfg.seeds)} names one twice: two cells would be one folder.")
+    if len({*config.seeds}) < len(config.seeds):
+        raise ValueError(f"seeds={config.seeds} names one twice: two cells would be one folder.")
     own = "which gives each cell a seed, a folder and one core, and evaluates it itself."
-    _check_own(cfg.train, PLACES, own)
-    conditions(measured(cfg), cfg.severity, None)
+    _check_own(config.train, PLACES, own)
+    conditions(measured(config), config.severity, None)
     for cell in made:
         cell.check_kept()
-        if cell.seed == cfg.seeds[0]:
+        if cell.seed == config.seeds[0]:
             try:
                 taken = PLACES if cell.trains else (*PLACES, *MEASURED)
                 _check_own(cell.options, taken, "for all columns alike.")
                 if cell.trains:
-                    train.check(conf.composed("train", cell.training))
-                node = conf.composed("evaluate", loading.with_kind(cell.agent))
-                episodes(node.env, cfg.split, cfg.episodes)
-                _check_fronts(node)
+                    plan.check(train_options.read(conf.composed("train", cell.training)))
+                evaluation = evaluation_of(cell.agent)
+                episodes(evaluation.env, config.split, config.episodes)
+                _check_guards(evaluation)
             except (ValueError, FileNotFoundError) as error:
                 raise ValueError(f"Column {cell.column}: {error}") from error
-    for name, options in listed(cfg, "evaluations").items():
+    for name, options in listed(config.evaluations, "evaluations").items():
         try:
             _check_own(
                 options,
@@ -218,13 +258,11 @@ def check(made: Sequence[Cell], cfg: DictConfig) -> None:
                 "may have suite, conditions, severity, severity_depth, split, episodes, safeguard, "
                 "restore and entries of env and agent.",
             )
-            node = conf.composed(
-                "evaluate", loading.with_kind(made[0].measurement(cfg, name, options))
-            )
-            chosen = node.suite.conditions if node.conditions is None else node.conditions
-            conditions(list(chosen), node.severity, node.severity_depth)
-            episodes(node.env, node.split, node.episodes)
-            _check_fronts(node)
+            evaluation = evaluation_of(made[0].measurement(config, name, options))
+            names, severity = evaluation.condition_names, evaluation.severity
+            conditions(names, severity, evaluation.severity_depth)
+            episodes(evaluation.env, evaluation.split, evaluation.episodes)
+            _check_guards(evaluation)
         except (ValueError, FileNotFoundError) as error:
             raise ValueError(f"Evaluation {name}: {error}") from error
 
@@ -239,10 +277,17 @@ def _check_own(options: Sequence[str], taken: Sequence[str], why: str) -> None:
             raise ValueError(f"{option} is for the table to say, {why}")
 
 
-def _check_fronts(node: DictConfig) -> None:
-    """Raise ValueError or FileNotFoundError for a safeguard or a restorer that there is not."""
-    choices.check(node.safeguard)
-    if node.restore is not None:
-        from mitigate.guards.frames.restorer import restorer_of
+def evaluation_of(options: Sequence[str]) -> EvaluateConfig:
+    """Return the typed options of an evaluation, with the kind of agent of its weights."""
+    from mitigate.agents.loading import with_kind  # brings torch
 
-        restorer_of(node.restore, build.maker(node.env.world)().sensors)
+    return evaluate_options.read(conf.composed("evaluate", with_kind(options)))
+
+
+def _check_guards(config: EvaluateConfig) -> None:
+    """Raise ValueError or FileNotFoundError for a missing safeguard or restorer."""
+    choices.check(config.safeguard)
+    if config.restore is not None:
+        from mitigate.guards.opening import open_restorer
+
+        open_restorer(config.restore, build.maker(config.env.world)().sensors)

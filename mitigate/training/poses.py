@@ -1,10 +1,10 @@
-"""Batches of corrupted panoramas from random poses with their labels, for recipes that teach
+"""Batches of corrupted panoramas from random poses with their labels, for objectives that teach
 encoders. They depend on no weights, so workers make them ahead of time."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import torch
@@ -13,8 +13,8 @@ from mitigate.core.observation import RGB, VIEWS
 from mitigate.core.pictures import side_by_side
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
+from mitigate.training.objective import Objective
 from mitigate.training.parts import OWN, SEEING, hold_statistics
-from mitigate.training.recipe import Recipe
 from mitigate.training.success import measure
 from mitigate.worlds.episodes import share_of
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
@@ -28,17 +28,22 @@ VIEWS_ALONE = (
 
 
 class Poses:
-    """Args:
-    agent: whose success rates a success-distributed schedule without rates starts from, on
-    ``refresh_episodes`` episodes of ``training`` each.
-    world: makes a world that can look from anywhere (``worlds/world.py``). sensor: "rgb" or
-    "depth". label: the entry of its truth that is learned, None: none, then the targets are empty.
-    panoramas: a batch. every: of the views
-    of a panorama, only every second one is learned from (2), since neighbours overlap, or all (1).
-    own: draw corruptions of this sensor alone; else those of the other leave its frames clean.
+    """The source of batches of panoramas from random poses, corrupted and clean.
 
-    Raises ValueError for an unknown sensor, for no panoramas, and for a world that cannot look from
-    anywhere.
+    Args:
+        agent: whose success rates a success-distributed schedule without rates starts from.
+        world: makes a world that can look from anywhere (``worlds/world.py``).
+        training: the episodes of a measurement of success rates.
+        modality: the sensor, "rgb" or "depth".
+        schedule: which panorama is corrupted by what; None: frames stay clean.
+        panoramas: per batch.
+        seed: of poses and corruptions.
+        refresh_episodes: episodes per corruption of such a measurement.
+        own: draw corruptions of this sensor alone; else those of the other leave its frames clean.
+
+    Raises:
+        ValueError: for an unknown sensor, for no panoramas, and for a world that cannot look from
+            anywhere.
     """
 
     def __init__(
@@ -46,26 +51,39 @@ class Poses:
         agent: Any,
         world: Callable[[], Any],
         training: TrainingEpisodes,
-        schedule: Schedule,
-        *,
-        sensor: str,
-        label: str | None,
-        panoramas: int,
-        every: int,
-        seed: int,
+        modality: str,
+        schedule: Schedule | None = None,
+        panoramas: int = 12,
+        seed: int = 0,
         refresh_episodes: int = 8,
         own: bool = False,
     ) -> None:
-        if sensor not in ("rgb", "depth"):
-            raise ValueError(f"modality={sensor!r} is unknown; choose 'rgb' or 'depth'.")
+        if modality not in ("rgb", "depth"):
+            raise ValueError(f"modality={modality!r} is unknown; choose 'rgb' or 'depth'.")
         if panoramas < 1:
             raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")
-        self.agent, self.make_world, self.training = agent, world, training
-        self.schedule = schedule.only(sensor) if own else schedule
-        self.sensor, self.label, self.panoramas, self.every = sensor, label, panoramas, every
-        self.seed, self.refresh_episodes = seed, refresh_episodes
+        schedule = schedule or Schedule("clean", 0.0)
+        self.agent = agent
+        self.make_world = world
+        self.training = training
+        self.sensor = modality
+        self.schedule = schedule.only(modality) if own else schedule
+        self.panoramas = panoramas
+        self.seed = seed
+        self.refresh_episodes = refresh_episodes
+        self.label: str | None = None
+        self.every = 1
         self._world: Placeable | None = None
         self._last: np.ndarray | None = None
+
+    def learn(self, label: str, every: int) -> None:
+        """Give ``label``, an entry of the world's truth, as targets; without it they are empty.
+
+        Learn from every second view of a panorama only (2), since neighbours overlap, or from all
+        of them (1).
+        """
+        self.label = label
+        self.every = every
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_world": None}
@@ -168,9 +186,10 @@ class Poses:
         return np.zeros(0, np.float32) if self.label is None else truth[self.label]
 
 
-class OnViews(Recipe):
-    """A recipe that teaches encoders on the views of ``poses``, which its constructor makes."""
+class OnViews(Objective):
+    """An objective that teaches encoders on the views of the ``poses`` that it receives."""
 
+    sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"poses": Poses}
     ahead = True
     needs = SEEING
     otherwise = VIEWS_ALONE

@@ -3,6 +3,7 @@ frames of a folder."""
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Protocol
@@ -13,8 +14,8 @@ import torch
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.corruptions.suite import SENSOR
-from mitigate.encoders.frames import Frames, collect, corrupted
-from mitigate.encoders.sources import TRAIN, source_of
+from mitigate.encoders.sources import TRAIN, Frames, collect, corrupted, source_of
+from mitigate.training import success
 from mitigate.training.poses import Poses
 from mitigate.worlds.world import TrainingEpisodes
 
@@ -26,6 +27,8 @@ class Pairs(Protocol):
     depend on no worker. ``ring``: whether the views of an instant are of one panorama."""
 
     ring: bool
+    sensor: str
+    schedule: Schedule
 
     def start(self) -> None: ...
 
@@ -47,16 +50,12 @@ class PosePairs(Poses):
         agent: Any,
         world: Callable[[], Any],
         training: TrainingEpisodes,
+        modality: str,
         schedule: Schedule,
-        *,
-        sensor: str,
         panoramas: int,
         seed: int,
     ) -> None:
-        super().__init__(
-            agent, world, training, schedule, sensor=sensor, label=None, panoramas=panoramas,
-            every=1, seed=seed,
-        )  # fmt: skip
+        super().__init__(agent, world, training, modality, schedule, panoramas, seed, own=True)
         self.ring = False
 
     def start(self) -> None:
@@ -99,6 +98,8 @@ class FramePairs:
         seed: int,
         far: float,
     ) -> None:
+        if panoramas < 1:
+            raise ValueError(f"recipe.panoramas={panoramas} a step are none: give 1 or more.")
         self.depth = replace(SENSOR, z_max=far)
         self.source = source_of(world, sensor, None, "", None)
         self.schedule, self.sensor, self.seed = schedule, sensor, seed
@@ -148,13 +149,31 @@ def pairs_of(
     agent: Any,
     world: Callable[[], Any],
     training: TrainingEpisodes | None,
+    modality: str,
     schedule: Schedule,
-    **how: Any,
+    panoramas: int = 4,
+    frames: int = 4800,
+    seed: int = 0,
 ) -> Pairs:
-    """The pairs of an ``env`` config: of a world, or of a folder of frames, which has no training
-    episodes. ``how``: sensor, panoramas, seed; and frames, for a folder alone."""
-    frames = how.pop("frames")
+    """Return the pairs of an ``env`` config: of a world, or of a folder of frames.
+
+    A folder has no ``training`` episodes, and ``frames`` of it are read, once.
+
+    Raises:
+        ValueError: for a schedule by success.
+    """
+    success.refuse(schedule)
     if training is None:
-        far = agent.parts()[how["sensor"]].far
-        return FramePairs(world, schedule, frames=frames, far=far, **how)
-    return PosePairs(agent, world, training, schedule, **how)
+        far = agent.parts()[modality].far
+        own = schedule.only(modality)
+        return FramePairs(
+            world, own, sensor=modality, frames=frames, panoramas=panoramas, seed=seed, far=far
+        )
+    return PosePairs(agent, world, training, modality, schedule, panoramas, seed)
+
+
+def with_clean_share(pairs: Pairs, share: float) -> Pairs:
+    """Return ``pairs`` of which a ``share`` stays clean; neither has been started."""
+    copied = copy.copy(pairs)
+    copied.schedule = replace(pairs.schedule, clean_share=share)
+    return copied

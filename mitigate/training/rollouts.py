@@ -1,4 +1,4 @@
-"""Batches of decisions that an agent takes in corrupted worlds, for recipes that imitate.
+"""Batches of decisions that an agent takes in corrupted worlds, for objectives that imitate.
 
 Every step rolls out a few training episodes with the current weights under the schedule's
 corruptions; its batch is all their decisions.
@@ -6,8 +6,8 @@ corruptions; its batch is all their decisions.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -16,9 +16,8 @@ from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.training import limits
+from mitigate.training.objective import Objective, check_share
 from mitigate.training.parts import OWN, TRAINABLE, hold_statistics
-from mitigate.training.recipe import Recipe
 from mitigate.training.success import measure, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
@@ -26,19 +25,24 @@ PIECES = 4  # jobs that the episodes of a step are shared out to (ours)
 
 
 class Rollouts:
-    """Args:
-    agent: walks with its current weights, and gives the batches (``agents/agent.py``).
-    world: makes a world. training: where episodes come from. schedule: which frame is corrupted by
-    what, a success-distributed one by rates of ``agent``.
-    episodes: a step. expert_share: of their decisions that the expert takes.
-    prior: rows of one earlier evaluation, from which a success-distributed schedule starts.
-    refresh_every: steps between two measurements of the success rates that such a schedule draws
-    by, each on ``refresh_episodes`` training episodes under every corruption; 0: none after the
-    first, which is made where there are no rates.
-    clean: keep what there was to see before the corruption; ``teachers`` compute from it what does
-    not change.
+    """The source of batches of decisions: rollouts of ``agent`` under a schedule of corruptions.
 
-    Raises ValueError for no episodes, for a share that is none, and as ``prior_rates`` does.
+    Args:
+        agent: acts with its current weights, and gives the batches (``agents/agent.py``).
+        world: makes a world.
+        training: where episodes come from.
+        schedule: which frame is corrupted by what, a success-distributed one by success rates of
+            ``agent``; None: frames stay clean.
+        episodes: per step.
+        follow_oracle: share of their decisions that the expert takes.
+        seed: of episodes, corruptions and actions.
+        prior: rows of one earlier evaluation, from which a success-distributed schedule starts.
+        refresh_every: steps between two measurements of the success rates that such a schedule
+            draws by; 0: none after the first, which is made where there are no rates.
+        refresh_episodes: training episodes per corruption of such a measurement.
+
+    Raises:
+        ValueError: for no episodes, for an invalid share, and as ``prior_rates`` does.
     """
 
     def __init__(
@@ -46,27 +50,39 @@ class Rollouts:
         agent: Any,
         world: Callable[[], World],
         training: TrainingEpisodes,
-        schedule: Schedule,
-        *,
-        episodes: int,
-        expert_share: float,
-        seed: int,
+        schedule: Schedule | None = None,
+        episodes: int = 3,
+        follow_oracle: float = 0.5,
+        seed: int = 0,
         prior: str | None = None,
         refresh_every: int = 0,
         refresh_episodes: int = 8,
-        clean: bool = False,
-        teachers: Sequence[Any] = (),
     ) -> None:
-        if episodes < 1:
-            raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")
-        limits.check_share("follow_oracle", expert_share)
-        self.agent, self.world, self.training, self.schedule = agent, world, training, schedule
-        self.episodes, self.expert_share, self.seed = episodes, expert_share, seed
-        self.prior, self.refresh_every = prior, refresh_every
-        self.refresh_episodes, self.clean, self.teachers = refresh_episodes, clean, teachers
+        check_episodes(episodes)
+        check_share("follow_oracle", follow_oracle)
+        self.agent = agent
+        self.world = world
+        self.training = training
+        self.schedule = schedule or Schedule("clean", 0.0)
+        self.episodes = episodes
+        self.follow_oracle = follow_oracle
+        self.seed = seed
+        self.prior = prior
+        self.refresh_every = refresh_every
+        self.refresh_episodes = refresh_episodes
+        self.clean = False
+        self.teachers: tuple[Any, ...] = ()
         self.picture: np.ndarray | None = None
         if prior is not None:
-            schedule.refresh(prior_rates(prior))
+            self.schedule.refresh(prior_rates(prior))
+
+    def keep_clean(self, *teachers: Any) -> None:
+        """Keep the observations before their corruption too.
+
+        ``teachers`` precompute from them what no trained weight changes.
+        """
+        self.clean = True
+        self.teachers = teachers
 
     @property
     def pieces(self) -> int:
@@ -101,7 +117,7 @@ class Rollouts:
             for i in range(count)
         ]
         made = self.agent.collect(
-            worlds, episodes, expert_share=self.expert_share, rngs=rngs, clean=self.clean
+            worlds, episodes, expert_share=self.follow_oracle, rngs=rngs, clean=self.clean
         )
         for teacher in self.teachers:
             made = as_agent(teacher).precompute(made, clean=True)
@@ -133,9 +149,10 @@ class Rollouts:
         hold_statistics(self.agent.train())
 
 
-class OnEpisodes(Recipe):
-    """A recipe that learns from ``rollouts``, which its constructor makes."""
+class OnEpisodes(Objective):
+    """An objective that learns from the ``rollouts`` that its constructor receives."""
 
+    sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": Rollouts}
     needs = TRAINABLE
     otherwise = f"This recipe learns from episodes that the agent walks. {OWN}"
     rollouts: Rollouts
@@ -172,3 +189,9 @@ class OnEpisodes(Recipe):
 def batch_of(decisions: Decisions) -> dict[str, Any]:
     """Decisions as the trainer takes a batch."""
     return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}
+
+
+def check_episodes(episodes: int) -> None:
+    """Raise ValueError for less than one episode per step."""
+    if episodes < 1:
+        raise ValueError(f"episodes={episodes} a step are none: give 1 or more (rollouts=20).")

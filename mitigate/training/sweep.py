@@ -15,12 +15,12 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-from hydra.core.config_store import ConfigStore
 from hydra.core.override_parser.overrides_parser import OverridesParser
 from hydra.errors import HydraException
 from omegaconf import MISSING, DictConfig
 
 from mitigate.cluster import launcher, programs
+from mitigate.cluster.launcher import RayConfig
 from mitigate.core import conf, seeding
 from mitigate.core.names import unknown
 from mitigate.core.options import without_config_folder
@@ -41,31 +41,38 @@ class SweepConfig:
     command: str = "train"
     runs: str = "sweeps/default"
     jobs: int = 1
-    launcher: Any = MISSING
+    launcher: Any = MISSING  # read: a LauncherConfig
 
 
-ConfigStore.instance().store(name="sweep_schema", node=SweepConfig)
+conf.register("sweep", SweepConfig)
 OWN = re.compile(r"(command|runs|jobs|launcher(\.[\w.]+)?)=")
 
 
 def run(cfg: DictConfig, options: Sequence[str]) -> None:
-    """Run every combination of ``options``, then write and print the table of ``cfg.runs``.
+    """Run the sweep of composed options (:func:`run_all`)."""
+    run_all(conf.typed(cfg, "sweep"), options)
+
+
+def run_all(config: SweepConfig, options: Sequence[str]) -> None:
+    """Run every combination of ``options``, then write and print the table of ``config.runs``.
 
     Raises ValueError for options that the command does not have, before anything runs, and for
     runs that failed, after the others are done and the table is written.
     """
-    if cfg.command not in COMMANDS:
-        raise ValueError(unknown("command", cfg.command, COMMANDS))
-    if cfg.jobs < 1:
-        raise ValueError(f"jobs={cfg.jobs} is none: give 1 or more runs at a time.")
+    if config.command not in COMMANDS:
+        raise ValueError(unknown("command", config.command, COMMANDS))
+    if config.jobs < 1:
+        raise ValueError(f"jobs={config.jobs} is none: give 1 or more runs at a time.")
     configs, options = without_config_folder(options)
     made = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)
     from mitigate.agents.loading import with_kind  # brings torch
+    from mitigate.evaluation import evaluate  # noqa: F401 - registers its options
+    from mitigate.training import train  # noqa: F401 - registers its options
 
     for chosen in made:
-        conf.composed(cfg.command, with_kind(chosen) if cfg.command == "evaluate" else chosen)
-    chains, problems = [chain(cfg, chosen, made) for chosen in made], []
+        conf.composed(config.command, with_kind(chosen) if config.command == "evaluate" else chosen)
+    chains, problems = [chain(config, chosen, made) for chosen in made], []
     with Progress("sweep", len(chains), unit="run") as progress:
 
         def told(number: int, outcome: programs.Outcome) -> None:
@@ -74,13 +81,13 @@ def run(cfg: DictConfig, options: Sequence[str]) -> None:
             progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
             progress.advance()
 
-        programs.run(chains, cfg.jobs, launcher.chosen(cfg.launcher), progress, told)
+        programs.run(chains, config.jobs, launcher.chosen(config.launcher), progress, told)
     if len(problems) < len(chains):
-        write_table([Path(cfg.runs)], Path(cfg.runs))
+        write_table([Path(config.runs)], Path(config.runs))
     if problems:
         again = "Run again to go on with them; their output is in"
         raise ValueError(
-            f"{len(problems)} of {len(chains)} runs failed. {again} {cfg.runs}/{LOGS}. "
+            f"{len(problems)} of {len(chains)} runs failed. {again} {config.runs}/{LOGS}. "
             + " ".join(problems)
         )
 
@@ -120,7 +127,7 @@ def _name(options: Sequence[str]) -> str:
 
 
 def chain(
-    cfg: DictConfig, options: Sequence[str], combined: Sequence[Sequence[str]] = ()
+    config: SweepConfig, options: Sequence[str], combined: Sequence[Sequence[str]] = ()
 ) -> programs.Chain:
     """The run of one combination; a digest tells it from one of ``combined`` whose name would be
     the same (``checkpoint=a/b`` and ``a_b``)."""
@@ -128,16 +135,17 @@ def chain(
     name = _name(options)
     if len(name) > LONGEST or [*map(_name, combined)].count(name) > 1:
         name = f"{name[:LONGEST]}-{seeding.digest(*named):032x}"[: LONGEST + 9]
-    words = [f"mitigate.{cfg.command}", *options, f"runs={cfg.runs}"]
-    if cfg.command == "evaluate":  # which would put two seeds into one folder
-        words.append(f"out={Path(cfg.runs) / name}")
-    share = cfg.jobs > 1 or cfg.launcher.name != "local"
-    count = max(1, cores() // cfg.jobs) if cfg.launcher.name == "local" else 1
-    count = max(count, int(cfg.launcher.get("cpus", 1)))
+    words = [f"mitigate.{config.command}", *options, f"runs={config.runs}"]
+    if config.command == "evaluate":  # which would put two seeds into one folder
+        words.append(f"out={Path(config.runs) / name}")
+    share = config.jobs > 1 or config.launcher.name != "local"
+    count = max(1, cores() // config.jobs) if config.launcher.name == "local" else 1
+    cpus = config.launcher.cpus if isinstance(config.launcher, RayConfig) else 1
+    count = max(count, int(cpus))
     return programs.Chain(
         " ".join(named) or "as it is",
-        ((cfg.command, programs.python(*words)),),
-        (Path(cfg.runs) / LOGS / f"{name}.txt").resolve(),
+        ((config.command, programs.python(*words)),),
+        (Path(config.runs) / LOGS / f"{name}.txt").resolve(),
         Path.cwd(),
         {"OMP_NUM_THREADS": f"{count}", "PYTHON_CPU_COUNT": f"{count}"} if share else {},
     )

@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from hydra.core.config_store import ConfigStore
-from omegaconf import MISSING, DictConfig
+from omegaconf import DictConfig
 
 from mitigate.cluster import launcher, programs
-from mitigate.core import build, conf
+from mitigate.core import build
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
@@ -28,55 +26,43 @@ from mitigate.core.progress import Progress, say
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
 from mitigate.evaluation.rows import ROWS, Row, read
-from mitigate.training.cells import Cell, cells, check, listed
+from mitigate.training.cells import (
+    Cell,
+    TablesConfig,
+    cells,
+    check,
+    evaluation_of,
+    listed,
+    read_options,
+)
 
 COST, REPORT = "cost.json", "overview.md"
 
 
-@dataclass
-class TablesConfig:
-    """Types of ``conf/table2.yaml`` and ``conf/table1.yaml``, where each entry's meaning is."""
-
-    runs: str = "runs"
-    out: str = "runs/table"
-    rows: list[str] = field(default_factory=list)
-    columns: dict[str, Any] = field(default_factory=dict)
-    seeds: list[int] = field(default_factory=list)
-    split: str = "val_unseen"
-    episodes: int | None = None
-    suite: Any = MISSING
-    conditions: list[str] | None = None
-    severity: float = 0.6
-    evaluations: dict[str, Any] = field(default_factory=dict)
-    train: list[str] = field(default_factory=list)
-    jobs: int = 2
-    launcher: Any = MISSING
-    walks: list[str] = field(default_factory=list)
-    paper: dict[str, Any] = field(default_factory=dict)
-
-
-ConfigStore.instance().store(name="tables_schema", node=TablesConfig)
-
-
 def run(cfg: DictConfig) -> Path:
+    """Make the table of composed options (:func:`make_table`)."""
+    return make_table(read_options(cfg))
+
+
+def make_table(config: TablesConfig) -> Path:
     """Make all cells and the report; return the report's path.
 
-    With ``cfg.rows`` the report is made of those rows, and no cell is run. Raises ValueError for
+    With ``config.rows`` the report is made of those rows, and no cell is run. Raises ValueError for
     settings that make no sense, before a cell is run, and if a cell failed (after the others are
     done), with the end of its log; FileNotFoundError for rows that are not there.
     """
-    out = Path(cfg.out)
-    if cfg.rows:
-        return write_report(cfg, out, list(cfg.rows))
-    made = cells(cfg)
-    check(made, cfg)
+    out = Path(config.out)
+    if config.rows:
+        return write_report(config, out, list(config.rows))
+    made = cells(config)
+    check(made, config)
     with output_folder(out):
-        return _make_table(made, cfg, out)
+        return _make_cells(made, config, out)
 
 
-def _make_table(made: Sequence[Cell], cfg: DictConfig, out: Path) -> Path:
-    """Make the cells and write the report into ``out``; raise as :func:`run` does."""
-    failed = make(made, cfg) or [
+def _make_cells(made: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
+    """Make the cells and write the report into ``out``; raise as :func:`make_table` does."""
+    failed = make(made, config) or [
         f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
         "program after they were measured."
         for cell in made
@@ -88,17 +74,17 @@ def _make_table(made: Sequence[Cell], cfg: DictConfig, out: Path) -> Path:
     measured = [cell.evaluation for cell in made if _rows(cell.evaluation)]
     if failed and not measured:
         raise ValueError(problem)
-    report = write_report(cfg, out, measured)
-    written = [report, *write_further(made, cfg, out)]
+    report = write_report(config, out, measured)
+    written = [report, *write_further(made, config, out)]
     if failed:
         raise ValueError(problem)
-    print("\n".join(f"wrote {path}" for path in (*written, *draw_walks(cfg, out))), flush=True)
+    print("\n".join(f"wrote {path}" for path in (*written, *draw_walks(config, out))), flush=True)
     return report
 
 
-def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
-    """Train and evaluate all cells, ``cfg.jobs`` at a time; return what went wrong with which."""
-    chains, problems = [cell.chain(cfg) for cell in made], []
+def make(made: Sequence[Cell], config: TablesConfig) -> list[str]:
+    """Train and evaluate all cells, ``config.jobs`` at a time; return what went wrong."""
+    chains, problems = [cell.chain(config) for cell in made], []
     for cell in made:
         cell.keep()
     before = [
@@ -118,7 +104,7 @@ def make(made: Sequence[Cell], cfg: DictConfig) -> list[str]:
             progress.say(f"{chains[number].name}: {outcome.problem or 'done'}")
             progress.advance()
 
-        programs.run(chains, cfg.jobs, launcher.chosen(cfg.launcher), progress, told)
+        programs.run(chains, config.jobs, launcher.chosen(config.launcher), progress, told)
     return problems
 
 
@@ -143,11 +129,11 @@ def _read_cost(path: Path) -> dict[str, float]:
     return cost
 
 
-def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Path:
+def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
     """Write ``table.md`` with its pictures, and ``overview.md`` with the paper beside it, from
     the rows under ``paths``."""
     from mitigate.evaluation import report, rows
-    from mitigate.evaluation.paper import beside
+    from mitigate.evaluation.report import beside
     from mitigate.evaluation.sections import sections
 
     found = rows.gather(paths)
@@ -155,76 +141,71 @@ def write_report(cfg: DictConfig, out: Path, paths: Sequence[Path | str]) -> Pat
     made = [
         section
         for section in sections(found)
-        if section.grid.split == cfg.split
-        and (section.severity == cfg.severity or not section.blocks)  # clean rows have none
+        if section.grid.split == config.split
+        and (section.severity == config.severity or not section.blocks)  # clean rows have none
     ]
     if not made:
         held = sorted({f"{row['split']} at {row['severity']:g}" for row in found})
         raise ValueError(
-            f"There are no rows of {cfg.split} at severity {cfg.severity:g}, only of "
+            f"There are no rows of {config.split} at severity {config.severity:g}, only of "
             f"{', '.join(held)}. Set split= and severity=."
         )
-    figures = {str(name): list(values) for name, values in cfg.paper.items()}
-    spent = {} if cfg.rows else costs(out)
+    figures = {name: list(values) for name, values in config.paper.items()}
+    spent = {} if config.rows else costs(out)
     with atomic_text(out / REPORT) as file:
         file.write("\n".join(beside(section, figures, spent) for section in made))
     print((out / REPORT).read_text(encoding="utf-8"), flush=True)
     return out / REPORT
 
 
-def write_further(made: Sequence[Cell], cfg: DictConfig, out: Path) -> list[Path]:
+def write_further(made: Sequence[Cell], config: TablesConfig, out: Path) -> list[Path]:
     """Write ``NAME/table.md`` with its pictures for each further evaluation, and return their
     paths. Each has a table of its own: its episodes need not be those of the others."""
     from mitigate.evaluation import report, rows
 
     written = []
-    for name in listed(cfg, "evaluations"):
+    for name in listed(config.evaluations, "evaluations"):
         paths = [cell.further(name) for cell in made if _rows(cell.further(name))]
         if paths:
             written.append(report.write(rows.gather(paths), out / name)[0])
     return written
 
 
-def draw_walks(cfg: DictConfig, out: Path) -> list[Path]:
-    """Write pictures of episodes that the last of ``cfg.walks`` wins back for the first, by the
+def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
+    """Write pictures of episodes that the last of ``config.walks`` wins back for the first, by the
     agents of the first seed, behind what their cells put in front of them; nothing if one of them
     has no cell."""
-    from mitigate.agents import loading
     from mitigate.evaluation import rows
-    from mitigate.evaluation.trajectories import Front, write_pictures
-    from mitigate.guards.frames.restorer import restorer_of
-    from mitigate.guards.text.guard import open_safeguard
+    from mitigate.evaluation.trajectories import write_pictures
+    from mitigate.guards.opening import open_guards
 
-    held = {cell.column: cell for cell in cells(cfg) if cell.seed == cfg.seeds[0]}
-    missing = [column for column in cfg.walks if column not in held]
+    held = {cell.column: cell for cell in cells(config) if cell.seed == config.seeds[0]}
+    missing = [column for column in config.walks if column not in held]
     if missing:
         say(f"no pictures of walks: {', '.join(missing)} of walks= is no column")
-    if not cfg.walks or missing:
+    if not config.walks or missing:
         return []
-    made = {_named(held[column].folder): held[column] for column in cfg.walks}
-    nodes = {
-        name: conf.load_config("evaluate", loading.with_kind(cell.agent))
-        for name, cell in made.items()
-    }
+    made = {_named(held[column].folder): held[column] for column in config.walks}
+    nodes = {name: evaluation_of(cell.agent) for name, cell in made.items()}
     agents: dict[str, Any] = {
         n: load(c.agent, c.checkpoint, overrides=made[n].agent) for n, c in nodes.items()
     }
     env = next(iter(nodes.values())).env
-    world, chosen = build.maker(env.world)(), episodes(env, cfg.split, cfg.episodes)
-    fronts = {
-        name: Front(open_safeguard(node.safeguard), restorer_of(node.restore, world.sensors))
+    world, chosen = build.maker(env.world)(), episodes(env, config.split, config.episodes)
+    guards = {
+        name: open_guards(node.safeguard, node.restore, world.sensors)
         for name, node in nodes.items()
     }
     drawn = {episode.episode_id for episode in chosen}
     found = [
         row
         for row in rows.gather([cell.evaluation for cell in made.values()])
-        if row["split"] == cfg.split
-        and row["severity"] in (0.0, cfg.severity)
+        if row["split"] == config.split
+        and row["severity"] in (0.0, config.severity)
         and row["episode_id"] in drawn
     ]
-    folder, seed = out / "pictures", cfg.seeds[0]
-    return write_pictures(agents, world, chosen, found, folder, seed=seed, fronts=fronts)
+    folder, seed = out / "pictures", config.seeds[0]
+    return write_pictures(agents, world, chosen, found, folder, seed=seed, guards=guards)
 
 
 def costs(out: Path) -> dict[str, dict[str, float]]:

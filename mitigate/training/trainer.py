@@ -1,4 +1,4 @@
-"""The one training loop: step, log, evaluate, save, resume. It knows no recipe by name.
+"""The one training loop: step, log, evaluate, save, resume. It knows no objective by name.
 
 Data order and noise are functions of (seed, step): the global generators are set anew at each
 step, so neither logging, nor evaluation, nor a kill and a resume changes the weights by one bit
@@ -22,11 +22,12 @@ from mitigate.core.memory import give_back
 from mitigate.core.precision import choose, computing, device_of, to_device
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, Held, held
-from mitigate.training import limits, optimization, states
+from mitigate.training import optimization, states
 from mitigate.training.batches import Batches
+from mitigate.training.config import LIMITS, check_limits
 from mitigate.training.journal import Journal
+from mitigate.training.objective import Objective, accumulate
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe, accumulate
 from mitigate.training.workers import Workers
 
 
@@ -35,10 +36,10 @@ class LossNotFinite(ValueError):
 
 
 class Trainer:
-    """Train ``recipe`` for ``steps`` updates of AdamW in ``folder``.
+    """Train ``objective`` for ``steps`` updates of AdamW in ``folder``.
 
     Args:
-        recipe: what to train; see :class:`mitigate.training.recipe.Recipe`.
+        objective: what to train; see :class:`mitigate.training.objective.Objective`.
         steps: number of updates.
         folder: holds ``step-*.pt`` and TensorBoard files; a checkpoint there is resumed.
         lr, weight_decay: AdamW's, for groups that name none.
@@ -57,10 +58,10 @@ class Trainer:
             autocast, weights stay float32. A checkpoint keeps what "auto" was; a run that is
             resumed goes on in that.
         device: "auto" (CUDA if there), or any torch device.
-        workers: processes that make batches (``Recipe.jobs``); None makes them in this one, to
+        workers: processes that make batches (``Objective.jobs``); None makes them in this one, to
             the same bits.
         ranks: processes that train together; the first one logs and saves.
-        name: of the stage in what is printed; None: of the recipe's class.
+        name: of the stage in what is printed; None: of the objective's class.
         config: JSON-able description of the run. A checkpoint made under another is refused.
 
     Raises:
@@ -69,7 +70,7 @@ class Trainer:
 
     def __init__(
         self,
-        recipe: Recipe,
+        objective: Objective,
         *,
         steps: int,
         folder: str | Path,
@@ -93,7 +94,7 @@ class Trainer:
         config: dict[str, Any] | None = None,
     ) -> None:
         optimization.check(schedule)
-        limits.check({k: v for k, v in locals().items() if k in limits.LIMITS})
+        check_limits({k: v for k, v in locals().items() if k in LIMITS})
         self.folder, self.steps, self.seed, self.keep = Path(folder), steps, seed, keep
         self.log_every, self.save_every, self.grad_clip = log_every, save_every, grad_clip
         self.eval_every, self.figure_every = eval_every, figure_every
@@ -101,8 +102,8 @@ class Trainer:
         self.workers, self.ranks, self.lag = workers, ranks or Ranks(), lag
         self.asked = precision
         self.precision = self.ranks.of_first(choose(precision, self.device))
-        self.recipe = recipe.to(self.device)
-        self.name = name or type(recipe).__name__
+        self.objective = objective.to(self.device)
+        self.name = name or type(objective).__name__
         self.config = states.as_json(config or {}) | {
             "trainer": {
                 "steps": steps,
@@ -116,21 +117,21 @@ class Trainer:
                 **({"lag": lag, "save_every": save_every} if lag else {}),
             },
         }
-        groups = recipe.parameter_groups()
+        groups = objective.parameter_groups()
         self.optimizer = optimization.adamw(groups, self.name, lr, weight_decay)
         self.scheduler = optimization.scheduler(self.optimizer, steps, warmup, schedule)
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
         self._saved, self._finished = 0, False  # steps in a checkpoint; whether it needs no more
 
-    def fit(self) -> Recipe:
-        """Train, from the newest checkpoint in the folder if there is one; return the recipe.
+    def fit(self) -> Objective:
+        """Train, from the newest checkpoint in the folder if there is one; return the objective.
 
         Raises LossNotFinite, and ValueError for a checkpoint that cannot be resumed.
         """
         start = self._resume()
         if self._finished:
             say(f"{self.name}: already trained for {start} steps in {self.folder}")
-            return self.recipe
+            return self.objective
         count = len(self.workers) if self.workers is not None else 0
         say(
             f"{self.name}: in {self.precision} on {self.device}, batches by {count or 'no'} workers"
@@ -140,17 +141,17 @@ class Trainer:
             if start:
                 journal.say(f"resumed at step {start} from {self.folder}")
             with computing(self.precision, self.device):
-                self.recipe.start()
-            self.recipe.train()
+                self.objective.start()
+            self.objective.train()
             with held(self.ranks.count == 1) as ending:  # ranks are ended by who started them
                 self._train(start, journal, ending)
                 self._finish(journal, ending)
-        return self.recipe
+        return self.objective
 
     def _train(self, start: int, journal: Journal, ending: Held) -> None:
         """Take the steps from ``start`` on; the last one is saved as not finished."""
         batches = Batches(
-            self.recipe,
+            self.objective,
             self.workers,
             self.steps,
             self.precision,
@@ -192,10 +193,10 @@ class Trainer:
         """Set what follows from the trained weights, and save them as finished."""
         with self._kept(self.steps, ending):
             seeding.seed_everything(self.seed, "finish")
-            self.recipe.eval()
+            self.objective.eval()
             with torch.no_grad():
-                self.recipe.finish()
-            self.recipe.train()
+                self.objective.finish()
+            self.objective.train()
             self._look(self.steps, journal, ending)
             self._save(self.steps, finished=True)
             self.ranks.wait()
@@ -214,9 +215,9 @@ class Trainer:
 
     def _step(self, step: int, batch: dict[str, Any]) -> dict[str, float]:
         self.optimizer.zero_grad(set_to_none=True)
-        values = accumulate(self.recipe, batch, self.precision, self.device)
+        values = accumulate(self.objective, batch, self.precision, self.device)
         values = {name: value.float() for name, value in values.items()}
-        self.ranks.average(self.trained, values, self.recipe.weight(batch))
+        self.ranks.average(self.trained, values, self.objective.weight(batch))
         loss = values["loss"]
         norm = torch.nn.utils.clip_grad_norm_(self.trained, self.grad_clip or math.inf)
         if not (torch.isfinite(loss) and torch.isfinite(norm)):
@@ -228,7 +229,7 @@ class Trainer:
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
         kept = states.checkpoints(self.folder)
-        own = type(self.recipe).__name__
+        own = type(self.objective).__name__
         kind = "" if own == self.name else f" ({own})"
         last = f"The last good checkpoint is {kept[-1]}" if kept else "No checkpoint was saved yet"
         return (
@@ -243,13 +244,13 @@ class Trainer:
         if ending.number is None and self._due(self.eval_every, done):
             self._evaluate(done, journal)
         if ending.number is None and self._due(self.figure_every, done):
-            journal.figures(done, self.recipe.figures(done))
+            journal.figures(done, self.objective.figures(done))
 
     def _evaluate(self, done: int, journal: Journal) -> None:
-        self.recipe.eval()
+        self.objective.eval()
         with torch.no_grad():
-            values = self.recipe.evaluate(done)
-        self.recipe.train()
+            values = self.objective.evaluate(done)
+        self.objective.train()
         if values:
             journal.scalars(done, {f"eval/{k}": v for k, v in values.items()}, line=False)
             shown = "  ".join(f"{name} {value:.4g}" for name, value in values.items())
@@ -263,7 +264,7 @@ class Trainer:
         self._saved = done
         if not self.ranks.first:
             return
-        bad = checkpoint.not_finite(self.recipe)
+        bad = checkpoint.not_finite(self.objective)
         if bad:
             raise LossNotFinite(
                 f"Training stopped: after step {done} of {self.name} the weights are no finite "
@@ -273,7 +274,7 @@ class Trainer:
         state = {
             "step": done,
             "finished": finished,
-            "model": self.recipe.state_dict(),
+            "model": self.objective.state_dict(),
             "optimizer": self.optimizer.state_dict(),
             "scheduler": self.scheduler.state_dict(),
             "rng": seeding.global_state(),
@@ -312,7 +313,7 @@ class Trainer:
                 "Use the old settings to resume it, choose another folder, or delete it."
             )
         try:
-            self.recipe.load_state_dict(state["model"])
+            self.objective.load_state_dict(state["model"])
             self.optimizer.load_state_dict(state["optimizer"])
         except (RuntimeError, ValueError, KeyError) as error:
             raise ValueError(

@@ -1,8 +1,8 @@
-"""Worker processes that make the pieces of a recipe's batches.
+"""Worker processes that make the pieces of an objective's batches.
 
-A recipe names the jobs of a step (``recipe.py``); each is a pure function of itself, the seed and
-the weights, and is done on one thread. Unlike those of ``core/workers.py``, which end with their
-one task, these live through all stages of a training, and are sent new weights as these change.
+An objective names the jobs of a step (``objective.py``); each is a pure function of itself, the
+seed and the weights, and is done on one thread. Unlike those of ``core/workers.py``, which end with
+their one task, these live through all stages of a training, and receive new weights.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
 from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import WorkersDied, context, packed, portable
-from mitigate.training.recipe import Recipe, do
+from mitigate.training.objective import Objective, do
 
 MOST = 8  # workers worth starting: the recipes make 2 to 4 pieces of a step, some steps ahead
 PRELOAD = "mitigate.evaluation.evaluator"  # has what takes long to import
@@ -55,24 +55,24 @@ class Workers:
         for worker in self._all:
             worker.close()
 
-    def take(self, recipe: Recipe, kind: str) -> None:
-        """Give every worker its own copy of ``recipe``, to compute in the precision ``kind``.
+    def take(self, objective: Objective, kind: str) -> None:
+        """Give every worker its own copy of ``objective``, to compute in the precision ``kind``.
 
-        Raises ValueError if the recipe cannot be pickled.
+        Raises ValueError if the objective cannot be pickled.
         """
-        packed = _packed(recipe)
+        packed = _packed(objective)
         for worker in self._all:
             worker.take(packed, kind)
 
-    def send_weights(self, recipe: Recipe) -> None:
+    def send_weights(self, objective: Objective) -> None:
         """Bring the copies of the trained weights and of all buffers up to date.
 
         They are sent as they are now: tensors would be shared, and change while a worker reads.
         """
         trained = {
-            name: p.detach().cpu() for name, p in recipe.named_parameters() if p.requires_grad
+            name: p.detach().cpu() for name, p in objective.named_parameters() if p.requires_grad
         }
-        buffers = {name: buffer.detach().cpu() for name, buffer in recipe.named_buffers()}
+        buffers = {name: buffer.detach().cpu() for name, buffer in objective.named_buffers()}
         weights = pickle.dumps({**trained, **buffers})
         for worker in self._all:
             worker.renew(weights)
@@ -101,24 +101,24 @@ class _Worker:
 
     def __init__(self, number: int) -> None:
         self.number, self.deaths = number, 0
-        self.recipe: tuple[bytes, str] | None = None
-        self.weights: bytes | None = None  # None: those of the recipe
+        self.objective: tuple[bytes, str] | None = None
+        self.weights: bytes | None = None  # None: those of the objective
         self.pending: deque[tuple[bytes | None, bytes]] = deque()
         self._start()
 
     def take(self, packed: bytes, kind: str) -> None:
-        if self.pending:  # of a recipe that was given up: nobody will ask for them
+        if self.pending:  # of an objective that was given up: nobody will ask for them
             self._restart()
             self.pending.clear()
-        self.recipe, self.weights = (packed, kind), None
-        self.send(("recipe", packed, kind))
+        self.objective, self.weights = (packed, kind), None
+        self.send(("objective", packed, kind))
 
     def renew(self, weights: bytes) -> None:
         self.weights = weights
         self.send(("weights", weights))
 
     def order(self, job: Any) -> None:
-        message = packed(job, "A job of this recipe", ALONE)
+        message = packed(job, "A job of this objective", ALONE)
         self.pending.append((self.weights, message))
         self.send(("job", message))
 
@@ -159,7 +159,7 @@ class _Worker:
         self.process.join(timeout=1)
         code = self.process.exitcode
         what = f"worker {self.number} ended with code {code}"
-        if self.deaths >= DEATHS or self.recipe is None:
+        if self.deaths >= DEATHS or self.objective is None:
             killed = code is not None and code < 0
             cause = (
                 "it was killed, most likely because the memory ran out"
@@ -173,7 +173,7 @@ class _Worker:
         self.deaths += 1
         say(f"{what}; a new one does its work again")
         self._restart()
-        self.send(("recipe", *self.recipe))
+        self.send(("objective", *self.objective))
         given: bytes | None = None
         for weights, job in self.pending:
             if weights is not None and weights is not given:
@@ -189,15 +189,15 @@ class _Worker:
         self._start()
 
 
-def _packed(recipe: Recipe) -> bytes:
+def _packed(objective: Objective) -> bytes:
     own = "keep what cannot be pickled out of its attributes, or train with workers=0"
-    device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
+    device = next((p.device for p in objective.parameters()), torch.device("cpu"))
     if device.type == "cpu":
-        return packed(recipe, type(recipe).__name__, own)
+        return packed(objective, type(objective).__name__, own)
     try:
-        return packed(recipe.cpu(), type(recipe).__name__, own)
+        return packed(objective.cpu(), type(objective).__name__, own)
     finally:
-        recipe.to(device)
+        objective.to(device)
 
 
 def _serve(connection: Connection) -> None:
@@ -209,24 +209,24 @@ def _serve(connection: Connection) -> None:
         _work(connection, told)
     except (BrokenPipeError, ConnectionResetError):
         pass  # the parent is gone
-    except Exception as error:  # of the program: a recipe that cannot be unpacked here, say
+    except Exception as error:  # of the program: an objective that cannot be unpacked here, say
         with suppress(OSError):
             connection.send(("error", portable(error)))
 
 
 def _work(connection: Connection, told: SimpleQueue) -> None:
-    recipe, kind, weights, done = Recipe(), "fp32", {}, 0
+    objective, kind, weights, done = Objective(), "fp32", {}, 0
     while (message := told.get()) is not None:
         name, *given = pickle.loads(message)
-        if name == "recipe":
-            recipe, kind = pickle.loads(given[0]), given[1]
-            weights = {**dict(recipe.named_parameters()), **dict(recipe.named_buffers())}
+        if name == "objective":
+            objective, kind = pickle.loads(given[0]), given[1]
+            weights = {**dict(objective.named_parameters()), **dict(objective.named_buffers())}
         elif name == "weights":
             with torch.no_grad():
                 for entry, value in pickle.loads(given[0]).items():
                     weights[entry].copy_(value)
         else:
-            connection.send_bytes(_answer(recipe, given[0], kind))
+            connection.send_bytes(_answer(objective, given[0], kind))
             done += 1
             if done % TRIM_EVERY == 0:
                 give_back()
@@ -242,12 +242,12 @@ def _listen(connection: Connection, told: SimpleQueue) -> None:
         told.put(None)
 
 
-def _answer(recipe: Recipe, job: bytes, kind: str) -> bytes:
+def _answer(objective: Objective, job: bytes, kind: str) -> bytes:
     """What a packed job gives, or the error that it raises, packed."""
-    device = next((p.device for p in recipe.parameters()), torch.device("cpu"))
+    device = next((p.device for p in objective.parameters()), torch.device("cpu"))
     try:
         with precision.computing(kind, device):
-            made = do(recipe, pickle.loads(job))
+            made = do(objective, pickle.loads(job))
         return packed(("done", made), "A piece of a batch", ALONE, shared=True)
     except Exception as error:
         return pickle.dumps(("error", portable(error)))

@@ -4,7 +4,8 @@ import pytest
 
 from mitigate.cluster import slurm_jobs
 from mitigate.core.json_files import read_object
-from mitigate.evaluation import list_hash, walked
+from mitigate.evaluation import provenance
+from mitigate.evaluation.episode_lists import keep_list_hash
 from mitigate.training import tables
 from mitigate.worlds import habitat_world
 
@@ -24,10 +25,10 @@ def test_read_object_rejects_what_is_no_object(tmp_path, text):
     "text", [*NO_OBJECTS, '{"a": 3}', '{"a": {"worlds": []}}', '{"a": {"worlds": {"k": null}}}']
 )
 def test_walked_rejects_a_damaged_note(tmp_path, text):
-    note = tmp_path / walked.NOTE
+    note = tmp_path / provenance.NOTE
     note.write_text(text)
     with pytest.raises(ValueError, match=r"walked\.json"):
-        walked._read(note)
+        provenance._read(note)
 
 
 @pytest.mark.parametrize("text", ["", "\n", "abc  list.json\n"])
@@ -36,7 +37,7 @@ def test_list_hash_rejects_a_damaged_hash(tmp_path, text):
     source.write_text("{}")
     (tmp_path / "episodes-val.sha256").write_text(text)
     with pytest.raises(ValueError, match="must begin with a sha256"):
-        list_hash.keep(tmp_path, "val", str(source))
+        keep_list_hash(tmp_path, "val", str(source))
     assert (tmp_path / "episodes-val.sha256").read_text() == text
 
 

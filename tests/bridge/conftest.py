@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
+from omegaconf import OmegaConf
 
-from mitigate.bridge.condition import Condition
+from mitigate.bridge.condition import Condition, Words
 from mitigate.bridge.results import read
 from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
-from mitigate.bridge.words import Words
 from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption
 
@@ -26,6 +26,11 @@ def condition(name="clean", severity=0.6, **more):
     """A condition by name; clean has severity 0."""
     corruption = Corruption(name, 0.0 if name == "clean" else severity)
     return Condition(corruption, seed=0, words=more.pop("words", Words()), **more)
+
+
+def config(*options):
+    """The typed options of a run."""
+    return OmegaConf.to_object(load_config("run", [*options]))
 
 
 def python(listener, code, *arguments):
@@ -103,10 +108,9 @@ def run(capsys, monkeypatch):
     def call(out, options, command=AGENT, **environment):
         path = os.pathsep.join([str(LAB), environment.pop("PYTHONPATH", "")])
         monkeypatch.setenv("PYTHONPATH", path)
-        cfg = load_config("run", [f"out={out}", *options.split()])
         problem = ""
         try:
-            run_command(cfg, shlex.split(command))
+            run_command(config(f"out={out}", *options.split()), shlex.split(command))
         except ValueError as error:
             problem = str(error)
         return Ended(capsys.readouterr().out, problem)

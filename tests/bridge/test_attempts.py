@@ -7,16 +7,14 @@ from functools import partial
 
 import pytest
 
-from mitigate.bridge import identity
-from mitigate.bridge.conditions import cells
+from mitigate.bridge import plan
+from mitigate.bridge.condition import Subset
 from mitigate.bridge.hook import mitigate_hook
-from mitigate.bridge.identity import default_folder
+from mitigate.bridge.plan import Plan, cells, default_folder
 from mitigate.bridge.results import read
 from mitigate.bridge.server import Listener
-from mitigate.bridge.subset import Subset
-from mitigate.core.conf import load_config
 
-from .conftest import condition, python
+from .conftest import condition, config, python
 
 SKIPS = """
 import json, os, sys, numpy, mitigate_hook
@@ -128,8 +126,8 @@ def test_a_disk_that_takes_nothing_is_not_the_hooks_fault(tmp_path):
 
 def made(folder, *options):
     """The first condition of a run with options, and its folder by default."""
-    cfg = load_config("run", ["conditions=[clean]", *options])
-    return cells(cfg, ["nav"], folder, "nav")[0], default_folder(cfg, "nav")
+    typed = config("conditions=[clean]", *options)
+    return cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 
 
 def test_what_is_watched_makes_another_agent(tmp_path, monkeypatch):
@@ -170,9 +168,9 @@ def test_what_is_watched_must_be_there(run, tmp_path, monkeypatch, name, words):
 def test_a_watched_file_is_read_once_for_all_conditions(tmp_path, monkeypatch):
     file, read_files = tmp_path / "policy.yaml", []
     file.write_text("good")
-    sha256 = identity.sha256
-    monkeypatch.setattr(identity, "sha256", lambda path: read_files.append(path) or sha256(path))
-    cells(load_config("run", ["suite=rgb", f"watch=[{file}]"]), ["nav"], tmp_path, "nav")
+    sha256 = plan.sha256
+    monkeypatch.setattr(plan, "sha256", lambda path: read_files.append(path) or sha256(path))
+    cells(Plan(config("suite=rgb", f"watch=[{file}]"), ("nav",), "nav", tmp_path))
     assert read_files == [str(file)]
 
 
@@ -207,9 +205,9 @@ def test_what_is_wanted_must_be_pairs(monkeypatch, episodes):
 
 
 def test_that_more_episodes_were_walked_than_asked_for_is_said(run, tmp_path, monkeypatch):
-    from mitigate.bridge import conditions
+    from mitigate.bridge import plan
 
-    monkeypatch.setattr(conditions, "Subset", partial(Subset, settled=0.0))
+    monkeypatch.setattr(plan, "Subset", partial(Subset, settled=0.0))
     file = tmp_path / "nav.py"
     file.write_text(
         "import numpy, mitigate_hook\nfor shard in range(9):\n"  # each comes late

@@ -7,19 +7,18 @@ import cv2
 import numpy as np
 import pytest
 
-from mitigate.bridge import sheet as drawing
+from mitigate.bridge import check as drawing
 from mitigate.bridge.cameras import Rig
 from mitigate.bridge.check import check
-from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption
 
-from .conftest import AGENT, LAB
+from .conftest import AGENT, LAB, config
 
 
 def test_a_check_says_what_the_program_sees_and_draws_it(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("PYTHONPATH", str(LAB))
-    cfg = load_config("run", [f"out={tmp_path}", "conditions=[spatter,multipath,white_box]"])
-    sheet = check(cfg, shlex.split(f"{AGENT} --cameras 2"))
+    typed = config(f"out={tmp_path}", "conditions=[spatter,multipath,white_box]")
+    sheet = check(typed, shlex.split(f"{AGENT} --cameras 2"))
     said = capsys.readouterr().out
     assert "rgb: rgb, rgb_30; 32 x 32 x 3 uint8, hfov 90, 2 as one panorama" in said
     assert "depth: depth, depth_30" in said and "0 to 1 for 0 to 10 m" in said
@@ -36,8 +35,8 @@ def test_a_check_draws_cameras_of_any_name(name, tmp_path):
         f"frames = {{{name!r}: numpy.full((8, 8, 3), 90, 'uint8')}}\n"
         f"mitigate_hook.connect('a').corrupt(frames, cameras={cameras})\n"
     )
-    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
-    assert cv2.imread(str(check(cfg, [sys.executable, str(program)]))) is not None
+    typed = config(f"out={tmp_path}/o", "conditions=[spatter]")
+    assert cv2.imread(str(check(typed, [sys.executable, str(program)]))) is not None
 
 
 def test_a_check_draws_the_frames_of_the_first_call_alone(tmp_path, capsys):
@@ -49,8 +48,8 @@ def test_a_check_draws_the_frames_of_the_first_call_alone(tmp_path, capsys):
         "met.corrupt({'depth': numpy.ones((16, 16), 'float32')})\n"
         "met.finish(1)\n"
     )
-    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter,gaussian_noise]"])
-    sheet = check(cfg, [sys.executable, str(program)])
+    typed = config(f"out={tmp_path}/o", "conditions=[spatter,gaussian_noise]")
+    sheet = check(typed, [sys.executable, str(program)])
     assert cv2.imread(str(sheet)).shape[0] == 2 * 164  # clean and spatter
     assert "no frame of depth: no corruption of it is drawn" in capsys.readouterr().out
 
@@ -60,8 +59,8 @@ def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
     program.write_text(
         "import mitigate_hook\nmitigate_hook.connect('a').corrupt({'pose': [0, 0]})\n"
     )
-    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[spatter]"])
-    assert check(cfg, [sys.executable, str(program)]) is None
+    typed = config(f"out={tmp_path}/o", "conditions=[spatter]")
+    assert check(typed, [sys.executable, str(program)]) is None
     assert "nothing to draw" in capsys.readouterr().out
 
 
@@ -76,9 +75,9 @@ def test_a_check_of_a_program_without_cameras_says_so(tmp_path, capsys):
     ],
 )
 def test_a_check_refuses_what_a_run_refuses(run, tmp_path, options, command, words):
-    cfg = load_config("run", [f"out={tmp_path}", *options.split()])
+    typed = config(f"out={tmp_path}", *options.split())
     with pytest.raises(ValueError, match=words):
-        check(cfg, command.split())
+        check(typed, command.split())
     assert words in run(tmp_path, options, command).stderr
 
 
@@ -97,8 +96,8 @@ def test_a_check_says_what_depth_was_seen(tmp_path, capsys, depth, words):
         f"depth = {depth}.reshape(9, 9, 1).astype('float32')\n"
         "mitigate_hook.connect('a').corrupt({'depth': depth})\n"
     )
-    cfg = load_config("run", [f"out={tmp_path}/o", "conditions=[clean]"])
-    check(cfg, [sys.executable, str(program)])
+    typed = config(f"out={tmp_path}/o", "conditions=[clean]")
+    check(typed, [sys.executable, str(program)])
     assert words in capsys.readouterr().out
 
 

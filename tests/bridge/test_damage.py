@@ -6,9 +6,9 @@ import sys
 import pytest
 
 from mitigate.bridge import results
+from mitigate.bridge.cell import read_done
+from mitigate.bridge.condition import Subset
 from mitigate.bridge.events import note
-from mitigate.bridge.finished import read_done
-from mitigate.bridge.subset import Subset
 from mitigate.evaluation import rows
 
 PROGRAM = """

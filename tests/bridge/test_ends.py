@@ -243,7 +243,7 @@ print(one.instruction.instruction_text, vars(one.instruction))
 
 @pytest.mark.parametrize("how", ["later", ["over"]])
 def test_an_end_of_another_kind_is_refused(how):
-    from mitigate.bridge.episodes import ended
+    from mitigate.bridge.events import ended
 
     with pytest.raises(ValueError, match="it must be over or reset or close"):
         ended({"metrics": {}, "how": how}, "1")

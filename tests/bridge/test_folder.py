@@ -9,15 +9,15 @@ import sys
 import pytest
 
 from mitigate.bridge import run as bridge_run
-from mitigate.bridge.conditions import cells
-from mitigate.bridge.finished import write_done
-from mitigate.bridge.identity import default_folder, files_of
+from mitigate.bridge.cell import files_of, write_done
+from mitigate.bridge.plan import Plan, cells, default_folder
 from mitigate.bridge.results import read
-from mitigate.core.conf import load_config
 from mitigate.core.files import sha256
 from mitigate.core.output import FolderLostError
 from mitigate.evaluation import rows
 from mitigate.worlds.measures import RULES
+
+from .conftest import config
 
 PROGRAM = """
 import os, sys, numpy, mitigate_hook
@@ -103,9 +103,9 @@ time.sleep(30)
 def test_an_episode_that_a_background_process_is_in_at_the_end_is_lost(
     run, tmp_path, monkeypatch, session
 ):
-    from mitigate.bridge import cell
+    from mitigate.bridge import attempt
 
-    monkeypatch.setattr(cell, "NOTED", 0.5)  # who has a session of its own is waited for
+    monkeypatch.setattr(attempt, "NOTED", 0.5)  # who has a session of its own is waited for
     file = tmp_path / "nav.py"
     file.write_text(BACKGROUND % session)
     ran = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
@@ -219,8 +219,8 @@ def test_what_an_older_version_measured_is_said_to_be_left_out(run, program, tmp
 
 def made(options, folder):
     """The first condition of a run with options."""
-    cfg = load_config("run", options)
-    return cells(cfg, ["nav"], folder, "nav")[0], default_folder(cfg, "nav")
+    typed = config(*options)
+    return cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 
 
 def test_a_safeguard_makes_another_agent_of_its_own_folder(tmp_path):

@@ -70,7 +70,7 @@ def test_the_labs_own_task_is_corrupted_and_measured(lab, episodes, tmp_path):
 
 def test_the_labs_own_instruction_sensor_gives_the_corrupted_words(lab, episodes, tmp_path):
     clean, _ = walked(lab, episodes, condition(), tmp_path / "clean")
-    from mitigate.bridge.words import Words, tokenizer_of
+    from mitigate.bridge.condition import Words, tokenizer_of
 
     words = Words(tokenizer_of(str(episodes)))
     seen, _ = walked(lab, episodes, condition("capitalize", 1.0, words=words), tmp_path / "met")

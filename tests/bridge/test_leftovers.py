@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from mitigate.bridge import supervisor
+from mitigate.bridge import program
 
 EPISODES = """
 import os, subprocess, sys, time, numpy, mitigate_hook
@@ -21,7 +21,7 @@ def episode(name):
     one.finish(success=True)
 
 """
-SUPERVISOR = supervisor.__file__.encode()
+SUPERVISOR = program.__file__.encode()
 DETACHED = {
     "setsid": "if os.fork() == 0:\n    os.setsid()\n    rest()",
     "double fork": (
@@ -105,7 +105,7 @@ def test_run_leaves_no_process_behind_when_a_signal_ends_it(sleeper, tmp_path, n
     command = sleeper("setsid").split()
     (tmp_path / "nav.py").write_text((tmp_path / "nav.py").read_text() + "time.sleep(60)\n")
     out = tmp_path / "o"
-    words = [sys.executable, "-m", "mitigate.run", f"out={out}", "conditions=[clean]", "--"]
+    words = [sys.executable, "-m", "mitigate", "run", f"out={out}", "conditions=[clean]", "--"]
     process = subprocess.Popen(
         [*words, *command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
     )

@@ -4,9 +4,9 @@ import sys
 
 import pytest
 
+from mitigate.bridge.condition import Subset, place
 from mitigate.bridge.results import OWN, read, rows
 from mitigate.bridge.server import Listener
-from mitigate.bridge.subset import Subset, place
 from mitigate.corruptions import Corruption
 
 from .conftest import condition, python

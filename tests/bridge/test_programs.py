@@ -13,13 +13,12 @@ from mitigate.agents.adapters import insert_adapters, save_adapters
 from mitigate.bridge.results import OWN, read, rows
 from mitigate.bridge.run import run as run_command
 from mitigate.bridge.server import Listener
-from mitigate.core.conf import load_config
 from mitigate.corruptions import Corruption, Key, corrupt
 from mitigate.encoders.loading import Wrapped
 from mitigate.worlds.measures import RULES
 from tests.encoders.test_token_adapters import shaken
 
-from .conftest import condition, python
+from .conftest import condition, config, python
 
 WMNAV = "import sys, WMNav_env; WMNav_env.WMNavEnv().run_experiment(sys.argv[1])"
 
@@ -171,7 +170,7 @@ def test_adapters_go_into_an_agents_own_encoder(tmp_path, monkeypatch):
     def features(name, place):
         options = [f"out={tmp_path / name}", "conditions=[clean]"]
         options += [f"adapters={tmp_path / 'adapters'}:{place}"] if place else []
-        run_command(load_config("run", options), command)
+        run_command(config(*options), command)
         return torch.load(tmp_path / name / "conditions/clean/features.pt", weights_only=True)
 
     assert torch.equal(features("plain", ""), before)
@@ -215,7 +214,7 @@ def run_adapted(folder, place):
     options = [f"out={folder / 'out'}", "conditions=[clean]"]
     options += [f"adapters={folder / 'adapters'}:their_encoder:Encoder.{place}"]
     command = [sys.executable, "program.py", "w.pt", "{out}/features.pt"]
-    run_command(load_config("run", options), command)
+    run_command(config(*options), command)
 
 
 def test_adapters_go_around_torchscript_in_an_agents_own_encoder(tmp_path, monkeypatch):

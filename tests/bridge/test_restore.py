@@ -9,13 +9,17 @@ import pytest
 import torch
 
 from mitigate.bridge.cameras import Rig
-from mitigate.bridge.check import described
+from mitigate.bridge.check import described, of
 from mitigate.bridge.results import Told
-from mitigate.bridge.sheet import of
 from mitigate.core.observation import DEPTH, RGB
+from mitigate.evaluation import rows
 from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import Guards
+from mitigate.guards.opening import open_guards
 
 from .conftest import condition
+
+FILTERS = "tests.guards.filters"
 
 
 @pytest.fixture
@@ -52,7 +56,7 @@ def test_frames_are_restored_in_place_and_told(restorer):
     far = {"min_depth": 0.0, "max_depth": 10.0, "normalize_depth": True}
     rig = Rig([*ring, camera("front", yaw=7.0), camera("depth", DEPTH, **far)])
     memory, offsets = filled(rig, {RGB: 60, DEPTH: 0.04})
-    changed = rig.restore(memory, offsets, restorer)
+    changed = rig.guard(memory, offsets, Guards([restorer]))
     assert sorted(changed) == sorted(shown.name for shown in rig.cameras)
     for shown in rig.cameras:
         frame = shown.read(memory, offsets)
@@ -65,11 +69,12 @@ def test_what_is_taken_for_clean_is_not_told(restorer):
     rig = Rig([camera("rgb"), camera("depth", DEPTH)])
     memory, offsets = filled(rig, {RGB: 60, DEPTH: 2.0})
     before = bytes(memory)
-    assert rig.restore(memory, offsets, restorer) == [] and bytes(memory) == before
+    assert rig.guard(memory, offsets, Guards([restorer])) == [] and bytes(memory) == before
 
 
 def test_a_program_sees_restored_frames_even_where_nothing_is_corrupted(command, restorer):
-    seen = [command(condition("clean", restorer=r), "--episodes", 1) for r in (None, restorer)]
+    chains = (Guards(), Guards([restorer]))
+    seen = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
     assert [ran.status for ran in seen] == [0, 0], seen[1].output
     plain, restored = (ran.seen() for ran in seen)
     assert plain.keys() == restored.keys()
@@ -95,12 +100,80 @@ def test_a_restorer_of_what_no_camera_shows_is_refused_at_the_end_of_the_first_e
     assert "spatter-s0.6: started" not in ended.stdout
 
 
+def test_rgb_and_depth_of_one_view_are_one_observation():
+    far = {"min_depth": 0.0, "max_depth": 10.0, "normalize_depth": True}
+    pair = [camera("rgb"), camera("depth", DEPTH, **far)]
+    apart = [camera("side", yaw=7.0), camera("other", DEPTH, yaw=9.0)]
+    seen = []
+
+    class Notes(Guards):
+        frames = (RGB, DEPTH)
+
+        def observe(self, observation):
+            seen.append({name: frame.shape for name, frame in observation.items()})
+            return (
+                {**observation, DEPTH: observation[DEPTH] * 2}
+                if DEPTH in observation
+                else {**observation}
+            )
+
+    rig = Rig([*pair, *apart])
+    memory, offsets = filled(rig, {RGB: 60, DEPTH: 0.25})
+    assert sorted(rig.guard(memory, offsets, Notes())) == ["depth", "other"]
+    both, colour, depth = {RGB: (16, 16, 3), DEPTH: (16, 16, 1)}, (16, 16, 3), (16, 16, 1)
+    assert sorted(seen, key=len) == [{RGB: colour}, {DEPTH: depth}, both]
+    depths = [shown.read(memory, offsets).mean() for shown in rig.cameras if shown.kind == DEPTH]
+    assert depths == pytest.approx([0.5, 0.5])
+    not_level = [camera("rgb", orientation=[0.3, 0.0, 0.0]), camera("depth", DEPTH)]
+    seen.clear()
+    rig = Rig(not_level)
+    rig.guard(*filled(rig, {RGB: 60, DEPTH: 0.25}), Notes())
+    assert [len(shown) for shown in seen] == [1, 1]
+
+
+def test_a_program_sees_the_frames_of_a_callable(command):
+    chains = (Guards(), open_guards(None, f"{FILTERS}:Brighter"))
+    seen = [command(condition("clean", guards=chain), "--episodes", 1) for chain in chains]
+    assert [ran.status for ran in seen] == [0, 0], seen[1].output
+    plain, brighter = (ran.seen() for ran in seen)
+    assert plain.keys() == brighter.keys()
+    for look, entry in plain.items():
+        for name, digest in entry["frames"].items():
+            assert (brighter[look]["frames"][name] != digest) == name.startswith("rgb")
+
+
+def test_rows_of_a_run_behind_a_callable_are_of_another_agent(run, tmp_path):
+    options = "conditions=[clean] name=stand split=toy"
+    agents = {}
+    for number, choice in enumerate(("null", f"{FILTERS}:median", f"{FILTERS}:median@2")):
+        ended = run(tmp_path / str(number), f"{options} restore={choice}")
+        assert ended.returncode == 0, ended.stdout + ended.stderr
+        found = rows.read(tmp_path / str(number) / "rows.jsonl")
+        agents |= {row["name"]: row["agent"] for row in found}
+    assert [*agents] == ["stand", "stand+filters.median", "stand+filters.median@2"]
+    assert len(set(agents.values())) == 3
+    again = run(tmp_path / "1", f"{options} restore={FILTERS}:median")
+    assert "clean: done before" in again.stdout
+    other = run(tmp_path / "1", f"{options} restore={FILTERS}:median@3")
+    assert "was run with another restore" in other.stderr
+
+
+def test_a_broken_callable_ends_the_run_and_is_named(run, tmp_path):
+    ended = run(tmp_path / "out", f"conditions=[clean] restore={FILTERS}:broken")
+    assert f"restore={FILTERS}:broken failed with RuntimeError: out of memory" in ended.stderr
+
+
+def test_a_guard_that_adapts_the_agent_is_rejected(run, tmp_path):
+    ended = run(tmp_path / "out", f"conditions=[clean] restore={FILTERS}:Politely")
+    assert "filters.Politely adapts the agent itself" in ended.stderr
+
+
 def test_a_check_says_what_is_restored(restorer):
     rig = Rig([camera("rgb")])
     frames = {of("rgb"): np.zeros((16, 16, 3), np.uint8)}
-    assert "restored: rgb" in described(Told(), rig, frames, restorer)
+    assert "restored: rgb" in described(Told(), rig, frames, Guards([restorer]))
     only = Restorer(sensors=[DEPTH], depth_width=4)
     assert "restored: nothing of these, the restorer is for depth" in described(
-        Told(), rig, frames, only
+        Told(), rig, frames, Guards([only])
     )
     assert not any("restored" in line for line in described(Told(), rig, frames))

@@ -14,12 +14,11 @@ from types import SimpleNamespace
 import pytest
 
 from mitigate.bridge import run as run_module
-from mitigate.bridge.condition import Condition
+from mitigate.bridge.condition import Condition, Subset, Words
+from mitigate.bridge.config import name_of
 from mitigate.bridge.events import EVENTS
 from mitigate.bridge.results import read
-from mitigate.bridge.run import name_of, split_command
-from mitigate.bridge.subset import Subset
-from mitigate.bridge.words import Words
+from mitigate.bridge.run import split_command
 from mitigate.core.conf import options_text
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import rows
@@ -29,7 +28,7 @@ from .conftest import AGENT, LAB
 
 def test_it_is_a_command(tmp_path):
     ran = subprocess.run(
-        [sys.executable, "-m", "mitigate.run", f"out={tmp_path}", "rule=etpnavv", "--", "true"],
+        [sys.executable, "-m", "mitigate", "run", f"out={tmp_path}", "rule=etpnavv", "--", "true"],
         capture_output=True,
         text=True,
         check=False,
@@ -126,9 +125,9 @@ def test_a_worker_that_dies_does_not_hang_the_run(run, tmp_path):
 def test_a_silent_command_that_lost_an_episode_is_ended_though_others_are_there(
     run, tmp_path, monkeypatch
 ):
-    from mitigate.bridge import cell
+    from mitigate.bridge import attempt
 
-    monkeypatch.setattr(cell, "SILENT", 2)  # times patience
+    monkeypatch.setattr(attempt, "SILENT", 2)  # times patience
     program = tmp_path / "agent.py"
     program.write_text(
         "import mitigate_hook, numpy, os, time\n"
@@ -140,7 +139,7 @@ def test_a_silent_command_that_lost_an_episode_is_ended_though_others_are_there(
 
 
 def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_path, monkeypatch):
-    from mitigate.bridge import command
+    from mitigate.bridge import program
 
     started = []
 
@@ -150,7 +149,7 @@ def test_an_interrupt_while_a_command_is_started_leaves_none_behind(run, tmp_pat
             started.append(self)
             os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr(command.subprocess, "Popen", Interrupted)
+    monkeypatch.setattr(program.subprocess, "Popen", Interrupted)
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path / "o", "conditions=[clean]", f"{AGENT} --pause 5")
     assert started[0].poll() is not None
@@ -177,9 +176,9 @@ def test_rgb_and_depth_may_come_in_calls_of_their_own(run, tmp_path):
 
 
 def test_episodes_of_a_run_that_came_to_nothing_are_chosen_anew(run, tmp_path, monkeypatch):
-    from mitigate.bridge import conditions
+    from mitigate.bridge import plan
 
-    monkeypatch.setattr(conditions, "Subset", partial(Subset, settled=0.0))
+    monkeypatch.setattr(plan, "Subset", partial(Subset, settled=0.0))
     program, out = tmp_path / "nav.py", tmp_path / "o"
     begin = "import mitigate_hook, numpy\nrgb = numpy.zeros((8, 8, 3), 'u1')\n"
     program.write_text(f"{begin}mitigate_hook.wanted([('k', n) for n in range(3)])\n")
@@ -225,7 +224,14 @@ def test_options_that_make_no_sense_are_refused(run, tmp_path, options, words):
 
 
 def test_a_terminated_run_leaves_nothing_behind(tmp_path):
-    command = [sys.executable, "-m", "mitigate.run", f"out={tmp_path / 'o'}", "conditions=[clean]"]
+    command = [
+        sys.executable,
+        "-m",
+        "mitigate",
+        "run",
+        f"out={tmp_path / 'o'}",
+        "conditions=[clean]",
+    ]
     agent = [sys.executable, str(LAB / "agent.py"), str(tmp_path / "seen"), "--pause", "5"]
     process = subprocess.Popen(
         [*command, "--", *agent],
@@ -316,7 +322,8 @@ def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
         [
             sys.executable,
             "-m",
-            "mitigate.run",
+            "mitigate",
+            "run",
             f"out={tmp_path / 'o'}",
             "suite=clean",
             "--",
@@ -346,7 +353,7 @@ def test_how_to_go_on_names_the_command_and_the_signal(tmp_path):
 
 def test_a_launcher_that_is_none_is_told_the_three_there_are():
     ran = subprocess.run(
-        [sys.executable, "-m", "mitigate.run", "launcher=foo", "--", "true"],
+        [sys.executable, "-m", "mitigate", "run", "launcher=foo", "--", "true"],
         capture_output=True,
         text=True,
         check=False,

@@ -5,9 +5,10 @@ from __future__ import annotations
 import sys
 
 import pytest
+from omegaconf import OmegaConf
 
-from mitigate.bridge.conditions import cells
-from mitigate.bridge.spread import run_there
+from mitigate.bridge.plan import Plan, cells
+from mitigate.bridge.run import run_there
 from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
@@ -36,11 +37,13 @@ def test_a_condition_that_lost_its_worker_is_run_anew_and_a_finished_one_is_kept
     program, out = tmp_path / "agent.py", tmp_path / "o"
     program.write_text(AGENT)
     command = [sys.executable, str(program), str(tmp_path / "died"), "{condition}"]
-    cfg = load_config("run", [f"out={out}", "conditions=[spatter]", "launcher=ray"])
-    spatter = cells(cfg, command, out, "agent")[1]
-    assert run_there(cfg, command, out, "agent", [spatter]) == []
+    options = [f"out={out}", "conditions=[spatter]", "launcher=ray"]
+    config = OmegaConf.to_object(load_config("run", options))
+    plan = Plan(config, tuple(command), "agent", out)
+    spatter = cells(plan)[1]
+    assert run_there(plan, [spatter]) == []
     assert (tmp_path / "died").exists() and "starts again on another" in capsys.readouterr().out
     found = [(row["episode_id"], row["rule"]) for row in spatter.rows()]
     assert {episode for episode, _ in found} == {"a", "b"} and len(found) == len({*found})
-    assert run_there(cfg, command, out, "agent", [spatter]) == []
+    assert run_there(plan, [spatter]) == []
     assert "spatter-s0.6: done before" in capsys.readouterr().out

@@ -23,12 +23,12 @@ REPLACES = "{0} is there already, and +{0}= replaces it."
     ],
 )
 def test_an_option_that_is_added_in_the_place_of_another_is_told(primary, given, keys):
-    told = options.notices(primary, given)
+    told = conf.notices(primary, given)
     assert [text.partition(" To add one")[0] for text in told] == [REPLACES.format(k) for k in keys]
 
 
 def test_an_added_option_that_no_program_reads_is_told_with_what_was_meant():
-    (told,) = options.notices("evaluate", ["+episode=9", "++seed=3", "split=val_seen"])
+    (told,) = conf.notices("evaluate", ["+episode=9", "++seed=3", "split=val_seen"])
     assert told.startswith("+episode= adds an option that only configs of your own can use.")
     assert told.endswith("Did you mean episodes=...?")
 
@@ -36,7 +36,7 @@ def test_an_added_option_that_no_program_reads_is_told_with_what_was_meant():
 def test_an_added_file_of_a_group_is_no_such_option(tmp_path):
     (tmp_path / "mine").mkdir()
     given = [f"--config-dir={tmp_path}", "+experiment=frozen", "+mine=one"]
-    assert not options.notices("train", given)
+    assert not conf.notices("train", given)
 
 
 @pytest.mark.parametrize(

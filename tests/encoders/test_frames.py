@@ -7,8 +7,15 @@ import pytest
 from PIL import Image
 
 from mitigate.corruptions import Corruption, DepthSensor, Key
-from mitigate.encoders.frames import collect, corrupted
-from mitigate.encoders.sources import TRAIN, UNSEEN, FolderFrames, WorldFrames, source_of
+from mitigate.encoders.sources import (
+    TRAIN,
+    UNSEEN,
+    FolderFrames,
+    WorldFrames,
+    collect,
+    corrupted,
+    source_of,
+)
 from mitigate.worlds.apartments.world import ApartmentsWorld
 
 LIST = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"

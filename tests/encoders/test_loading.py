@@ -17,8 +17,7 @@ from safetensors.torch import save_file
 
 from mitigate.encoders import loading
 from mitigate.encoders.loading import Wrapped, load_model, load_weights
-from mitigate.encoders.model import Encoder
-from mitigate.encoders.transform import Transform
+from mitigate.encoders.model import Encoder, Transform
 from tests.encoders.shapes import TinyNet, tiny
 
 TINY = "tests.encoders.shapes:tiny"

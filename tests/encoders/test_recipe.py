@@ -24,6 +24,8 @@ from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import FolderFrames
 from mitigate.recipes.encoder import HardenEncoder, variance
 from mitigate.training import train
+from mitigate.training.config import read
+from mitigate.training.objective import assemble
 from mitigate.training.reports.encoder import before_after
 from mitigate.training.trainer import Trainer
 from tests.encoders.shapes import TinyNet, tiny
@@ -52,7 +54,9 @@ def made(**given) -> Encoder:
 def recipe_of(encoder: Encoder, pictures, **given) -> HardenEncoder:
     schedule = Schedule("per_frame", (0.3, 1.0))
     source = {"world": lambda: FolderFrames(str(pictures)), "schedule": schedule}
-    return HardenEncoder(encoder, **source, frames=40, **{"batch": 12, "micro_batch": 12, **given})
+    return assemble(
+        HardenEncoder, encoder, **source, frames=40, **{"batch": 12, "micro_batch": 12, **given}
+    )
 
 
 def config(tmp_path, pictures, *options: str):
@@ -81,8 +85,11 @@ def test_only_corruptions_of_the_encoders_sensor_are_drawn(pictures):
     assert "missing_data" not in recipe.schedule.names and "spatter" in recipe.schedule.names
     with pytest.raises(ValueError, match="no corruption of rgb"):
         source = {"world": lambda: FolderFrames(str(pictures))}
-        HardenEncoder(
-            made(), **source, schedule=Schedule("per_frame", 0.6, names=("missing_data",))
+        assemble(
+            HardenEncoder,
+            made(),
+            **source,
+            schedule=Schedule("per_frame", 0.6, names=("missing_data",)),
         )
 
 
@@ -172,7 +179,7 @@ def test_there_is_no_before_of_an_encoder_that_changed(tmp_path, pictures, monke
     out, trained = train.run(cfg), build(cfg.agent)
     monkeypatch.setattr("tests.encoders.shapes.tiny", lambda **_: TinyNet())
     with pytest.raises(ValueError, match="has other weights than when the training began"):
-        before_after(cfg, None, trained, out)
+        before_after(read(cfg), None, trained, out)
 
 
 def test_a_run_goes_on_with_the_same_frames_alone(tmp_path, pictures):

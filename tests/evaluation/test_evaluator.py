@@ -23,6 +23,8 @@ from mitigate.evaluation import evaluator
 from mitigate.evaluation.episode import instruction, run_episode
 from mitigate.evaluation.evaluator import EpisodeTask, _together, evaluate
 from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import Guards
+from mitigate.guards.opening import open_guards
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
@@ -71,14 +73,24 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     restorer = Noted(width=4, depth_width=4)
     for net in restorer.parts().values():
         net.threshold.fill_(1e9)  # it takes every frame for clean
-    behind = run(tmp_path, episodes=1, conditions=conditions, restorer=restorer)
+    behind = run(tmp_path, episodes=1, conditions=conditions, guards=Guards([restorer]))
     assert len(seen) == sum(row["decisions"] for row in behind) > 0
     assert {row["agent"] for row in alone}.isdisjoint(row["agent"] for row in behind)
     without = [{k: v for k, v in row.items() if k != "agent"} for row in alone]
     assert without == [{k: v for k, v in row.items() if k != "agent"} for row in behind]
     assert len((tmp_path / "rows.jsonl").read_text().splitlines()) == 4
     restorer.nets["rgb"].threshold.fill_(0.0)
-    assert run(tmp_path, episodes=1, conditions=conditions, restorer=restorer) != behind
+    assert run(tmp_path, episodes=1, conditions=conditions, guards=Guards([restorer])) != behind
+
+
+def test_rows_behind_a_callable_do_not_depend_on_workers(tmp_path):
+    guards = open_guards("rules", "tests.guards.filters:Brighter")
+    conditions = [CLEAN, Corruption("low_light", 0.9), Corruption("black_box", 0.9)]
+    one = run(tmp_path / "one", conditions=conditions, guards=guards)
+    two = run(tmp_path / "two", workers=2, conditions=conditions, guards=guards)
+    assert one == two
+    alone = run(tmp_path / "alone", conditions=conditions)
+    assert {row["agent"] for row in alone}.isdisjoint(row["agent"] for row in one)
 
 
 def test_a_row_says_what_it_measured(finished):

@@ -6,7 +6,7 @@ import pytest
 
 from mitigate.core.files import sha256
 from mitigate.evaluation import rows
-from mitigate.evaluation.list_hash import keep
+from mitigate.evaluation.episode_lists import keep_list_hash as keep
 from tests.evaluation.made_rows import cell
 
 

@@ -11,6 +11,7 @@ from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core.seeding import seed_everything
 from mitigate.corruptions import Schedule
 from mitigate.recipes.dagger import Dagger
+from mitigate.training.objective import assemble
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 
@@ -29,7 +30,9 @@ def recipe(folder, **settings) -> Dagger:
         **settings,
     }
     world = partial(ApartmentsWorld, 16, 2, views=1)
-    return Dagger(agent, world, DrawnEpisodes(2), folder=str(folder), **given).eval()
+    return assemble(
+        Dagger, agent, world=world, training=DrawnEpisodes(2), folder=str(folder), **given
+    ).eval()
 
 
 def walks(batch: dict) -> list[str]:

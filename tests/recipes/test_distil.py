@@ -16,6 +16,7 @@ from mitigate.corruptions import DEPTH, Schedule
 from mitigate.recipes.adapt import FRESH, HELD, Adapt, AdaptViews, differ
 from mitigate.recipes.distil import Distil, DistilViews, feature_loss, policy_kl
 from mitigate.recipes.imitate import Imitate, imitation
+from mitigate.training.objective import assemble
 from mitigate.training.states import checkpoints
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
@@ -51,7 +52,7 @@ def teacher(tmp_path_factory) -> str:
 
 @pytest.fixture(scope="module")
 def recipe(teacher) -> Distil:
-    return Distil(small(), teacher=teacher, schedule=missing_data(), **EPISODES)
+    return assemble(Distil, small(), teacher=teacher, schedule=missing_data(), **EPISODES)
 
 
 @pytest.fixture(scope="module")
@@ -128,9 +129,9 @@ def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
         agent = small()
         common = {"schedule": missing_data(), "seed": 3, **EPISODES}
         made = (
-            Imitate(agent, **common)
+            assemble(Imitate, agent, **common)
             if kind == "imitation"
-            else Distil(agent, teacher=teacher, w_kl=0.0, w_feat=0.0, **common)
+            else assemble(Distil, agent, teacher=teacher, w_kl=0.0, w_feat=0.0, **common)
         )
         Trainer(made, steps=2, folder=tmp_path / kind, seed=3).fit()
         shas.append(weights_sha(agent))
@@ -139,7 +140,7 @@ def test_without_teacher_terms_it_is_imitation_bit_for_bit(teacher, tmp_path):
 
 def test_the_teacher_keeps_every_bit_and_the_student_moves(teacher, tmp_path):
     agent = small()
-    made = Distil(agent, teacher=teacher, schedule=missing_data(), **EPISODES)
+    made = assemble(Distil, agent, teacher=teacher, schedule=missing_data(), **EPISODES)
     before, start = weights_sha(made.teacher), weights_sha(agent)
     made.train()
     assert not made.teacher.training
@@ -165,8 +166,8 @@ def test_kl_is_zero_only_for_equal_policies_and_ignores_what_is_no_candidate():
 def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path):
     def made():
         if kind == "views":
-            return DistilViews(small(), modality=modality, teacher=teacher, **VIEWS)
-        return AdaptViews(small(adapters=ADAPTERS), modality=modality, **VIEWS)
+            return assemble(DistilViews, small(), modality=modality, teacher=teacher, **VIEWS)
+        return assemble(AdaptViews, small(adapters=ADAPTERS), modality=modality, **VIEWS)
 
     whole, first, second = made(), made(), made()
     Trainer(whole, steps=3, folder=tmp_path / "whole", seed=0).fit()
@@ -178,7 +179,7 @@ def test_a_resumed_run_ends_with_the_same_bits(kind, modality, teacher, tmp_path
 
 def test_adapters_train_alone(tmp_path):
     agent = small(adapters=ADAPTERS)
-    made = AdaptViews(agent, modality="rgb", **VIEWS)
+    made = assemble(AdaptViews, agent, modality="rgb", **VIEWS)
     start = weights_sha(agent)
     Trainer(made, steps=2, folder=tmp_path, seed=0).fit()
     assert made.evaluate(2) == {"backbone_unchanged": 1.0} and weights_sha(agent) != start
@@ -187,7 +188,7 @@ def test_adapters_train_alone(tmp_path):
 def test_at_the_end_the_adapters_of_its_sensor_make_the_share_that_is_asked_for(tmp_path):
     agents = [small(adapters=ADAPTERS) for _ in range(2)]
     for agent, strength in zip(agents, (1.0, 0.25), strict=True):
-        made = AdaptViews(agent, modality="rgb", **VIEWS, strength=strength)
+        made = assemble(AdaptViews, agent, modality="rgb", **VIEWS, strength=strength)
         Trainer(made, steps=2, folder=tmp_path / f"{strength}", seed=0, save_every=1).fit()
     full, part = (dict(agent.named_parameters()) for agent in agents)
     for name, weight in full.items():
@@ -196,16 +197,16 @@ def test_at_the_end_the_adapters_of_its_sensor_make_the_share_that_is_asked_for(
         assert torch.equal(part[name], weight * times), name
     resumed = small(adapters=ADAPTERS)
     checkpoints(tmp_path / "0.25")[-1].unlink()  # back to step 1
-    made = AdaptViews(resumed, modality="rgb", **VIEWS, strength=0.25)
+    made = assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0.25)
     Trainer(made, steps=2, folder=tmp_path / "0.25", seed=0, save_every=1).fit()
     assert weights_sha(resumed) == weights_sha(agents[1]) != weights_sha(agents[0])
     with pytest.raises(ValueError, match="strength=0 are shares"):
-        AdaptViews(resumed, modality="rgb", **VIEWS, strength=0)
+        assemble(AdaptViews, resumed, modality="rgb", **VIEWS, strength=0)
 
 
 def test_a_gate_learns_which_views_are_corrupted(tmp_path):
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
-    made = AdaptViews(agent, modality="rgb", **VIEWS, own=True)
+    made = assemble(AdaptViews, agent, modality="rgb", **VIEWS, own=True)
     batch = made.batch(0)
     (gate,), corrupted = made.gates, differ(batch["frames"], batch["clean"])
     made(batch)
@@ -227,7 +228,9 @@ def test_a_gate_learns_which_views_are_corrupted(tmp_path):
 
 def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
-    made = AdaptViews(agent, modality="rgb", **VIEWS, own=True, touched=0.25, held=4).eval()
+    made = assemble(
+        AdaptViews, agent, modality="rgb", **VIEWS, own=True, touched=0.25, held=4
+    ).eval()
     assert agent.rgb_encoder.stem.adapter.threshold == 0
     with torch.no_grad():
         made.finish()
@@ -243,7 +246,7 @@ def test_the_threshold_of_a_gate_is_set_on_held_back_clean_views():
     assert not {job[0] for jobs in drawn for job in jobs} & {*range(100_000)}
     assert 0 <= values["clean_opened"] < 1 and 0 <= values["corrupted_opened"] <= 1
     with pytest.raises(ValueError, match="touched=0 and strength=1.0 are shares"):
-        AdaptViews(agent, modality="rgb", **VIEWS, touched=0)
+        assemble(AdaptViews, agent, modality="rgb", **VIEWS, touched=0)
 
 
 def with_statistics(**options) -> TopologicalAgent:
@@ -273,13 +276,13 @@ def test_frozen_normalisations_keep_their_statistics(kind, learning, tmp_path):
     agent = with_statistics(adapters=ADAPTERS if kind.startswith("adapters") else None)
     before, own = statistics(agent), {"schedule": missing_data(), **EPISODES}
     made = {
-        "adapters on episodes": lambda: Adapt(agent, **own),
-        "adapters on views": lambda: AdaptViews(agent, modality="depth", held=1, **VIEWS),
-        "one encoder on episodes": lambda: Distil(
-            agent, teacher="start", train_parts=["rgb_encoder"], **own
+        "adapters on episodes": lambda: assemble(Adapt, agent, **own),
+        "adapters on views": lambda: assemble(AdaptViews, agent, modality="depth", held=1, **VIEWS),
+        "one encoder on episodes": lambda: assemble(
+            Distil, agent, teacher="start", train_parts=["rgb_encoder"], **own
         ),
-        "one encoder on views": lambda: DistilViews(
-            agent, modality="depth", teacher="start", **VIEWS
+        "one encoder on views": lambda: assemble(
+            DistilViews, agent, modality="depth", teacher="start", **VIEWS
         ),
     }[kind]()
     Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
@@ -294,7 +297,7 @@ def test_a_backbone_that_changed_is_no_result_of_adapters(tmp_path):
     agent.rgb_encoder.register_forward_hook(
         lambda encoder, *_: setattr(encoder, "count", encoder.count + 1)
     )
-    made = Adapt(agent, schedule=missing_data(), **EPISODES)
+    made = assemble(Adapt, agent, schedule=missing_data(), **EPISODES)
     with pytest.raises(ValueError, match=r"The backbone of TopologicalAgent is another.*anew"):
         Trainer(made, steps=1, folder=tmp_path, seed=0).fit()
 
@@ -309,7 +312,9 @@ def test_views_differ_where_a_pixel_does_and_a_hole_is_a_hole():
 
 def test_a_stage_may_draw_the_corruptions_of_its_sensor_alone():
     teacher = {"teacher": "start", "modality": "depth"}
-    both, own = (DistilViews(small(), **VIEWS, **teacher, own=own) for own in (False, True))
+    both, own = (
+        assemble(DistilViews, small(), **VIEWS, **teacher, own=own) for own in (False, True)
+    )
     assert set(own.poses.schedule.names) == set(DEPTH) < set(both.poses.schedule.names)
     with pytest.raises(ValueError, match="draws no depth corruption"):
         Schedule("per_episode", 0.6, names=("spatter",)).only("depth")
@@ -317,12 +322,18 @@ def test_a_stage_may_draw_the_corruptions_of_its_sensor_alone():
 
 def test_a_missing_teacher_is_an_error_that_names_the_command(tmp_path):
     with pytest.raises(FileNotFoundError, match="make train RECIPE=da_per_episode"):
-        Distil(small(), teacher=str(tmp_path), schedule=missing_data(), **EPISODES)
+        assemble(Distil, small(), teacher=str(tmp_path), schedule=missing_data(), **EPISODES)
 
 
 def test_adapters_alone_are_no_teacher():
     with pytest.raises(ValueError, match="holds adapters alone"):
-        DistilViews(small(), modality="rgb", teacher="checkpoints/hardened/conv_adapter", **VIEWS)
+        assemble(
+            DistilViews,
+            small(),
+            modality="rgb",
+            teacher="checkpoints/hardened/conv_adapter",
+            **VIEWS,
+        )
 
 
 def test_one_option_names_the_teacher_of_all_stages():
@@ -345,7 +356,7 @@ def test_frozen_views_are_no_part_of_the_loss(teacher):
     parts = {"train_parts": ("planner",), "schedule": missing_data(), **EPISODES}
     losses = []
     for match in (None, ("nodes",)):
-        frozen = Distil(small(), teacher=teacher, match=match, **parts).eval()
+        frozen = assemble(Distil, small(), teacher=teacher, match=match, **parts).eval()
         values = frozen(frozen.batch(0))
         losses.append(values["loss"])
         assert ("feat_views" in values) == (match is None)
@@ -356,7 +367,9 @@ def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
     sources = []
     for seed in (1, 2):
         checkpoint.save_weights(small(seed), tmp_path / "teacher")
-        made = DistilViews(small(), modality="rgb", teacher=str(tmp_path / "teacher"), **VIEWS)
+        made = assemble(
+            DistilViews, small(), modality="rgb", teacher=str(tmp_path / "teacher"), **VIEWS
+        )
         sources.append(made.identity()["teacher_sha256"])
         trainer = Trainer(made, steps=1, folder=tmp_path / "run", config=made.identity())
         if seed == 1:
@@ -368,8 +381,8 @@ def test_a_run_is_not_resumed_under_another_teacher(tmp_path):
 
 def test_an_unknown_feature_is_refused(teacher):
     with pytest.raises(ValueError, match="match=.*views, nodes"):
-        made = Distil(
-            small(), teacher=teacher, match=("logits",), schedule=missing_data(), **EPISODES
+        made = assemble(
+            Distil, small(), teacher=teacher, match=("logits",), schedule=missing_data(), **EPISODES
         )
         made(made.batch(0))
 
@@ -384,7 +397,7 @@ def test_an_unknown_feature_is_refused(teacher):
 )
 def test_weights_that_make_no_sense_are_refused_as_what_they_are(options, words):
     with pytest.raises(ValueError, match=words):
-        Distil(small(), teacher="start", schedule=missing_data(), **EPISODES, **options)
+        assemble(Distil, small(), teacher="start", schedule=missing_data(), **EPISODES, **options)
 
 
 @pytest.mark.parametrize(
@@ -393,23 +406,33 @@ def test_weights_that_make_no_sense_are_refused_as_what_they_are(options, words)
 )
 def test_views_without_panoramas_or_with_negative_weights_are_refused(options, words):
     with pytest.raises(ValueError, match=words):
-        DistilViews(small(), modality="depth", teacher="start", **{**VIEWS, **options})
+        assemble(DistilViews, small(), modality="depth", teacher="start", **{**VIEWS, **options})
 
 
 def test_of_two_ranks_the_one_with_more_panoramas_counts_more():
-    made = DistilViews(small(), modality="depth", teacher="start", **{**VIEWS, "panoramas": 3})
+    made = assemble(
+        DistilViews, small(), modality="depth", teacher="start", **{**VIEWS, "panoramas": 3}
+    )
     assert made.weight(made.batch(0)) == 3.0
 
 
 def test_adapters_are_asked_for_where_there_are_none():
     with pytest.raises(ValueError, match="no adapters there"):
-        AdaptViews(small(), modality="rgb", **VIEWS)
+        assemble(AdaptViews, small(), modality="rgb", **VIEWS)
 
 
 def test_gates_that_nothing_teaches_are_refused():
     gated = {**ADAPTERS, "gates": ["rgb_encoder.stem"]}
     with pytest.raises(ValueError, match=r"teaches the gates.*recipe=harden"):
-        DistilViews(small(adapters=gated), modality="rgb", teacher="start", **VIEWS)
+        assemble(DistilViews, small(adapters=gated), modality="rgb", teacher="start", **VIEWS)
     with pytest.raises(ValueError, match="teaches the gates"):
-        Imitate(small(adapters=gated), **SOURCES, schedule=missing_data(), train_parts=["adapters"])
-    DistilViews(small(adapters=gated), modality="depth", teacher="start", **VIEWS)  # has none
+        assemble(
+            Imitate,
+            small(adapters=gated),
+            **SOURCES,
+            schedule=missing_data(),
+            train_parts=["adapters"],
+        )
+    assemble(
+        DistilViews, small(adapters=gated), modality="depth", teacher="start", **VIEWS
+    )  # has none

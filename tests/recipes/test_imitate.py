@@ -17,6 +17,7 @@ from mitigate.corruptions import Schedule
 from mitigate.evaluation import rows
 from mitigate.recipes.distil import policy_kl
 from mitigate.recipes.imitate import Imitate, check_losses, imitation
+from mitigate.training.objective import assemble
 from mitigate.training.rollouts import Rollouts
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
@@ -30,7 +31,7 @@ RING = {"target_modules": [], "ring": [r"rgb_encoder\.stages\.2"]}
 
 def recipe(agent: TopologicalAgent, *parts: str) -> Imitate:
     schedule = Schedule("clean", 0.0)
-    return Imitate(agent, **SOURCES, schedule=schedule, train_parts=parts, episodes=1)
+    return assemble(Imitate, agent, **SOURCES, schedule=schedule, train_parts=parts, episodes=1)
 
 
 def test_adapters_alone_train_in_frozen_modules(tmp_path):
@@ -45,12 +46,19 @@ def test_a_prior_is_one_agents_evaluation(tmp_path):
     schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
     hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
     rows.write(tmp_path / "one.jsonl", cell(8) + hard)
-    Imitate(TopologicalAgent(16), **SOURCES, schedule=schedule, prior=str(tmp_path / "one.jsonl"))
+    assemble(
+        Imitate,
+        TopologicalAgent(16),
+        **SOURCES,
+        schedule=schedule,
+        prior=str(tmp_path / "one.jsonl"),
+    )
     for other, said in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
         mixed = [{**row, **other} for row in hard]
         rows.write(tmp_path / "two.jsonl", hard + mixed)
         with pytest.raises(ValueError, match=f"several {said}"):
-            Imitate(
+            assemble(
+                Imitate,
                 TopologicalAgent(16),
                 **SOURCES,
                 schedule=schedule,
@@ -74,7 +82,13 @@ def test_an_unknown_part_is_refused():
 )
 def test_weights_and_shares_that_make_no_sense_are_refused(options, words):
     with pytest.raises(ValueError, match=words):
-        Imitate(TopologicalAgent(16, SMALL), **SOURCES, schedule=Schedule("clean", 0.0), **options)
+        assemble(
+            Imitate,
+            TopologicalAgent(16, SMALL),
+            **SOURCES,
+            schedule=Schedule("clean", 0.0),
+            **options,
+        )
 
 
 def test_the_weight_of_a_loss_that_the_agent_does_not_return_is_refused():
@@ -88,13 +102,18 @@ def test_the_weight_of_a_loss_that_the_agent_does_not_return_is_refused():
 def test_a_step_needs_an_episode():
     with pytest.raises(ValueError, match="give 1 or more"):
         schedule = Schedule("clean", 0.0)
-        Imitate(TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
+        assemble(Imitate, TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
 
 
 def test_a_schedule_by_success_is_given_rates_once_where_nothing_else_asks_for_them():
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
-    made = Imitate(
-        TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=1, refresh_episodes=1
+    made = assemble(
+        Imitate,
+        TopologicalAgent(16, SMALL),
+        **SOURCES,
+        schedule=schedule,
+        episodes=1,
+        refresh_episodes=1,
     )
     assert made.jobs(0)[0][-1]["success"].keys() == {"flare"}
     before = schedule.success = {"flare": 0.25}
@@ -104,7 +123,8 @@ def test_a_schedule_by_success_is_given_rates_once_where_nothing_else_asks_for_t
 def test_measuring_success_leaves_the_agent_in_training_mode():
     """Or all that follows would train without dropout."""
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
-    made = Imitate(
+    made = assemble(
+        Imitate,
         TopologicalAgent(16, SMALL),
         **SOURCES,
         schedule=schedule,
@@ -161,7 +181,7 @@ def test_every_step_and_piece_meets_other_episodes_and_other_keys():
             return []
 
     schedule = Schedule("per_frame", 0.6)
-    how = {"episodes": 8, "expert_share": 1.0, "seed": 7}
+    how = {"episodes": 8, "follow_oracle": 1.0, "seed": 7}
     made = Rollouts(Kept(), SOURCES["world"], Listed(2), schedule, **how)
     for step in (0, 1):
         for job in made.jobs(step):

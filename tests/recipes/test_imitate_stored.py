@@ -12,6 +12,7 @@ from mitigate.agents.topological import TopologicalAgent, stored
 from mitigate.core import seeding
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate_stored import ImitateStored
+from mitigate.training.objective import assemble
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 
@@ -23,7 +24,15 @@ def recipe(folder, blind: tuple[str, ...] = (), size: int = 64, own: int = 64) -
     seeding.seed_everything(0, "agent")
     agent = TopologicalAgent(16, SMALL, blind=blind, size=own)
     world = partial(ApartmentsWorld, size, 1)
-    made = ImitateStored(agent, world, DrawnEpisodes(1), str(folder), steps=2, episodes=2)
+    made = assemble(
+        ImitateStored,
+        agent,
+        world=world,
+        training=DrawnEpisodes(1),
+        folder=str(folder),
+        steps=2,
+        episodes=2,
+    )
     made.start()
     return made
 
@@ -44,7 +53,7 @@ def folder(tmp_path_factory):
 def spread(made: ImitateStored) -> tuple[float, float]:
     """How much the RGB and the depth features of the stored poses differ."""
     views, depth = (
-        made.store.features(SCENE).views.astype(np.float32),
+        made.rollouts.store.features(SCENE).views.astype(np.float32),
         made.agent.planner.widths[-1],
     )
     return float(views[..., :-depth].std(0).mean()), float(views[..., -depth:].std(0).mean())
@@ -54,14 +63,16 @@ def test_a_blind_run_leaves_whole_features_to_the_next(folder):
     """The blind one comes first and fills the cache."""
     assert spread(recipe(folder, ("rgb",)))[0] == 0.0
     seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
-    assert seeing.store.folder == deaf.store.folder and min(spread(seeing)) > 0
-    assert np.array_equal(seeing.store.features(SCENE).views, deaf.store.features(SCENE).views)
+    assert seeing.rollouts.store.folder == deaf.rollouts.store.folder and min(spread(seeing)) > 0
+    assert np.array_equal(
+        seeing.rollouts.store.features(SCENE).views, deaf.rollouts.store.features(SCENE).views
+    )
     assert spread(recipe(folder, ("depth",)))[1] == 0.0
 
 
 def test_views_of_another_size_are_stored_apart(folder):
     made = [recipe(folder, size=n, own=own) for n, own in ((64, 64), (32, 64), (32, 32))]
-    assert len({recipe.store.folder for recipe in made}) == 3
+    assert len({recipe.rollouts.store.folder for recipe in made}) == 3
 
 
 def test_a_batch_trains_the_planner_alone(folder):

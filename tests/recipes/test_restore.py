@@ -16,6 +16,7 @@ from mitigate.encoders.sources import FolderFrames
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.recipes.restore import Restore
 from mitigate.recipes.restore_gate import Judged, RestoreGate
+from mitigate.training.objective import assemble
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -27,7 +28,7 @@ def recipe_of(sensor: str = RGB, names=("foreign_object", "missing_data"), **giv
     how = {"panoramas": 1, **given}
     schedule = Schedule("per_episode", (0.4, 0.8), names=names, clean_share=0.3)
     world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
-    return Restore(restorer, **world, modality=sensor, schedule=schedule, **how)
+    return assemble(Restore, restorer, **world, modality=sensor, schedule=schedule, **how)
 
 
 @pytest.mark.parametrize(("sensor", "left"), [(RGB, 0.8), (DEPTH, 0.6)])
@@ -59,8 +60,7 @@ def test_a_gate_learns_to_tell_and_its_threshold_follows_clean_frames(tmp_path):
     Trainer(given, steps=40, lr=2e-3, folder=tmp_path / "first", precision="fp32").fit()
     schedule = Schedule("per_episode", (0.4, 0.8), names=("low_light", "foreign_object"))
     world = {"world": partial(ApartmentsWorld, 16, 2), "training": DrawnEpisodes(2)}
-    recipe = RestoreGate(
-        given.agent, **world, modality=RGB, schedule=schedule,
+    recipe = assemble(RestoreGate, given.agent, **world, modality=RGB, schedule=schedule,
         instants=24, held=10, batch=16, touched=0.1,
     )  # fmt: skip
     before = {name: p.clone() for name, p in given.agent.named_parameters()}
@@ -133,7 +133,16 @@ def test_a_folder_of_frames_will_do(tmp_path):
 def _of_folder(path) -> Restore:
     world = partial(FolderFrames, str(path))
     schedule = Schedule("per_episode", 0.6, clean_share=0.0)
-    return Restore(Restorer([RGB], width=4), world, None, RGB, schedule, panoramas=1, frames=8)
+    return assemble(
+        Restore,
+        Restorer([RGB], width=4),
+        world=world,
+        training=None,
+        modality=RGB,
+        schedule=schedule,
+        panoramas=1,
+        frames=8,
+    )
 
 
 def test_depth_of_a_folder_is_corrupted_as_far_as_the_restorer_sees(tmp_path):
@@ -145,7 +154,16 @@ def test_depth_of_a_folder_is_corrupted_as_far_as_the_restorer_sees(tmp_path):
     agent = Restorer([DEPTH], depth_width=4, far=40.0)
     world = partial(FolderFrames, str(tmp_path), sensor=DEPTH)
     schedule = Schedule("per_episode", 0.6, clean_share=0.0, names=("gaussian_noise",))
-    made = Restore(agent, world, None, DEPTH, schedule, panoramas=1, frames=3)
+    made = assemble(
+        Restore,
+        agent,
+        world=world,
+        training=None,
+        modality=DEPTH,
+        schedule=schedule,
+        panoramas=1,
+        frames=3,
+    )
     made.start()
     batch = made.batch(0)
     assert batch["frames"].mean() > 18 and batch["clean"].min() >= 21
@@ -168,8 +186,8 @@ def test_a_folder_with_other_frames_is_another_run(tmp_path):
 
 
 def test_a_schedule_by_success_is_refused_where_nothing_measures_it(tmp_path):
-    world = partial(FolderFrames, str(tmp_path))
+    source = {"world": partial(FolderFrames, str(tmp_path)), "training": None, "modality": RGB}
     schedule = Schedule("success_distributed", 0.6)
     for kind in (Restore, RestoreGate):
         with pytest.raises(ValueError, match="Nothing in this recipe measures success"):
-            kind(Restorer([RGB], width=4), world, None, RGB, schedule)
+            assemble(kind, Restorer([RGB], width=4), **source, schedule=schedule)

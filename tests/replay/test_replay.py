@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from omegaconf import OmegaConf
 
 from mitigate import cli
 from mitigate.agents.recurrent.policy import Odometer
@@ -20,10 +21,10 @@ from mitigate.core.observation import DEPTH, FORWARD, LEFT, POSE, RGB, RIGHT, ST
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import episode_lists
 from mitigate.guards.frames.restorer import Restorer
+from mitigate.guards.guard import Guard, Guards
 from mitigate.replay import export_drive, replay, report
-from mitigate.replay.changes import _share, compare
 from mitigate.replay.export_drive import write_frames
-from mitigate.replay.walk import Answers, walk
+from mitigate.replay.walk import Answers, _share, compare, walk
 from mitigate.worlds.apartments.tasks import load_episodes
 from mitigate.worlds.recorded import Recording, open_recording
 from mitigate.worlds.recorded.recording import NONE, answered
@@ -68,12 +69,13 @@ def test_an_agent_is_shown_every_step_and_told_what_the_driver_did():
 def test_a_restorer_goes_over_the_frames_before_the_agent_does():
     dark, looks = Corruption("low_light", 1.0), []
 
-    def brightened(frames):
-        looks.append(frames)
-        return {**frames, RGB: np.full_like(frames[RGB], 200)}
+    class Brightened(Guard):
+        def observe(self, observation):
+            looks.append(observation)
+            return {**observation, RGB: np.full_like(observation[RGB], 200)}
 
     assert set(walk(ByBrightness(), drive(), dark, 0).actions.tolist()) == {RIGHT}
-    found = walk(ByBrightness(), drive(), dark, 0, keep=[2], restorer=brightened)
+    found = walk(ByBrightness(), drive(), dark, 0, keep=[2], guards=Guards([Brightened()]))
     assert found.actions.tolist() == [FORWARD] * T and len(looks) == T
     assert (found.seen[2][RGB] == 200).all()
 
@@ -84,7 +86,7 @@ def test_the_table_says_which_restorer_the_frames_went_through():
     found = {"mine": {"clean": compare([made], answers, answers)}}
     restorer = Restorer(sensors=[RGB], width=4)
     said = f"Frames of rgb went through the restorer `{restorer.hash}`."
-    assert said in report.table(found, 0.6, T, 1, restorer)
+    assert said in report.table(found, 0.6, T, 1, Guards([restorer]))
     assert "restorer" not in report.table(found, 0.6, T, 1)
 
 
@@ -212,6 +214,13 @@ def test_the_command_writes_decisions_tables_and_pictures(tmp_path, mitigate):
     assert {line["agent"] for line in lines} == {"recurrent", "recurrent_teacher"}
     clean = [line for line in lines if line["condition"] == "clean"]
     assert all(line["action"] == line["clean"] for line in clean)
+    filtered = ("conditions=[missing_data]", f"out={tmp_path}/filtered", agents.split(",")[0] + "]")
+    status, _, wrong = mitigate(
+        "replay", str(bag), *filtered, "restore=tests.guards.filters:median"
+    )
+    assert status == 0, wrong
+    table = (tmp_path / "filtered/table.md").read_text()
+    assert "Frames of rgb went through the restorer `" in table
     assert (out / "changes.png").is_file() and (out / "table.md").is_file()
     assert json.loads((out / "replay.json").read_text())["drives"] == [str(bag)]
     assert "Foreign object" in printed
@@ -255,7 +264,8 @@ def test_one_that_is_stopped_says_the_whole_command_and_does_not_promise_to_go_o
 def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
     tmp_path, form, monkeypatch
 ):
-    cfg = load_config("export_drive", [f"form={form}", "env.size=16", "episodes=2"])
+    options = [f"form={form}", "env.size=16", "episodes=2"]
+    config = OmegaConf.to_object(load_config("export_drive", options))
     listed = [
         replace(e, episode_id=f"../../é.{n}") for n, e in enumerate(load_episodes("val_seen")[:2])
     ]
@@ -265,18 +275,18 @@ def test_the_id_of_an_episode_is_no_path_and_a_drive_is_whole_or_not_there(
         patch.setattr(export_drive, "write_bytes", full)
         patch.setattr(export_drive, "write_bag", full)
         with pytest.raises(OSError, match="No space left"):
-            export_drive.run(cfg, out)
+            export_drive.run(config, out)
     assert [*out.iterdir()] == []
-    written = export_drive.run(cfg, out)
+    written = export_drive.run(config, out)
     assert [path.stem for path in written] == ["é-0", "é-1"]
     assert [*tmp_path.iterdir()] == [tmp_path / "a"] and [*(tmp_path / "a").iterdir()] == [out]
     found = [open_recording(path)[0] for path in written]
     assert [drive.instruction for drive in found] == [e.instruction.text for e in listed]
     with pytest.raises(ValueError, match="is there already: name another folder"):
-        export_drive.run(cfg, out)
+        export_drive.run(config, out)
     listed[:] = [replace(listed[0], episode_id=name) for name in ("a/b", "a.b")]
     with pytest.raises(ValueError, match="Two episodes would be the drive .*'a/b' and 'a.b'"):
-        export_drive.run(cfg, tmp_path / "other")
+        export_drive.run(config, tmp_path / "other")
 
 
 def full(*_):

@@ -194,8 +194,8 @@ def _no_job():
     ("fatal", "kind", "said"),
     [
         ("piece", ValueError, "A piece of a batch cannot be sent .* workers=0"),
-        ("pickled", ValueError, "A job of this recipe cannot be sent .* workers=0"),
-        ("pointer", ValueError, "A job of this recipe cannot be sent .*pointers.* workers=0"),
+        ("pickled", ValueError, "A job of this objective cannot be sent .* workers=0"),
+        ("pointer", ValueError, "A job of this objective cannot be sent .*pointers.* workers=0"),
         ("unpickled", OSError, "no job can be made"),
     ],
 )

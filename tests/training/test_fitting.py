@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections import Counter
+from pathlib import Path
 
 import pytest
 from omegaconf import OmegaConf, open_dict
@@ -22,12 +23,18 @@ from mitigate.recipes.imitate import Imitate
 from mitigate.recipes.imitate_stored import ImitateStored
 from mitigate.recipes.pretrain import Pretrain
 from mitigate.recipes.restore import Restore
-from mitigate.training import fitting, stages, train
+from mitigate.training import plan, stages, train
+from mitigate.training.config import StageConfig, TrainConfig, read
+from mitigate.training.objective import Objective, ObjectiveSpec
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe
 from tests.tiny import TinyAgent, TinyRecipe
 
 OFF = "evaluation.enabled=false"
+
+
+def load(*options: str) -> TrainConfig:
+    """Return the typed options of a training."""
+    return read(conf.load_config("train", [*options]))
 
 
 class NoAgent(TinyRecipe):
@@ -56,7 +63,6 @@ def refusal(folder, *options: str) -> str:
         ("dagger", "topological", ["stage policy", "no plain data", "recipe=imitation"]),
         ("encoder", "recurrent", ["stage encoder", "agent=efficientnet_lite0"]),
         ("restore", "frontier", ["stage rgb", "agent=restorer"]),
-        ("safeguard_tagger", "frontier", ["stage tagger", "agent=tagger"]),
         ("da_per_episode", "restorer", ["stage perception_rgb", "no labels, see"]),
     ],
 )
@@ -74,23 +80,20 @@ def test_a_recipe_names_what_the_agent_lacks_and_what_to_do(recipe):
     assert not TinyRecipe.misfit(TinyAgent())
 
 
-@pytest.mark.parametrize("recipe", ["dagger", "base", "safeguard_tagger"])
+@pytest.mark.parametrize("recipe", ["dagger", "base", "safeguard_lora"])
 def test_a_schedule_that_no_stage_draws_from_is_told(recipe, capsys):
-    fitting.tell_of_schedule(conf.load_config("train", [f"recipe={recipe}"]))
+    plan.warn_unused_schedule(load(f"recipe={recipe}"))
     assert not capsys.readouterr().out
-    cfg = conf.load_config("train", [f"recipe={recipe}", "schedule=per_episode"])
-    fitting.tell_of_schedule(cfg)
+    plan.warn_unused_schedule(load(f"recipe={recipe}", "schedule=per_episode"))
     assert f"has no effect: recipe={recipe} draws no corruptions" in capsys.readouterr().out
-    fitting.tell_of_schedule(conf.load_config("train", [f"recipe={recipe}", "experiment=broad"]))
+    plan.warn_unused_schedule(load(f"recipe={recipe}", "experiment=broad"))
     assert "(mode clean) has no effect" in capsys.readouterr().out
 
 
 def test_a_recipe_of_ones_own_may_hold_the_schedule_where_it_likes(capsys):
     draws = {"_target_": "a.Schedule", "mode": "per_frame"}
-    cfg = OmegaConf.create(
-        {"name": "own", "schedule": draws, "stages": {"one": {"recipe": {"parts": [draws]}}}}
-    )
-    fitting.tell_of_schedule(cfg)
+    stages = {"one": StageConfig({"parts": [draws]})}
+    plan.warn_unused_schedule(TrainConfig("own", schedule=draws, stages=stages))
     assert not capsys.readouterr().out
 
 
@@ -101,12 +104,12 @@ def test_severities_of_the_options_act_on_the_evaluation_alone_where_a_range_is_
     options = [f"recipe={recipe}", "severity=0.9", "severity_depth=0.8"]
     cfg = conf.load_config("train", options)
     assert build(cfg.schedule) == build(conf.load_config("train", options[:1]).schedule)
-    fitting.tell_of_schedule(cfg)
+    plan.warn_unused_schedule(read(cfg))
     said = capsys.readouterr().out
     assert "severity=0.9 is of the evaluation alone" in said and "which is [0.3, 1.0]" in said
     assert "severity_depth=0.8 is of the evaluation alone" in said
-    fitting.tell_of_schedule(conf.load_config("train", options[:1]))
-    fitting.tell_of_schedule(conf.load_config("train", ["recipe=da_per_frame", *options[1:]]))
+    plan.warn_unused_schedule(load(*options[:1]))
+    plan.warn_unused_schedule(load("recipe=da_per_frame", *options[1:]))
     assert not capsys.readouterr().out
 
 
@@ -124,12 +127,12 @@ def test_the_oracles_share_falls_over_the_steps_that_are_taken(recipe):
 
 
 def test_a_stage_that_ends_in_its_warmup_is_told(capsys):
-    fitting.tell_of_warmup(conf.load_config("train", ["trainer.steps=40"]))
+    plan.warn_warmup(load("trainer.steps=40"))
     assert capsys.readouterr().out == (
         "perception_rgb: its 40 steps are over before the learning rate has risen, for which it "
         "takes 50: set trainer.warmup below trainer.steps\n"
     )
-    fitting.tell_of_warmup(conf.load_config("train", ["trainer.steps=40", "debug=smoke"]))
+    plan.warn_warmup(load("trainer.steps=40", "debug=smoke"))
     assert not capsys.readouterr().out
 
 
@@ -154,7 +157,7 @@ class Walker(StepwiseAgent):
 
 
 def left(cfg) -> list[str]:
-    return [str(name) for name, stage in cfg.stages.items() if stage is not None]
+    return [*cfg.active_stages]
 
 
 @pytest.mark.parametrize(
@@ -162,32 +165,32 @@ def left(cfg) -> list[str]:
     [("imitation", "imitation"), ("da_success", "imitation"), ("ts_distill", "episodes")],
 )
 def test_an_agent_that_shows_no_encoders_learns_on_episodes_alone(recipe, stage, capsys):
-    cfg = conf.load_config("train", [f"recipe={recipe}"])
-    fitting.leave_out(cfg, Walker())
+    cfg = load(f"recipe={recipe}")
+    plan.leave_out_stages(cfg, Walker())
     assert left(cfg) == [stage]
     assert "left out, Walker has no encoders, labels, see" in capsys.readouterr().out
 
 
 def test_in_a_world_without_random_poses_an_agent_learns_on_episodes_alone(monkeypatch, capsys):
-    cfg = conf.load_config("train", ["recipe=imitation"])
-    fitting.leave_out(cfg, TopologicalAgent(16))
+    cfg = load("recipe=imitation")
+    plan.leave_out_stages(cfg, TopologicalAgent(16))
     assert len(left(cfg)) == 3  # the apartments have them
-    monkeypatch.setattr(fitting, "maker", lambda node: Walker)  # any class without them
-    fitting.leave_out(cfg, TopologicalAgent(16))
+    monkeypatch.setattr(plan, "maker", lambda node: Walker)  # any class without them
+    plan.leave_out_stages(cfg, TopologicalAgent(16))
     assert left(cfg) == ["imitation"] and "no random poses" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("recipe", ["conv_adapter", "harden"])
 def test_what_an_agent_lacks_for_a_recipe_of_views_and_which_do_without_is_told(recipe, tmp_path):
-    cfg = conf.load_config("train", [f"recipe={recipe}"])
-    fitting.leave_out(cfg, Walker())
+    cfg = load(f"recipe={recipe}")
+    plan.leave_out_stages(cfg, Walker())
     with pytest.raises(ValueError, match=r"Walker .*no encoders, labels, see\..*da_per_episode"):
-        fitting.check(cfg, Walker(), tmp_path)
+        plan.plan_stages(cfg, Walker(), tmp_path)
 
 
 def test_a_blinded_agent_that_learns_nothing_is_evaluated_as_it_is(tmp_path, monkeypatch, capsys):
     met = []
-    monkeypatch.setattr(train, "get_method", lambda _: lambda cfg, *agents: met.append(agents))
+    monkeypatch.setattr(stages, "get_method", lambda _: lambda cfg, *agents: met.append(agents))
     options = ["recipe=ablation", "agent=frontier", "agent.blind=[rgb]", f"folder={tmp_path}"]
     train.run(conf.load_config("train", [*options, "workers=0"]))
     before, after = met[0][:2]
@@ -209,7 +212,7 @@ def tiny(folder, name: str, *stages: str, width: int = 8):
     with open_dict(cfg):
         cfg.name, cfg.init = name, None
         cfg.agent = {"_target_": "tests.tiny.TinyAgent", "width": width}
-        stage = train.StageConfig(recipe={"_target_": "tests.tiny.TinyRecipe"})
+        stage = StageConfig(recipe={"_target_": "tests.tiny.TinyRecipe"})
         cfg.stages = dict.fromkeys(stages, stage)
     return cfg
 
@@ -250,11 +253,10 @@ def test_a_mistake_in_the_last_stage_shows_before_the_first_trains(
 
 
 def test_looking_at_all_stages_leaves_the_agent_as_it_is_and_says_nothing(tmp_path, capsys):
-    cfg = conf.load_config("train", ["recipe=stacked", "debug=smoke"])
-    OmegaConf.resolve(cfg.stages)
+    cfg = load("recipe=stacked", "debug=smoke", f"folder={tmp_path}")
     agent = build(cfg.agent)
     before = checkpoint.weights_sha(agent), [p.requires_grad for p in agent.parameters()]
-    fitting.check(cfg, agent, tmp_path)
+    plan.check_fit(cfg, agent, plan.plan_stages(cfg, agent, tmp_path), Ranks())
     assert before == (
         checkpoint.weights_sha(agent),
         [p.requires_grad for p in agent.parameters()],
@@ -273,18 +275,19 @@ def test_looking_at_all_stages_leaves_the_agent_as_it_is_and_says_nothing(tmp_pa
 def test_ranks_that_a_later_stage_has_no_pieces_for_are_refused_at_once(
     tmp_path, recipe, agent, count, words
 ):
-    cfg = conf.load_config("train", [f"recipe={recipe}", f"agent={agent}", "init=null"])
-    OmegaConf.resolve(cfg.stages)
+    cfg = load(f"recipe={recipe}", f"agent={agent}", "init=null", f"folder={tmp_path}")
+    built = build(cfg.agent)
+    planned = plan.plan_stages(cfg, built, tmp_path)
     with pytest.raises(ValueError, match=words):
-        fitting.check(cfg, build(cfg.agent), tmp_path, Ranks(0, count))
+        plan.check_fit(cfg, built, planned, Ranks(0, count))
 
 
 @pytest.mark.parametrize(
     ("target", "words"),
     [
-        ("tests.tiny.TinyAgent", "tests.tiny.TinyAgent is no recipe: make it a subclass"),
+        ("tests.tiny.TinyAgent", "tests.tiny.TinyAgent is no objective: make it a subclass"),
         ("tests.training.test_fitting.NoAgent", "takes no agent: give its constructor"),
-        ("tests.training.test_fitting.no_recipe", "no_recipe is no recipe"),
+        ("tests.training.test_fitting.no_recipe", "no_recipe is no objective"),
         ("tests.tiny.Nope", "tests.tiny.Nope.* A _target_ is module.Name"),
     ],
 )
@@ -331,10 +334,9 @@ def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
 
 def fitted(agent, *options: str):
     """The stages of a training of ``agent``, by name."""
-    cfg = conf.load_config("train", [*options])
-    OmegaConf.resolve(cfg.stages)
+    cfg = load(*options)
     before = copy.deepcopy(cfg.stages)
-    fitting.draw_what_is_read(cfg, agent)
+    plan.drop_unread_corruptions(cfg, agent)
     return cfg.stages, before
 
 
@@ -350,7 +352,7 @@ def fitted(agent, *options: str):
 def test_an_agent_meets_corruptions_of_what_it_reads_alone(recipe, agent, read, capsys):
     stages, _ = fitted(agent, f"recipe={recipe}")
     for stage in stages.values():
-        schedule = build(stage.recipe.schedule)
+        schedule = build(stage.recipe["schedule"])
         met = Counter(schedule.draw(0, f"e{i}", 0)[0].name for i in range(2000))
         assert set(met) == {"clean", *read}
         assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # the clean share, and no more
@@ -361,7 +363,7 @@ def test_an_agent_meets_corruptions_of_what_it_reads_alone(recipe, agent, read, 
 
 def test_of_named_corruptions_those_it_reads_are_drawn():
     stages, _ = fitted(RecurrentAgent(["rgb"]), "schedule.names=[multipath,flare,spatter]")
-    assert stages.imitation.recipe.schedule.names == ["flare", "spatter"]
+    assert stages["imitation"].recipe["schedule"]["names"] == ["flare", "spatter"]
 
 
 @pytest.mark.parametrize(
@@ -396,8 +398,8 @@ def test_a_schedule_of_nothing_that_the_agent_reads_is_refused(tmp_path, sensor,
 def test_a_run_trains_on_what_was_drawn_and_says_so(tmp_path, monkeypatch):
     met = {}
 
-    def trained(cfg, name, stage, *_):
-        met[name] = list(stage.recipe.schedule.names)
+    def trained(plan, stage, *_):
+        met[stage.name] = list(stage.objective.source["schedule"]["names"])
         return "fp32"
 
     monkeypatch.setattr(stages, "train_stage", trained)
@@ -413,15 +415,16 @@ def test_a_teacher_of_which_no_stage_learns_is_refused(tmp_path):
     )
 
 
-def test_stages_behind_one_of_a_users_are_not_built_before_it_trained(monkeypatch):
+def test_check_stages_stops_at_the_first_stage_of_a_user(monkeypatch):
     built = []
     monkeypatch.setattr(
-        fitting, "recipe_of", lambda stage, agent: built.append(stage.recipe._target_) or Recipe()
+        ObjectiveSpec, "build", lambda spec, agent: built.append(spec.target) or Objective()
     )
-    names = ("mitigate.recipes.a.A", "mine.B", "mitigate.recipes.c.C")
-    stages = {name[-1]: {"recipe": {"_target_": name}} for name in names}
-    cfg = OmegaConf.create({"name": "own", "stages": stages})
-    fitting._check_stages(cfg, TinyAgent(), Ranks())
+    targets = ("mitigate.recipes.a.A", "mine.B", "mitigate.recipes.c.C")
+    planned = [
+        plan.StagePlan(target[-1], Path(), ObjectiveSpec(target), {}, {}) for target in targets
+    ]
+    plan.check_stages("own", TinyAgent(), planned, Ranks())
     assert built == ["mitigate.recipes.a.A"]
 
 

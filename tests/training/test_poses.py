@@ -21,13 +21,12 @@ def test_a_corruption_is_shown_a_picture_in_every_view(monkeypatch):
 
     monkeypatch.setattr(poses, "corrupt_observation", look)
     world, schedule = partial(ApartmentsWorld, 32), Schedule("per_frame", 0.6)
-    options = {"sensor": "rgb", "label": None, "panoramas": 2, "seed": 0}
-    half, whole = (
-        poses.Poses(None, world, None, schedule, every=every, **options).work(
-            (3, 0, 1, 2, schedule.state_dict())
-        )
-        for every in (2, 1)
-    )
+    source = poses.Poses(None, world, None, "rgb", schedule, panoramas=2)
+    job = (3, 0, 1, 2, schedule.state_dict())
+    half, whole = [], []
+    for every, pieces in ((2, half), (1, whole)):
+        source.every = every
+        pieces += source.work(job)
     assert len(half) == len(whole) == 2 and len(shown) == 4
     assert half[0][0].shape == (6, 32, 32, 3) and whole[0][0].shape == (12, 32, 32, 3)
     assert all(view.std() > 0 for frames in shown for view in frames)

@@ -12,15 +12,15 @@ import pytest
 import torch
 
 from mitigate.core.seeding import generator, seed_everything
+from mitigate.training.objective import Objective
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe
 from mitigate.training.trainer import Trainer
 
 ROOT = Path(__file__).parents[2]
 PIECES = 4
 
 
-class Regression(Recipe):
+class Regression(Objective):
     """Pieces of different lengths, a weight that nothing but the first rank's pieces use, and one
     that none uses, which must not decay."""
 

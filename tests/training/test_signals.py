@@ -14,8 +14,8 @@ import torch
 
 from mitigate.core.signals import Ended, held, unbroken
 from mitigate.training import states
+from mitigate.training.objective import Objective
 from mitigate.training.ranks import Ranks
-from mitigate.training.recipe import Recipe
 from mitigate.training.trainer import Trainer
 
 ROOT = Path(__file__).parents[2]
@@ -34,7 +34,7 @@ conf.main(program, "train")
 """
 
 
-class Slow(Recipe):
+class Slow(Objective):
     """A line that is fitted; at step 3 it sends itself a signal, once."""
 
     def __init__(self, folder: Path, number: int) -> None:

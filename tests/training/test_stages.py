@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import pytest
-from omegaconf import OmegaConf
 
 from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import conf
 from mitigate.training import train
-from mitigate.training.fitting import nothing_to_do
 from mitigate.training.parts import policy_parts, train_only
+from mitigate.training.plan import nothing_to_train
 from tests.tiny import TinyAgent
 
 RGB, DEPTH, POLICY, STORED = (
-    OmegaConf.create({"recipe": recipe})
-    for recipe in (
-        {"modality": "rgb"},
-        {"modality": "depth"},
-        {"train_parts": "policy"},
-        {"variants": 3},
-    )
+    {"modality": "rgb"},
+    {"modality": "depth"},
+    {"train_parts": "policy"},
+    {"variants": 3},
 )
 KINDS = ["topological", "recurrent", "recurrent_rgb", "frontier"]
 
@@ -38,10 +34,10 @@ KINDS = ["topological", "recurrent", "recurrent_rgb", "frontier"]
     ids=lambda x: type(x).__name__,
 )
 def test_a_stage_that_has_nothing_to_train_says_why(agent, left):
-    said = [stage for stage in (RGB, DEPTH, POLICY, STORED) if nothing_to_do(stage, agent)]
+    said = [stage for stage in (RGB, DEPTH, POLICY, STORED) if nothing_to_train(stage, agent)]
     assert said == left
     if left:
-        assert type(agent).__name__ in nothing_to_do(left[0], agent)
+        assert type(agent).__name__ in nothing_to_train(left[0], agent)
 
 
 def test_the_policy_is_all_but_the_encoders():

@@ -14,7 +14,7 @@ from tests.evaluation.made_rows import column
 
 
 def config(runs, *options):
-    return conf.load_config("sweep", [f"runs={runs}", *options])
+    return conf.typed(conf.load_config("sweep", [f"runs={runs}", *options]), "sweep")
 
 
 @pytest.fixture
@@ -64,7 +64,7 @@ def test_without_options_to_combine_it_shows_how_and_runs_nothing(given, monkeyp
 )
 def test_one_folder_for_all_runs_is_refused(tmp_path, fake, command, option):
     with pytest.raises(ValueError, match=r"is one folder, .* set runs=FOLDER"):
-        sweep.run(config(tmp_path, f"command={command}"), ["seed=0,1", option])
+        sweep.run_all(config(tmp_path, f"command={command}"), ["seed=0,1", option])
     assert not fake
 
 
@@ -117,7 +117,7 @@ def test_combinations_whose_names_would_be_one_have_a_digest_each(tmp_path):
 def test_a_failed_run_stops_no_other_and_the_table_is_written(tmp_path, fake):
     options = ["severity=0.3,0.6", "seed=0,1"]
     with pytest.raises(ValueError, match="2 of 4 runs failed.*Run again"):
-        sweep.run(config(tmp_path, "jobs=2", "launcher=ray"), options)
+        sweep.run_all(config(tmp_path, "jobs=2", "launcher=ray"), options)
     assert len(fake[0][0]) == 4 and fake[0][1:] == (2, "ray")
     assert "severity=0.6" in (tmp_path / "table.md").read_text(encoding="utf-8")
 
@@ -134,7 +134,7 @@ def test_a_failed_run_stops_no_other_and_the_table_is_written(tmp_path, fake):
 )
 def test_what_no_run_could_have_is_said_before_any_starts(tmp_path, fake, own, options, said):
     with pytest.raises(ValueError, match=said):
-        sweep.run(config(tmp_path, *own), options)
+        sweep.run_all(config(tmp_path, *own), options)
     assert not fake
 
 
@@ -142,8 +142,8 @@ def test_a_sweep_of_evaluations_knows_the_kind_of_agent_by_its_weights(tmp_path,
     """``rgb_width`` is a setting of the recurrent agent, and not of the usual one."""
     cfg = config(tmp_path, "command=evaluate")
     options = ["checkpoint=checkpoints/recurrent/base", "agent.rgb_width=1,2"]
-    sweep.run(cfg, options)
+    sweep.run_all(cfg, options)
     ((chains, _, _),) = fake
     assert len(chains) == 2
     with pytest.raises(ValueError, match=r"no option 'agent.rgb_width'"):
-        sweep.run(cfg, ["checkpoint=checkpoints/base", *options[1:]])
+        sweep.run_all(cfg, ["checkpoint=checkpoints/base", *options[1:]])

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from omegaconf import OmegaConf
 
 from mitigate.cluster import programs
 from mitigate.core import conf
 from mitigate.corruptions import DEPTH, RGB
 from mitigate.evaluation import plots, rows, trajectories
+from mitigate.evaluation.episode import start_of
 from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 
@@ -26,10 +27,15 @@ def less(table: str, kept: Collection[str]) -> list[str]:
     return [f"~columns.{name}" for name in conf.load_config(table).columns if name not in kept]
 
 
-def config(out: Path, **changes):
-    kept = less("table2", ["base", "da_per_frame"])
-    cfg = conf.load_config("table2", [f"out={out}", "seeds=[0,1]", *kept])
-    return OmegaConf.merge(cfg, changes)
+def load(table: str, *options: str) -> cells.TablesConfig:
+    """Return the typed options of a table."""
+    return cells.read_options(conf.load_config(table, [*options]))
+
+
+def config(out: Path, **changes) -> cells.TablesConfig:
+    cfg = load("table2", f"out={out}", "seeds=[0,1]", *less("table2", ["base", "da_per_frame"]))
+    columns = {**cfg.columns, **changes.pop("columns", {})}
+    return replace(cfg, columns=columns, **changes)
 
 
 def finished(cfg) -> None:
@@ -72,7 +78,7 @@ def test_a_cell_trains_and_evaluates_in_its_own_folder(tmp_path):
 
 def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
     more = '+columns.recurrent_mine=["agent=recurrent","recipe=ts_distill"]'
-    cfg = conf.load_config("table1", [f"out={tmp_path}", "split=val_unseen_ogn", more])
+    cfg = load("table1", f"out={tmp_path}", "split=val_unseen_ogn", more)
     made = {cell.column: [args for _, args in cell.commands(cfg)] for cell in tables.cells(cfg)}
     (plain,), (shipped,) = made["recurrent"], made["recurrent_da"]
     train, hardened = made["recurrent_mine"]
@@ -88,7 +94,7 @@ def test_table_1_evaluates_every_kind_of_agent_and_may_train_others(tmp_path):
     "option", ["suite=quick", "conditions=[clean,low_light_noise,missing_data]"]
 )
 def test_what_is_measured_can_be_chosen(tmp_path, option):
-    cfg = conf.load_config("table1", [f"out={tmp_path}", option])
+    cfg = load("table1", f"out={tmp_path}", option)
     for cell in tables.cells(cfg):
         assert "conditions=[clean,low_light_noise,missing_data]" in cell.commands(cfg)[-1][1]
 
@@ -102,19 +108,19 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
         ("+evaluations.mine=pairs", "evaluations.mine=pairs must be a list of options"),
         ('+evaluations.mine=["restore=nope"]', "Evaluation mine: There is no restorer at nope"),
         ('+evaluations.mine=["safeguard=nope"]', "Evaluation mine: There is no safeguard 'nope'"),
-        ('+evaluations.mine=["safeguard=tagger+rules"]', "mine: There is no safeguard"),
+        ('+evaluations.mine=["safeguard=reader+none"]', "mine: There is no safeguard"),
         ('+evaluations.mine=["out=x"]', "Evaluation mine: out=x is for the table.* may have suite"),
         ('+evaluations.mine=["name=x"]', "Evaluation mine: name=x is for the table"),
         ('+evaluations.mine=["seed=5"]', "Evaluation mine: seed=5 is for the table"),
         ('+evaluations.mine=["checkpoint=x"]', "Evaluation mine: checkpoint=x is for the table"),
         ('+evaluations.mine=["agent=recurrent"]', "Evaluation mine: agent=recurrent is for the"),
         ("+evaluations.mine=[1]", "evaluations.mine=.1. must be a list of options"),
-        ('+columns.mine=["restore=nope"]', "Column mine: There is no restorer at nope"),
+        ('+columns.mine=["restore=nope"]', "Column mine: There are no weights at at nope"),
         (
             '+columns.mine=["restore=checkpoints/restorer:pose"]',
-            "Column mine: There is no restorer",
+            "Column mine: There are no weights at",
         ),
-        ('+columns.mine=["safeguard=ruls"]', "Column mine: .*Did you mean rules?"),
+        ('+columns.mine=["safeguard=clasifier"]', "Column mine: .*Did you mean classifier?"),
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
         ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
@@ -135,22 +141,22 @@ def test_what_is_measured_can_be_chosen(tmp_path, option):
 )
 def test_a_mistake_is_told_once_and_before_any_cell_is_run(tmp_path, monkeypatch, option, said):
     monkeypatch.setattr(tables, "make", lambda made, cfg: pytest.fail("cells are run"))
-    cfg = conf.load_config("table1", [f"out={tmp_path / 'out'}", option, *less("table1", KEPT)])
+    cfg = load("table1", f"out={tmp_path / 'out'}", option, *less("table1", KEPT))
     with pytest.raises(ValueError, match=said):
-        tables.run(cfg)
+        tables.make_table(cfg)
     assert not (tmp_path / "out").exists()
 
 
 def test_a_column_of_other_options_is_refused_where_it_has_rows(tmp_path, quick):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
-    tables.run(cfg)
-    tables.run(cfg)
+    tables.make_table(cfg)
+    tables.make_table(cfg)
     changed = config(tmp_path, seeds=[0], columns={"base": ["checkpoint=checkpoints/teacher"]})
     with pytest.raises(ValueError, match=r"base-seed0 holds rows of an agent .* another out="):
-        tables.run(changed)
+        tables.make_table(changed)
     with pytest.raises(ValueError, match=r"da_per_frame-seed0 holds rows"):
-        tables.run(config(tmp_path, seeds=[0], train=["severity=0.4"]))
+        tables.make_table(config(tmp_path, seeds=[0], train=["severity=0.4"]))
 
 
 def test_walks_of_what_is_no_column_are_told(tmp_path, capsys):
@@ -165,7 +171,7 @@ def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick
     rows.write(failed, [{**row, "success": 0} for row in rows.read(failed)])
     two = [row for row in rows.read(part) if row["corruption"] in ("clean", "flare")]
     rows.write(part, two, fewer=True)
-    report = tables.run(cfg).read_text(encoding="utf-8")
+    report = tables.make_table(cfg).read_text(encoding="utf-8")
     assert "| undefined ‡ (" in report or "| undefined ‡ |" in report
     assert "† 1/8" in report
 
@@ -180,7 +186,7 @@ def test_a_score_that_is_undefined_or_of_few_corruptions_says_so(tmp_path, quick
     ],
 )
 def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table, split, suite):
-    cfg = conf.load_config("table1", [f"table={table}"])
+    cfg = load("table1", f"table={table}")
     assert (cfg.split, cells.measured(cfg)[0]) == (split, "clean")
     for cell in tables.cells(cfg):
         node = conf.load_config("train" if cell.trains else "evaluate", cell.options)
@@ -195,7 +201,7 @@ def test_every_column_of_a_table_of_kinds_is_an_agent_or_a_training_of_one(table
 def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)
-    report = tables.run(cfg).read_text(encoding="utf-8")
+    report = tables.make_table(cfg).read_text(encoding="utf-8")
     lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
     assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
     assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
@@ -205,7 +211,7 @@ def test_the_report_has_seeds_pooled_costs_and_the_papers_figures(tmp_path, quic
     costs = sorted(tmp_path.glob("cells/*/cost.json"))
     assert len(costs) == len(tables.cells(cfg))
     first = json.loads(costs[0].read_text())["train"]
-    tables.run(cfg)
+    tables.make_table(cfg)
     assert json.loads(costs[0].read_text())["train"] >= first > 0
 
 
@@ -244,9 +250,9 @@ def test_a_program_that_had_nothing_to_do_costs_nothing(tmp_path, monkeypatch):
 def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
     cfg = config(tmp_path / "all")
     finished(cfg)
-    whole = tables.run(cfg).read_text(encoding="utf-8").splitlines()
+    whole = tables.make_table(cfg).read_text(encoding="utf-8").splitlines()
     again = config(tmp_path / "again", rows=[str(c.folder) for c in tables.cells(cfg)])
-    report = tables.run(again).read_text(encoding="utf-8").splitlines()
+    report = tables.make_table(again).read_text(encoding="utf-8").splitlines()
     assert report == [line for line in whole if "CPU minutes" not in line]
     assert not (tmp_path / "again" / "cells").exists()
 
@@ -254,12 +260,10 @@ def test_the_report_can_be_made_again_from_the_rows_alone(tmp_path, quick):
 def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
     """Each takes what the table says and its own options, and none mixes with the table's rows."""
     measured = tables.Cell.measurement
-    cfg = conf.load_config(
-        "table2", [f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7"]
-    )
-    cfg.columns = {"base": cfg.columns.base, "restored": cfg.columns.restored}
+    cfg = load("table2", f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7")
+    cfg.columns = {name: cfg.columns[name] for name in ("base", "restored")}
     plain, restored = tables.cells(cfg)
-    mild = measured(plain, cfg, "severity_02", cfg.evaluations.severity_02)
+    mild = measured(plain, cfg, "severity_02", cfg.evaluations["severity_02"])
     node = conf.load_config("evaluate", mild)
     assert (node.severity, node.episodes, node.name) == (0.2, 7, "base")
     assert node.out != str(plain.evaluation) and len(node.suite.conditions) == 13
@@ -270,7 +274,7 @@ def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, mo
         made = column(8, ALL, name=name, agent=cell.column)
         rows.write(cell.evaluation / "rows.jsonl", made)
         rows.write(cell.further("severity_02") / "rows.jsonl", made[: len(made) // 2])
-    report = tables.run(cfg).read_text(encoding="utf-8")
+    report = tables.make_table(cfg).read_text(encoding="utf-8")
     apart = (tmp_path / "severity_02" / "table.md").read_text(encoding="utf-8")
     assert "| base | base+restorer |" in report and "| base | base+restorer |" in apart
     assert "Missing cells" in apart and "Missing cells" not in (tmp_path / "table.md").read_text()
@@ -291,7 +295,7 @@ def test_a_further_evaluation_walks_no_more_episodes_than_the_table(tmp_path, ta
 
 def test_a_column_or_an_evaluation_that_is_null_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
-    cfg = conf.load_config("table2", [f"out={tmp_path}", "evaluations=beyond", *null])
+    cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null)
     made = tables.cells(cfg)
     cells.check(made, cfg)
     assert "base" not in {cell.column for cell in made}
@@ -300,7 +304,7 @@ def test_a_column_or_an_evaluation_that_is_null_is_left_out(tmp_path):
     rows.write(made[0].further("pairs") / "rows.jsonl", column(8, ALL))
     assert tables.write_further(made, cfg, tmp_path) == []
     with pytest.raises(ValueError, match="columns.* must not be empty"):
-        tables.cells(OmegaConf.merge(cfg, {"columns": dict.fromkeys(cfg.columns)}))
+        tables.cells(replace(cfg, columns=dict.fromkeys(cfg.columns)))
 
 
 def test_a_cell_is_trained_once_and_measured_by_each_evaluation(tmp_path):
@@ -323,7 +327,7 @@ def test_a_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
         ],
     )
     with pytest.raises(ValueError, match=f"{broken.column}, seed {broken.seed}: train ended with"):
-        tables.run(cfg)
+        tables.make_table(cfg)
     report = (tmp_path / tables.REPORT).read_text(encoding="utf-8")
     assert "| Seeds | 0 1 | 0 |" in report
 
@@ -336,23 +340,23 @@ def test_an_empty_table_is_refused(tmp_path):
 def test_rows_of_another_severity_are_told(tmp_path):
     cfg = config(tmp_path, severity=0.9)
     rows.write(tmp_path / "cells" / "rows.jsonl", column(8, ALL))
-    cfg = OmegaConf.merge(cfg, {"rows": [str(tmp_path / "cells")]})
+    cfg = replace(cfg, rows=[str(tmp_path / "cells")])
     with pytest.raises(ValueError, match="only of val_unseen at 0, val_unseen at 0.6"):
-        tables.run(cfg)
+        tables.make_table(cfg)
 
 
 def test_clean_rows_alone_make_a_report(tmp_path):
     """As of the ablations, whatever the severity is that nothing was measured at."""
     rows.write(tmp_path / "rows.jsonl", column(8, {}))
     cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
-    report = tables.run(cfg).read_text(encoding="utf-8")
+    report = tables.make_table(cfg).read_text(encoding="utf-8")
     assert "clean only" in report and "| Clean SR | 80.0 |" in report
 
 
 def test_the_papers_figures_stand_only_beside_its_severity(tmp_path):
     rows.write(tmp_path / "rows.jsonl", column(8, ALL, name="da_per_frame", severity=0.9))
     cfg = config(tmp_path / "out", severity=0.9, rows=[str(tmp_path / "rows.jsonl")])
-    lines = tables.run(cfg).read_text(encoding="utf-8").splitlines()
+    lines = tables.make_table(cfg).read_text(encoding="utf-8").splitlines()
     assert "| Motion blur | 40.0 |" in lines
 
 
@@ -372,7 +376,7 @@ def test_walks_are_drawn_where_the_last_agent_wins_episodes_back(tmp_path, quick
         ]
         others = row("of-a-longer-run", True, name=cell.column)
         rows.write(cell.folder / "evaluation" / "rows.jsonl", [*made, others])
-    tables.run(cfg)
+    tables.make_table(cfg)
     assert {p.name for p in (tmp_path / "pictures").iterdir()} == {
         f"{ids[1]}-flare.png",
         "sheet.png",
@@ -385,7 +389,7 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
     restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
     cfg.columns = {"base": [], "restored": restored}
     (episode,) = tables.episodes(conf.load_config("evaluate").env, cfg.split, 1)
-    names = "base", "base+rules+restorer-rgb"
+    names = "base", "base+classifier+restorer-rgb"
     for cell, name in zip(tables.cells(cfg), names, strict=True):
         for corruption in ("clean", "flare", "black_box"):
             at = {"corruption": corruption, "severity": 0.6 * (corruption != "clean")}
@@ -393,16 +397,18 @@ def test_walks_are_of_agents_behind_what_stands_in_front_of_them(tmp_path, monke
             rows.append(cell.evaluation / "rows.jsonl", [made])
     walked = []
 
-    def run_episode(agent, world, episode, met, seed, repaired, restorer):
+    def run_episode(agent, world, episode, met, seed, guards):
         world.reset(episode)
-        walked.append((met.name, list(repaired.values()), restorer and list(restorer.nets)))
+        walked.append((met.name, guards.begin(start_of(agent, episode, met, seed)), guards.frames))
         return {"success": 1}
 
     monkeypatch.setattr(trajectories, "run_episode", run_episode)
     tables.draw_walks(cfg, tmp_path)
     plain, attacked, repaired = walked
-    assert plain == ("clean", [], None) and attacked == ("black_box", [], None)
-    assert repaired == ("black_box", [episode.instruction.text], ["rgb"])
+    text = episode.instruction.text
+    assert plain == ("clean", text, ())
+    assert attacked[0] == "black_box" and attacked[1] != text and attacked[2] == ()
+    assert repaired == ("black_box", text, ("rgb",))
 
 
 def test_no_walks_without_the_agents_cells(tmp_path):
@@ -410,7 +416,7 @@ def test_no_walks_without_the_agents_cells(tmp_path):
 
 
 def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
-    cfg = conf.load_config("table2", [f"out={tmp_path}", 'train=["env.size=32"]'])
+    cfg = load("table2", f"out={tmp_path}", 'train=["env.size=32"]')
     cfg.columns = {"mine": ["recipe=da_per_episode", "env.rule=etpnav", "severity=0.9"]}
     (_, train), (_, evaluate) = tables.cells(cfg)[0].commands(cfg)
     assert {"env.size=32", "env.rule=etpnav"} <= {*train} & {*evaluate}
@@ -418,7 +424,7 @@ def test_a_cell_is_measured_in_the_world_that_it_was_trained_in(tmp_path):
 
 
 def test_a_column_may_have_configs_of_ones_own(tmp_path):
-    cfg = conf.load_config("table2", [f"out={tmp_path}"])
+    cfg = load("table2", f"out={tmp_path}")
     cfg.columns = {"mine": ["--config-dir=mine", "recipe=own"]}
     commands = tables.cells(cfg)[0].commands(cfg)
     assert all("--config-dir=mine" in words for _, words in commands)
@@ -438,7 +444,7 @@ def test_a_cell_that_left_no_whole_row_does_not_hide_why(tmp_path, quick, monkey
     for left in ("", '{"agent": "abc'):
         (broken.evaluation / "rows.jsonl").write_text(left)
         with pytest.raises(ValueError, match=f"{broken.column}, seed 0: train ended with"):
-            tables.run(cfg)
+            tables.make_table(cfg)
 
 
 def test_run_names_cells_whose_rows_are_lost(tmp_path, quick):
@@ -446,4 +452,4 @@ def test_run_names_cells_whose_rows_are_lost(tmp_path, quick):
     finished(cfg)
     (tables.cells(cfg)[1].evaluation / "rows.jsonl").unlink()
     with pytest.raises(ValueError, match="da_per_frame, seed 0: its rows in .* were removed"):
-        tables.run(cfg)
+        tables.make_table(cfg)

@@ -16,18 +16,19 @@ from safetensors.torch import load_file
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
 from mitigate.evaluation.columns import column_of
-from mitigate.training import states, train
+from mitigate.training import config as options
+from mitigate.training import plan, states, train
 from tests.tiny import TinyAgent
 
 TINY = {"_target_": "tests.tiny.TinyRecipe"}
 
 
-def stage(**trainer) -> train.StageConfig:
-    return train.StageConfig(recipe=TINY, trainer=train.TrainerConfig(**trainer))
+def stage(**trainer) -> options.StageConfig:
+    return options.StageConfig(recipe=TINY, trainer=options.TrainerConfig(**trainer))
 
 
-def config(folder, *options: str, stages: dict | None = None) -> DictConfig:
-    cfg = conf.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *options])
+def config(folder, *given: str, stages: dict | None = None) -> DictConfig:
+    cfg = conf.load_config("train", ["evaluation.enabled=false", f"folder={folder}", *given])
     with open_dict(cfg):
         cfg.name, cfg.init = "tiny", None
         cfg.agent = {"_target_": "tests.tiny.TinyAgent"}
@@ -165,7 +166,7 @@ def test_a_negative_number_of_workers_is_refused(tmp_path):
 def test_a_setting_that_makes_no_sense_is_refused_before_anything_is_built(
     tmp_path, option, words, monkeypatch
 ):
-    monkeypatch.setattr(train, "build_agent", lambda *_, **__: pytest.fail("was built"))
+    monkeypatch.setattr(plan, "build_agent", lambda *_, **__: pytest.fail("was built"))
     with pytest.raises(ValueError, match=words):
         train.run(config(tmp_path, option))
 
@@ -197,20 +198,22 @@ def test_training_starts_from_the_weights_of_init(tmp_path):
 
 def test_the_folder_says_recipe_severity_seed_and_further_options():
     cfg = conf.load_config("train", ["recipe=da_success", "severity=0.9", "seed=3"])
-    assert train.default_folder(cfg) == "runs/da_success-s0.9-seed3"
+    assert options.default_folder(cfg) == "runs/da_success-s0.9-seed3"
     cfg.severity_depth = 0.8
-    name = train.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
+    name = options.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
     assert name == "runs/da_success-s0.9-d0.8-seed3-init-checkpoints_mine_debug-smoke"
-    swept, single = (train.default_folder(cfg, f"a.b={value}") for value in ("False", "false"))
+    swept, single = (options.default_folder(cfg, f"a.b={value}") for value in ("False", "false"))
     assert swept == single  # Hydra writes a sweep's values in Python's words
 
 
 def test_a_trainings_column_says_with_which_options_it_was_trained():
     """Seeds are pooled by name, so another learning rate must not look like another seed."""
     cfg = conf.load_config("train", ["recipe=da_success", "seed=3"])
-    plain, other = (Path(train.default_folder(cfg, options)) for options in ("", "trainer.lr=1e-5"))
-    assert column_of(cfg, plain) == "da_success"
-    assert column_of(cfg, other) == "da_success+trainer.lr-1e-5"
+    plain, other = (
+        Path(options.default_folder(cfg, variant)) for variant in ("", "trainer.lr=1e-5")
+    )
+    assert column_of(cfg.name, cfg.seed, plain) == "da_success"
+    assert column_of(cfg.name, cfg.seed, other) == "da_success+trainer.lr-1e-5"
 
 
 @pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
@@ -218,8 +221,8 @@ def test_what_does_not_change_the_training_does_not_change_the_folder(option, mo
     """More episodes to report on must not train again."""
     met = []
     monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))
-    for options in ([], [option]):
-        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *options])
+    for given in ([], [option]):
+        monkeypatch.setattr(sys, "argv", ["train", "recipe=da_success", *given])
         conf.main(train.hydra_main, "train")
     assert met == ["runs/da_success-s0.6-seed0"] * 2
 

@@ -18,10 +18,9 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.bridge.condition import Condition
+from mitigate.bridge.condition import Condition, Words
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.server import Listener
-from mitigate.bridge.words import Words
 from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, NAMES, Corruption, Key
 from mitigate.worlds.habitat import corrupt_habitat

@@ -54,10 +54,9 @@ def evaluation(folder: Path) -> None:
 
 def bridge(folder: Path) -> None:
     """Serve and ask, a server for each condition."""
-    from mitigate.bridge.condition import Condition
+    from mitigate.bridge.condition import Condition, Words
     from mitigate.bridge.hook import mitigate_hook
     from mitigate.bridge.server import Listener
-    from mitigate.bridge.words import Words
     from mitigate.corruptions import CLEAN, NAMES, Corruption
 
     corruptions = [CLEAN, *(Corruption(name, SEVERITY) for name in NAMES)]

@@ -20,7 +20,7 @@ from typing import Any
 import torch
 
 from mitigate.core import conf
-from mitigate.training import train  # noqa: F401 - train names the types of its config
+from mitigate.training import train  # noqa: F401 - registers its options
 
 BASELINE = "transformers + PEFT, fp32"
 KINDS = {  # name -> precision of the weights, autocast, as the recipe does
@@ -45,7 +45,7 @@ def measure(kind: str, base: str) -> dict[str, float]:
     """Return the figures of one kind, measured in this process."""
     from mitigate.guards.text.language_models.model import LanguageModel
     from mitigate.recipes.safeguard_lora import SafeguardLora
-    from mitigate.training.recipe import accumulate
+    from mitigate.training.objective import accumulate
 
     precision, autocast, ours = KINDS[kind]
     cfg = conf.load_config("train", ["recipe=safeguard_lora"])

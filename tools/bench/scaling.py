@@ -61,10 +61,9 @@ def training(processes: int, steps: int, folder: Path) -> float:
 
 def recording(processes: int, episodes: int, folder: Path) -> float:
     """Calls a second of so many environments beside each other, one server, all on disk."""
-    from mitigate.bridge.condition import Condition
+    from mitigate.bridge.condition import Condition, Words
     from mitigate.bridge.recording import Recorder
     from mitigate.bridge.server import Listener
-    from mitigate.bridge.words import Words
 
     condition = Condition(CLEAN, 0, Words(), observers=[Recorder(folder / "recorded")])
     with Listener(condition, folder / "bridge") as listener:

@@ -26,12 +26,11 @@ import torch
 
 from mitigate.agents.loading import build_agent
 from mitigate.core import conf, precision, seeding
-from mitigate.core.build import build
 from mitigate.core.markdown import markdown_table
 from mitigate.core.workers import cores
-from mitigate.training import train  # noqa: F401 (train registers config types)
 from mitigate.training.batches import Batches
-from mitigate.training.recipe import Recipe, accumulate
+from mitigate.training.config import read
+from mitigate.training.objective import Objective, ObjectiveSpec, accumulate
 from mitigate.training.workers import Workers
 
 RECIPES = (
@@ -126,22 +125,18 @@ def clocked() -> Iterator[dict[str, Clock]]:
 
 def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
     """Measure the stages of the recipe ``name``, ``steps`` steps each after two that warm up."""
-    cfg = conf.load_config(
-        "train", [f"recipe={name}", f"env.layouts={LAYOUTS}", "env.cached=2", *options]
-    )
+    short = ["refresh_episodes=1", f"env.layouts={LAYOUTS}", "env.cached=2"]
+    config = read(conf.load_config("train", [f"recipe={name}", *short, *options]))
     found = []
-    cfg.refresh_episodes = 1  # of a success-distributed schedule: measuring is not a step
-    agent = build_agent(cfg.agent, weights=cfg.init, seed=cfg.seed)
+    agent = build_agent(config.agent, weights=config.init, seed=config.seed)
     with Workers(cores()) as workers:
-        for stage, node in cfg.stages.items():
-            if node is not None:
-                agent.requires_grad_(True)
-                recipe = build(node.recipe, agent=agent)
-                found.append(stage_of(recipe, name, str(stage), steps, workers))
+        for stage, node in config.active_stages.items():
+            objective = ObjectiveSpec.of(node.recipe).build(agent)
+            found.append(stage_of(objective, name, stage, steps, workers))
     return found
 
 
-def stage_of(recipe: Recipe, name: str, stage: str, steps: int, workers: Workers) -> Stage:
+def stage_of(recipe: Objective, name: str, stage: str, steps: int, workers: Workers) -> Stage:
     """Time one stage; see the module's docstring."""
     device = torch.device("cpu")
     kind = precision.choose("auto", device)
@@ -166,7 +161,7 @@ def stage_of(recipe: Recipe, name: str, stage: str, steps: int, workers: Workers
     return Stage(name, stage, kind, spent[0], spent[1], spent[2], parts)
 
 
-def _update(recipe: Recipe, kind: str, device: torch.device) -> Callable[[dict], None]:
+def _update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dict], None]:
     trained = [p for group in recipe.parameter_groups() for p in group["params"] if p.requires_grad]
     optimizer = torch.optim.AdamW(trained, lr=1e-6)
 
@@ -178,7 +173,7 @@ def _update(recipe: Recipe, kind: str, device: torch.device) -> Callable[[dict],
     return update
 
 
-def _parts(recipe: Recipe, kind: str, steps: int) -> dict[str, float]:
+def _parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
     """Seconds a step of each part of making batches, in this process."""
     batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
     batches.batch(0)

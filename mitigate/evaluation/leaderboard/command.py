@@ -18,12 +18,13 @@ import numpy as np
 
 from mitigate.core import conf
 from mitigate.core.files import find
+from mitigate.evaluation import config  # noqa: F401 - registers the options
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
 from mitigate.evaluation.leaderboard.figures import entry_of, left_out
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.command import told
-from mitigate.evaluation.page.report import report
+from mitigate.evaluation.page.document import report
 from mitigate.evaluation.rows import Row
 
 FOLDER = "docs/leaderboard"

@@ -11,10 +11,8 @@ from typing import Any
 from mitigate.core.names import unknown
 from mitigate.corruptions.registry import UNSEEN
 from mitigate.evaluation import bootstrap
-from mitigate.evaluation.blocks import FRAMES, SUITE
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import METRICS
-from mitigate.evaluation.labels import label_columns
+from mitigate.evaluation.grid import FRAMES, METRICS, SUITE, label_columns
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry
 from mitigate.evaluation.page.model import CLEAN, Numbers, numbers
 from mitigate.evaluation.rows import Row, identity

@@ -41,7 +41,7 @@ def run(
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document
-    from mitigate.evaluation.page.report import report
+    from mitigate.evaluation.page.document import report
 
     document.check_out(out)  # before the walks, which take minutes
     if options and not walk:

@@ -10,13 +10,17 @@ import base64
 import hashlib
 import html
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from mitigate.core.files import atomic_text
+from mitigate.core.names import counted
 from mitigate.corruptions import SUITE_VERSION
+from mitigate.evaluation.page.model import MOST_EPISODES, Packed, curves, section_data
+from mitigate.evaluation.rows import Row
+from mitigate.evaluation.sections import sections
 
 ASSETS = Path(__file__).parent / "assets"
 SUFFIXES = (".html", ".htm")
@@ -101,3 +105,51 @@ def _embedded(data: Any) -> str:
 
 def _hash(text: str) -> str:
     return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+def report(
+    rows: Iterable[Row],
+    *,
+    title: str = "Results",
+    walks: Sequence[dict[str, Any]] = (),
+    notes: Sequence[str] = (),
+    most: int = MOST_EPISODES,
+) -> str:
+    """Return the HTML page of ``rows``.
+
+    ``walks`` as ``walks.walk_again`` yields them; ``notes``: lines under the tables; ``most``: how
+    many episodes of cells it may hold.
+    Raises ValueError if there are no rows.
+    """
+    held = list(rows)
+    parts, packed = sections(held), Packed(most)
+    shown = [{**section_data(part), "grid": packed.add(part, held)} for part in parts]
+    largest = max(range(len(shown)), key=lambda n: _size(shown[n]))
+    notes = list(notes)
+    if packed.left_out:
+        notes.append(
+            f"The episodes of {counted(len(packed.left_out), 'cell')} are not in this file, which "
+            f"holds {most:,} episodes at most: their numbers stand, but such cells do not open. "
+            "Name fewer rows to see them."
+        )
+    return page(
+        title,
+        f"{len(held):,} rows: {_listed({row['name'] for row in held})}.",
+        shown,
+        curves=curves(parts),
+        grids=packed.grids,
+        packed=packed.text(),
+        walks=walks,
+        notes=notes,
+        first=largest,
+    )
+
+
+def _size(shown: dict[str, Any]) -> int:
+    return sum(cell[2] for line in shown["cells"] for cell in line)
+
+
+def _listed(names: set[str], most: int = 8) -> str:
+    held = sorted(names)
+    more = f" and {len(held) - most} more agents" if len(held) > most else ""
+    return ", ".join(held[:most]) + more

@@ -1,4 +1,4 @@
-"""What the page shows, as plain data: the numbers of sections, and their paired differences.
+"""What the page shows, as plain data: numbers of sections, paired differences, curves and episodes.
 
 The page's scripts read these as JSON, draw them and compute nothing but signs. A number is
 ``[value, low, high]`` with its 95 % interval, or None where nothing was measured.
@@ -6,15 +6,19 @@ The page's scripts read these as JSON, draw them and compute nothing but signs. 
 
 from __future__ import annotations
 
+import base64
 import math
-from collections.abc import Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES, ROUNDING, Estimate
-from mitigate.evaluation.grid import METRICS
+from mitigate.evaluation.grid import BLOCKS, METRICS, Grid
+from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, compare, label
 
 BASELINES = 12  # columns that the others can be compared with, the first ones (ours)
@@ -229,3 +233,153 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
     if len(section.columns) > BASELINES:
         notes.append(f"Only the first {BASELINES} agents can be chosen as a baseline.")
     return notes
+
+
+CURVE_RESAMPLES = 2000  # of a point's interval (ours)
+
+
+def curves(parts: Sequence[Section]) -> list[dict[str, Any]]:
+    """Return a figure for each grid of ``parts`` where a corruption was met at two severities.
+
+    ``panels[p]["lines"]`` hold "column", "count" and "points" [severity, SR, low, high]. All points
+    of a line, the clean one at 0 too, are over the same seeds and episodes, those that each of them
+    holds: ``count`` episodes.
+    """
+    found: list[dict[str, Any]] = []
+    done: list[Grid] = []
+    for section in parts:
+        if any(section.grid is grid for grid in done):
+            continue
+        done.append(section.grid)
+        panels = _panels(section.grid)
+        if panels:
+            grid = section.grid
+            title = f"{grid.heading}, suite {grid.suite}"
+            columns = [x for x in grid.columns if any(_has(panel, x) for panel in panels)]
+            title += f", {section.kind}" if section.kind else ""
+            found.append({"title": title, "columns": columns, "panels": panels})
+    return found
+
+
+def _has(panel: dict[str, Any], column: str) -> bool:
+    return any(line["column"] == column for line in panel["lines"])
+
+
+def _panels(grid: Grid) -> list[dict[str, Any]]:
+    held = {name for _, name, at, _ in grid.cells if at > 0 and name != "clean"}
+    met = [name for block in BLOCKS.values() for name in block if name in held]
+    met += sorted(held.difference(met))
+    panels = []
+    for name in met:
+        lines = [_line(grid, column, name) for column in grid.columns]
+        kept = [line for line in lines if line is not None]
+        if kept:
+            panels.append({"name": name, "title": label(name), "lines": kept})
+    return panels
+
+
+def _line(grid: Grid, column: str, name: str) -> dict[str, Any] | None:
+    key = METRICS["SR"]
+    measured = [at for at in grid.severities if (column, name, at, key) in grid.cells]
+    measured = [at for at in measured if not np.isnan(grid.cell(column, name, at, key)).all()]
+    if len(measured) < 2:
+        return None
+    seeds = set.intersection(*(set(grid.seeds[column, at]) for at in measured))
+    if not seeds:
+        return None
+    pooled = [grid.over([column], sorted(seeds), at) for at in measured]
+    cells = [one.cell(column, name, at, key) for one, at in zip(pooled, measured, strict=True)]
+    clean = pooled[0].cell(column, "clean", measured[0], key)
+    severities = measured
+    if not np.isnan(clean).all():
+        cells, severities = [clean, *cells], [0.0, *measured]
+    values = np.stack(cells)
+    common = ~np.isnan(values).any(axis=0)
+    if not common.any():
+        return None
+    found = bootstrap.means(values[:, common], shares=True, resamples=CURVE_RESAMPLES)
+    points = [[at, *(numbers(e) or [])] for at, e in zip(severities, found, strict=True)]
+    return {"column": column, "count": int(common.sum()), "points": points}
+
+
+MOST_EPISODES = 500_000  # episodes of cells in one page (ours): 4 MB
+MISSING = 65_535
+SCALE = 1000  # of success and SPL
+_Place = tuple[str, str, float, int]  # column, corruption, severity, seed
+
+
+@dataclass
+class Packed:
+    """Cells of any number of grids. ``grids`` are what the page reads: the episodes' ids, and where
+    in the data each cell begins, by "column|corruption|severity|seed"; ``left_out`` are the cells
+    that the bound leaves no room for, all seeds of each."""
+
+    most: int = MOST_EPISODES
+    grids: list[dict[str, Any]] = field(default_factory=list)
+    left_out: set[tuple[int, str]] = field(default_factory=set)
+    held: int = 0
+    _parts: list[np.ndarray] = field(default_factory=list)
+    _known: list[Grid] = field(default_factory=list)
+
+    def add(self, section: Section, rows: Iterable[Row]) -> int:
+        """Pack the cells of ``section`` that are not there yet; return the number of its grid.
+
+        ``rows`` are all rows, of which the steps are read."""
+        grid = section.grid
+        if not any(grid is known for known in self._known):
+            self._known.append(grid)
+            self.grids.append({"episodes": list(grid.episodes), "cells": {}})
+            self._steps = _steps(grid, rows)
+        number = next(n for n, known in enumerate(self._known) if known is grid)
+        columns = {column: n for n, column in enumerate(grid.columns)}
+        names = ["clean", *(name for names in section.blocks.values() for name in names)]
+        for column in section.columns:
+            for name in names:
+                at = 0.0 if name == "clean" else float(section.severity)
+                seeds = grid.seeds[column, section.severity]
+                places = [(column, name, at, seed) for seed in seeds]
+                self._add(number, f"{columns[column]}|{name}|{at}", grid, places)
+        return number
+
+    def text(self) -> str:
+        """Return the data in base64: little-endian uint16, [cell, field, episode]."""
+        flat = np.concatenate(self._parts) if self._parts else np.empty(0, np.uint16)
+        return base64.b64encode(flat.astype("<u2").tobytes()).decode()
+
+    def _add(self, number: int, key: str, grid: Grid, places: Sequence[_Place]) -> None:
+        """Pack what is not there yet of a cell that all its seeds measured, if all have room."""
+        cells, count = self.grids[number]["cells"], len(grid.episodes)
+        if not all((name, at, METRICS["SR"]) in grid.runs[x][seed] for x, name, at, seed in places):
+            return
+        new = [place for place in places if f"{key}|{place[3]}" not in cells]
+        if self.held + len(new) * count > self.most:
+            self.left_out.add((number, key))
+            return
+        for place in new:
+            cells[f"{key}|{place[3]}"] = self.held
+            self.held += count
+            self._pack(grid, place)
+
+    def _pack(self, grid: Grid, place: _Place) -> None:
+        column, name, at, seed = place
+        count, run = len(grid.episodes), grid.runs[column][seed]
+        shares = [run[name, at, metric] for metric in METRICS.values()]
+        steps = self._steps.get(place, np.full(count, np.nan))
+        fields = [*(SCALE * values for values in shares), np.minimum(steps, MISSING - 1)]
+        whole = np.rint(np.nan_to_num(np.stack(fields), nan=MISSING))
+        self._parts.append(whole.astype(np.uint16).ravel())
+
+
+def _steps(grid: Grid, rows: Iterable[Row]) -> dict[_Place, np.ndarray]:
+    """Return the steps of each cell [N], NaN where a row does not say."""
+    index = {episode: n for n, episode in enumerate(grid.episodes)}
+    labels = {(name, agent): x for x, (name, own) in grid.columns.items() for agent in own}
+    found: dict[_Place, np.ndarray] = defaultdict(lambda: np.full(len(index), np.nan))
+    for row in rows:
+        column = labels.get((row["name"], row["agent"]))
+        same = (row["split"], row["suite"], row["rule"]) == (grid.split, grid.suite, grid.rule)
+        spot, steps = index.get(row["episode_id"]), row.get("steps")
+        if same and column is not None and spot is not None and isinstance(steps, (int, float)):
+            place = (column, row["corruption"], float(row["severity"]), row["seed"])
+            found[place][spot] = steps
+    return dict(found)

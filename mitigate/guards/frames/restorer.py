@@ -1,4 +1,4 @@
-"""A restorer: observations in, observations out, whatever agent or program stands behind it."""
+"""A restorer: a guard that restores corrupted frames, whatever agent or program reads them."""
 
 from __future__ import annotations
 
@@ -20,11 +20,12 @@ from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.views import MOST_VIEWS
 from mitigate.guards.frames import folder as folders
-from mitigate.guards.frames.choices import SENSORS, parted
+from mitigate.guards.frames.choices import SENSORS
 from mitigate.guards.frames.sensor import CHANNELS, SensorRestorer
+from mitigate.guards.guard import RESTORER, Guard
 
 
-class Restorer(nn.Module):
+class Restorer(nn.Module, Guard):
     """Restores the frames of each of ``sensors`` with a network of its own.
 
     Args: sensors: of "rgb" and "depth". width, depth_width: of their networks. size: pixels of the
@@ -61,7 +62,7 @@ class Restorer(nn.Module):
 
     @property
     def encoders(self) -> dict[str, tuple[str, ...]]:
-        """By sensor, the part that is for it (``training/stages.py``)."""
+        """By sensor, the part that is for it (``training/plan.py``)."""
         return {sensor: (sensor,) for sensor in self.nets}
 
     def parts(self) -> dict[str, SensorRestorer]:
@@ -88,6 +89,19 @@ class Restorer(nn.Module):
         """12 hex digits over weights, thresholds and settings: equal hash, equal frames."""
         text = json.dumps([weights_sha(self), self.settings()], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
+
+    @property
+    def frames(self) -> tuple[str, ...]:  # type: ignore[override]
+        """The sensors that it restores."""
+        return tuple(self.nets)
+
+    def fingerprint(self) -> str:
+        """Return :attr:`hash` with a prefix, as rows hold it."""
+        return RESTORER + self.hash
+
+    def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return :meth:`forward` of an observation."""
+        return self.forward(observation)
 
     def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
         """As ``observation`` (``core/observation.py``), with those of its frames restored that the
@@ -164,20 +178,6 @@ class Restorer(nn.Module):
     def load(self, folder: str | Path) -> None:
         """Fill it from such a folder; ValueError if that is of one with other settings."""
         folders.fill(self, folder)
-
-
-def restorer_of(choice: str | None, sensors: Iterable[str] = SENSORS) -> Restorer | None:
-    """The restorer of an option ``restore=`` (``choices.py``): none for None and "none"; else as
-    :func:`load_restorer`. ValueError if it restores none of ``sensors``, which are what a world
-    shows, and for a sensor that it is not for."""
-    if choice in (None, "none"):
-        return None
-    folder, only = parted(choice)
-    made = load_restorer(folder)
-    if only is not None:
-        made = made.only(only)
-    made.check_shown(sensors, "the world")
-    return made
 
 
 def load_restorer(folder: str | Path) -> Restorer:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from omegaconf import DictConfig
 from torch import nn
 
 from mitigate.core import build
-from mitigate.evaluation import making, walked
+from mitigate.evaluation import provenance
 from mitigate.evaluation.columns import column_of
 from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.episode_lists import episodes
@@ -17,24 +16,29 @@ from mitigate.evaluation.evaluate import write_table
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.rows import ROWS
 from mitigate.evaluation.trajectories import write_pictures
+from mitigate.training.config import TrainConfig
 
 
 def report_before_after(
-    cfg: DictConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
+    config: TrainConfig, base_agent: nn.Module | None, trained_agent: nn.Module, folder: Path
 ) -> None:
     """Evaluate both agents on the same quick subset; print one table, write it and pictures.
 
-    ``cfg`` is a training's config; ``base_agent`` is None for a training from nothing. The
+    ``config`` holds a training's options; ``base_agent`` is None for a training from nothing. The
     pictures in ``folder/pictures`` show episodes that the training won back.
     """
-    quick = cfg.evaluation
-    chosen = episodes(cfg.env, quick.split, quick.episodes)
-    suite = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    agents: dict[str, Any] = {"before": base_agent, column_of(cfg, folder): trained_agent}
+    quick = config.evaluation
+    chosen = episodes(config.env, quick.split, quick.episodes)
+    suite = conditions(config.suite.conditions, config.severity, config.severity_depth)
+    agents: dict[str, Any] = {
+        "before": base_agent,
+        column_of(config.name, config.seed, folder): trained_agent,
+    }
     agents = {name: agent for name, agent in agents.items() if agent is not None}
-    world, rows = build.maker(cfg.env.world), []
-    first, made_by = making.first(world)
-    walked.keep(folder, first, made_by, quick.split, chosen, cfg.env.episodes[quick.split])
+    world = build.maker(config.env.world)
+    rows: list[Any] = []
+    first, made_by = provenance.first_world(world)
+    provenance.keep(folder, first, made_by, quick.split, chosen, config.env.episodes[quick.split])
     for name, agent in agents.items():
         rows += evaluate(
             agent,
@@ -44,9 +48,9 @@ def report_before_after(
             name=name,
             out=folder / ROWS,
             split=quick.split,
-            seed=cfg.seed,
+            seed=config.seed,
             workers=quick.workers,
         )
     write_table([folder / ROWS], folder)
-    written = write_pictures(agents, first, chosen, rows, folder / "pictures", seed=cfg.seed)
+    written = write_pictures(agents, first, chosen, rows, folder / "pictures", seed=config.seed)
     print("\n".join(f"wrote {path}" for path in written), flush=True)

@@ -20,14 +20,14 @@ from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
 from mitigate.corruptions.registry import names, title
 from mitigate.encoders.folder import lines
-from mitigate.encoders.frames import Frames, collect
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.probe import Score, average, measure
-from mitigate.encoders.sources import TRAIN, UNSEEN, source_of
+from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, collect, source_of
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate
 from mitigate.evaluation.conditions import conditions
+from mitigate.training.config import TrainConfig
 from mitigate.training.parts import without_adapters
-from mitigate.training.stages import IDENTITY
+from mitigate.training.plan import IDENTITY
 
 BEFORE, AFTER = "before", "after"
 MEAN = "mean over corruptions"
@@ -41,64 +41,68 @@ MEASURES = {
 Scores = dict[tuple[str, str, str], Score]
 
 
-def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
+def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
     """Print and write how well features survive each corruption, before and after a training.
 
-    ``cfg`` is a training's config: 12 frames for each of ``evaluation.episodes``, as many as were
-    trained with at most, from the scenes of ``evaluation.split``, under the conditions of the suite
-    that the encoder's sensor meets.
+    ``config`` holds a training's options: 12 frames for each of ``evaluation.episodes``, at most
+    as many as were trained with, from the scenes of ``evaluation.split``, under the conditions of
+    the suite that the encoder's sensor meets.
     The encoder before is the one as it came, or, with ``tune=all``, as the training began: ``base``
     where that was with ``init``.
     """
     assert isinstance(trained, Encoder)
-    train, unseen = _frames(cfg, trained.sensor)
+    train, unseen = _frames(config, trained.sensor)
     whole = trained.tune == "all"
-    before: Any = _begun(cfg, base, folder) if whole else without_adapters(trained)
+    before: Any = _begun(config, base, folder) if whole else without_adapters(trained)
     encoders: dict[str, Encoder] = {BEFORE: before.eval(), AFTER: trained.eval()}
-    met = _conditions(cfg, trained.sensor)
-    scores = with_mean(measure(encoders, met, train, unseen, cfg.seed))
+    met = _conditions(config, trained.sensor)
+    scores = with_mean(measure(encoders, met, train, unseen, config.seed))
     if ("before", "clean", "probe") in scores:
         scores = {at: score for at, score in scores.items() if at[2] != "retrieval"}
     about = (
         f"{len(unseen)} frames of {len(np.unique(unseen.scene))} unseen scenes, "
-        f"severity {cfg.severity:g}, seed {cfg.seed}, suite {SUITE_VERSION}"
+        f"severity {config.severity:g}, seed {config.seed}, suite {SUITE_VERSION}"
     )
     write(scores, folder, about)
     print(f"To load it in plain PyTorch:\n\n{lines(trained, folder / 'agent')}", flush=True)
 
 
-def _begun(cfg: Any, base: Any, folder: Path) -> nn.Module:
+def _begun(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
     """The encoder as the training found it. Raises ValueError if it cannot be made again."""
-    made = build_agent(cfg.agent, weights=None, seed=cfg.seed) if base is None else base
-    stage = next(name for name, stage in cfg.stages.items() if stage is not None)
+    made = build_agent(config.agent, weights=None, seed=config.seed) if base is None else base
+    stage = next(iter(config.active_stages))
     noted = read_object(folder / stage / IDENTITY, "Train again in another folder.")
     if checkpoint.weights_sha(made) != noted.get("encoder_sha256"):
         raise ValueError(
-            f"agent.model={cfg.agent.model} has other weights than when the training began, so "
-            "there is no before to compare with: its file was changed, or it draws them anew each "
-            "time. Name its weights (agent.weights=FILE) and train again in another folder. What "
-            f"was trained is in {folder / 'agent'}."
+            f"agent.model={config.agent['model']} has other weights than when the training began, "
+            "so there is no before to compare with: its file was changed, or it draws them anew "
+            "each time. Name its weights (agent.weights=FILE) and train again in another folder. "
+            f"What was trained is in {folder / 'agent'}."
         )
     return made
 
 
-def _frames(cfg: Any, sensor: str) -> tuple[Frames, Frames]:
+def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
     """Training frames for the probe and its centre, and unseen ones."""
-    recipe = next(stage for stage in cfg.stages.values() if stage is not None).recipe
-    quick = cfg.evaluation
+    recipe = next(iter(config.active_stages.values())).recipe
+    frames = recipe["frames"]
+    quick = config.evaluation
     source = source_of(
-        maker(cfg.env.world), sensor, cfg.env.episodes, quick.split, recipe.get("label")
+        maker(config.env.world), sensor, config.env.episodes, quick.split, recipe.get("label")
     )
-    count = min(recipe.frames, EACH * quick.episodes) if quick.episodes else recipe.frames
-    train = collect(source, TRAIN, min(recipe.frames, MOST_TRAIN), cfg.seed)
-    return train, collect(source, UNSEEN, count, cfg.seed)
+    count = min(frames, EACH * quick.episodes) if quick.episodes else frames
+    train = collect(source, TRAIN, min(frames, MOST_TRAIN), config.seed)
+    return train, collect(source, UNSEEN, count, config.seed)
 
 
-def _conditions(cfg: Any, sensor: str) -> list[Corruption]:
+def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
     """Clean, and the suite's corruptions of ``sensor`` (all there are, if it has none)."""
-    met = conditions(list(cfg.suite.conditions), cfg.severity, None)
+    met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
-    return [CLEAN, *conditions(chosen or list(names(sensor)), cfg.severity, cfg.severity_depth)]
+    return [
+        CLEAN,
+        *conditions(chosen or list(names(sensor)), config.severity, config.severity_depth),
+    ]
 
 
 def with_mean(scores: Scores) -> Scores:

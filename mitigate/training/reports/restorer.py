@@ -34,12 +34,12 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.corruptions.registry import title
 from mitigate.corruptions.suite import SENSOR
-from mitigate.encoders.frames import collect
-from mitigate.encoders.sources import UNSEEN
+from mitigate.encoders.sources import UNSEEN, collect
 from mitigate.evaluation.bootstrap import NO_INTERVAL, Estimate, mean, share
 from mitigate.evaluation.conditions import conditions
 from mitigate.guards.frames.restorer import Restorer, load_restorer
 from mitigate.guards.frames.sensor import TOLERANCE
+from mitigate.training.config import TrainConfig
 from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import depth_sensor
 
@@ -74,17 +74,17 @@ class Instants(NamedTuple):
         return corrupt_observation(frames, corruption, key, self.depth)
 
 
-def before_after(cfg: Any, base: Any, trained: nn.Module, folder: Path) -> None:
+def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
     """Print and write ``restoration.md`` and ``restoration.jpg``: what a training's restorer does
     to ``evaluation.episodes`` random instants of unseen scenes, under the conditions of the suite.
 
-    ``cfg`` is a training's config. ``base`` is not used: before is without a restorer.
+    ``config`` holds a training's options. ``base`` is not used: before is without a restorer.
     """
     assert isinstance(trained, Restorer)
-    quick = cfg.evaluation
-    met = conditions(list(cfg.suite.conditions), cfg.severity, cfg.severity_depth)
-    seen = instants(cfg.env, quick.split, quick.episodes or 300, cfg.seed, trained)
-    write(trained, seen, met, cfg.seed, folder, f"{quick.split}, severity {cfg.severity:g}")
+    quick = config.evaluation
+    met = conditions(config.suite.conditions, config.severity, config.severity_depth)
+    seen = instants(config.env, quick.split, quick.episodes or 300, config.seed, trained)
+    write(trained, seen, met, config.seed, folder, f"{quick.split}, severity {config.severity:g}")
 
 
 def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) -> Instants:

@@ -19,7 +19,7 @@ import mitigate
 from mitigate.core.observation import FORWARD, STOP
 from mitigate.corruptions.registry import HALVES, unseen_names
 from mitigate.evaluation import rows as result_rows
-from mitigate.evaluation.blocks import BLOCKS
+from mitigate.evaluation.grid import BLOCKS
 from mitigate.evaluation.leaderboard import command
 from mitigate.evaluation.leaderboard.entry import load
 from mitigate.evaluation.leaderboard.figures import entry_of, rows_sha

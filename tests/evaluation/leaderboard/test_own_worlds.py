@@ -323,6 +323,8 @@ def test_a_restorer_and_a_safeguard_may_stand_in_front_of_any_agent(walk):
     assert behind.name == "Holder+rules" and behind.agents != alone.agents
     restored = walk(Holder(weight(1)), restore="checkpoints/restorer:rgb")
     assert restored.name == "Holder+restorer-rgb" and len(restored.agents) == 1
+    filtered = walk(Holder(weight(1)), restore="tests.guards.filters:median")
+    assert filtered.name == "Holder+filters.median" and filtered.agents != restored.agents
 
 
 @pytest.mark.parametrize("option", ["severity=0.3", "restore=x", "suite=quick", "workers=2"])

@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from mitigate.evaluation.blocks import FRAMES
+from mitigate.evaluation.grid import FRAMES
 from mitigate.evaluation.page import document
-from mitigate.evaluation.page.report import report as report_of
+from mitigate.evaluation.page.document import report as report_of
 from tests.evaluation.made_rows import cell, column, row
 from tests.evaluation.page.chromium import PROGRAM, Page
 

@@ -14,11 +14,9 @@ from mitigate.corruptions import Corruption
 from mitigate.evaluation import table
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.page import command
-from mitigate.evaluation.page.choosing import KINDS, choose
-from mitigate.evaluation.page.curves import curves
-from mitigate.evaluation.page.model import shortened
-from mitigate.evaluation.page.report import report
-from mitigate.evaluation.page.walks import walk_again
+from mitigate.evaluation.page.document import report
+from mitigate.evaluation.page.model import curves, shortened
+from mitigate.evaluation.page.walks import KINDS, choose, walk_again
 from mitigate.evaluation.rows import write
 from mitigate.evaluation.sections import sections
 from mitigate.worlds.apartments.tasks import load_episodes

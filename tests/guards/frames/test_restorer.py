@@ -14,8 +14,9 @@ from mitigate.core import folders
 from mitigate.core.observation import DEPTH, RGB, Observation
 from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.guards.frames import choices, ring
-from mitigate.guards.frames.restorer import Restorer, load_restorer, restorer_of
-from mitigate.guards.frames.world import Restored
+from mitigate.guards.frames.restorer import Restorer, load_restorer
+from mitigate.guards.guard import Guarded
+from mitigate.guards.opening import open_restorer
 from mitigate.training.reports import restorer as report
 from mitigate.worlds.world import Corrupted
 from tests.guards.frames.conftest import opened
@@ -214,7 +215,7 @@ def test_a_world_is_restored_when_its_frames_are_read(untrained, panorama):
 
     still = Still()
     met = Corrupted(still, Corruption("foreign_object", 0.6), 0)
-    shown = Restored(met, untrained).reset(Episode())
+    shown = Guarded(met, untrained).reset(Episode())
     assert still.reads == 0 and shown["pose"] is panorama["pose"]
     assert not np.array_equal(shown[RGB], met.last[RGB]) and still.reads == 1
     assert np.array_equal(shown.clean[RGB], panorama[RGB])
@@ -296,16 +297,16 @@ def shipped(tmp_path_factory):
 def test_a_restorer_of_what_a_world_does_not_show_is_refused(tmp_path):
     Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
     with pytest.raises(ValueError, match="is for depth, but the world shows rgb, pose: leave"):
-        restorer_of(str(tmp_path / "mine"), (RGB, "pose"))
-    assert restorer_of(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
-    assert restorer_of(None, (RGB,)) is None
+        open_restorer(str(tmp_path / "mine"), (RGB, "pose"))
+    assert open_restorer(str(tmp_path / "mine"), (RGB, DEPTH)) is not None
+    assert open_restorer(None, (RGB,)) is None
 
 
 def test_one_sensor_alone_is_restored_and_is_another_restorer(tmp_path):
     made = Restorer(width=4, depth_width=4)
     made.save(tmp_path / "mine")
-    whole = restorer_of(str(tmp_path / "mine"))
-    alone = restorer_of(f"{tmp_path / 'mine'}:rgb")
+    whole = open_restorer(str(tmp_path / "mine"))
+    alone = open_restorer(f"{tmp_path / 'mine'}:rgb")
     assert list(alone.nets) == ["rgb"] and alone.hash not in (whole.hash, made.hash)
     depth = np.zeros((8, 8, 1), np.float32)
     rgb = np.zeros((8, 8, 3), np.uint8)
@@ -313,10 +314,10 @@ def test_one_sensor_alone_is_restored_and_is_another_restorer(tmp_path):
     assert choices.label(f"{tmp_path / 'mine'}:rgb") == "mine-rgb"
     assert choices.label("runs/a/agent") == "a"
     with pytest.raises(ValueError, match="restores none|is for rgb"):
-        restorer_of(f"{tmp_path / 'mine'}:rgb", ["depth"])
+        open_restorer(f"{tmp_path / 'mine'}:rgb", ["depth"])
     Restorer(["depth"], depth_width=4).save(tmp_path / "depth")
     with pytest.raises(ValueError, match="for depth, not for rgb"):
-        restorer_of(f"{tmp_path / 'depth'}:rgb")
+        open_restorer(f"{tmp_path / 'depth'}:rgb")
 
 
 @pytest.mark.parametrize(

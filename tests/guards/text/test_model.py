@@ -17,7 +17,7 @@ from mitigate.guards.text.language_models.tokens import collate, encode_pair
 from mitigate.guards.text.learning.data import Pair
 from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.training import states
-from mitigate.training.recipe import accumulate
+from mitigate.training.objective import accumulate
 from mitigate.training.trainer import Trainer
 from tests.guards.text.conftest import LORA, write_tiny_model
 
@@ -218,13 +218,6 @@ def test_rewriting_is_the_same_in_any_batch_and_stops_with_the_budget(model):
     assert together == [model.rewrite([text])[0] for text in texts]
     assert model.rewrite(texts, seconds=0.0) == [None] * 3
     assert model.rewrite([]) == []
-
-
-def test_prompts_that_begin_with_nothing_in_common_are_rewritten_too(model):
-    model.tokenizer.chat_template = "{{ messages[1]['content'] }}"
-    texts = ["Turn left.", "Walk past the sofa."]
-    assert model.encode(texts[0])[0] != model.encode(texts[1])[0]
-    assert model.rewrite(texts) == [model.rewrite([text])[0] for text in texts]
 
 
 @pytest.mark.parametrize("end", ["</s>", "<s>", None])

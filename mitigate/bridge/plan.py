@@ -1,0 +1,252 @@
+"""What a run consists of: its conditions, and what their results depend on.
+
+By the settings of a condition a finished one is known again. By the labels of a run its rows are
+told from those of another agent.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from mitigate.bridge.cell import Cell
+from mitigate.bridge.condition import Condition, Subset, Words, tokenizer_of
+from mitigate.bridge.config import RunConfig, check_options, name_of
+from mitigate.bridge.hook import mitigate_hook
+from mitigate.bridge.recording import Recorder, plain
+from mitigate.core.files import sha256
+from mitigate.corruptions import SUITE_VERSION, Corruption
+from mitigate.corruptions.registry import version
+from mitigate.evaluation.conditions import conditions
+from mitigate.guards.guard import Guards
+from mitigate.guards.opening import labels, open_guards
+
+SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length")  # as they are
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A run whose options were checked.
+
+    Attributes:
+        config: The options.
+        command: The words of the user's command.
+        name: Column of the table, before the names of guards.
+        out: Output folder.
+    """
+
+    config: RunConfig
+    command: tuple[str, ...]
+    name: str
+    out: Path
+
+
+def make_plan(config: RunConfig, command: Sequence[str]) -> Plan:
+    """Return the plan of a run. Raises as :func:`check_options`."""
+    check_options(config, command)
+    name = config.name or name_of(command)
+    out = Path(config.out or default_folder(config, name))
+    return Plan(config, tuple(command), name, out)
+
+
+def cells(plan: Plan) -> list[Cell]:
+    """All conditions of a run, clean first, then repeated clean runs."""
+    config, out = plan.config, plan.out
+    clean, *others = conditions(config.names, config.severity, config.severity_depth)
+    words = _words(config)
+    environment = _environment(config)
+    guards = open_guards(config.safeguard, config.restore, log=out / "safeguard.jsonl")
+    _check_guards(guards)
+    restored = guards.frames_hash()
+    chosen = None if config.episodes is None else Subset(config.episodes, out)
+    keep = None if chosen is None else chosen.keep
+    text, adapters = shlex.join(plan.command), adapters_of(config)
+    label = label_of(config, text, plan.name, restored, adapters)
+    made: list[Cell] = []
+    for corruption, repeat in [
+        *((clean, number) for number in range(config.repeats)),
+        *((corruption, 0) for corruption in others),
+    ]:
+        name = f"{corruption.name}-s{corruption.severity:g}" if corruption.severity else "clean"
+        name += f"-again{repeat}" if repeat else ""
+        recording = None if config.record is None else Path(config.record) / name
+        condition = Condition(
+            corruption,
+            config.seed,
+            words,
+            repeat,
+            config.missing,
+            config.turn,
+            keep,
+            guards=guards,
+            observers=[] if recording is None else [Recorder(recording)],
+        )
+        made.append(
+            Cell(
+                name,
+                corruption,
+                repeat,
+                plan.command,
+                out / "conditions" / name,
+                condition,
+                label,
+                config.rule,
+                settings_of(config, text, corruption, restored, adapters),
+                config.patience,
+                environment,
+                clean=made[0].folder if made else None,
+                recording=recording,
+                chosen=chosen,
+                count_closed=config.count_closed,
+            )
+        )
+    return made
+
+
+def _check_guards(guards: Guards) -> None:
+    """Raise ValueError for a guard that changes the agent, which runs in another process."""
+    if guards.adapts:
+        raise ValueError(
+            f"The guard {guards.label} adapts the agent itself, and the agent of another program "
+            "cannot be reached through the bridge: leave restore= out, or name a guard that "
+            "changes frames or instructions only."
+        )
+
+
+def _words(config: RunConfig) -> Words:
+    tokenizer = None if config.tokenizer is None else tokenizer_of(config.tokenizer)
+    return Words(tokenizer, config.token_length)
+
+
+def _environment(config: RunConfig) -> dict[str, str]:
+    """What the hook must know of adapters. Raises ValueError for what names none."""
+    if config.adapters is None:
+        return {}
+    from mitigate.encoders import plain_adapters
+
+    folder, module, place = place_of(config.adapters)
+    kind, _, path = place.partition(".")
+    plain_adapters.read(folder)
+    told = {"folder": str(Path(folder).resolve()), "file": str(plain_adapters.__file__)}
+    told |= {"module": module, "class": kind, "path": path}
+    return {mitigate_hook.ADAPTERS: json.dumps(told)}
+
+
+def settings_of(
+    config: RunConfig,
+    command: str,
+    corruption: Corruption,
+    restored: str | None,
+    adapters: str | None,
+) -> dict[str, Any]:
+    """What a condition's result depends on, by which a finished one is known again."""
+    told = {name: vars(config)[name] for name in SETTINGS}
+    told |= met(corruption)
+    told |= {"restore": restored, "adapters": adapters}
+    return {"command": command, **told, "safeguard": _guard(config), "watch": watched(config)}
+
+
+def watched(config: RunConfig) -> dict[str, str | None] | None:
+    """What ``watch=`` names: of a file its hash, else an environment variable; None without."""
+    if not config.watch:
+        return None
+    return {
+        str(name): _sha(str(name), os.stat(name)) if os.path.isfile(name) else os.environ.get(name)
+        for name in config.watch
+    }
+
+
+def _sha(path: str, now: os.stat_result) -> str:
+    """The hash of a file, read once while it stays as it is."""
+    return _read(path, now.st_size, now.st_mtime_ns)
+
+
+@cache
+def _read(path: str, size: int, changed: int) -> str:
+    return sha256(path)[:12]
+
+
+def met(corruption: Corruption) -> dict[str, Any]:
+    """What of a condition's result is by its corruption."""
+    own = version(corruption.name)
+    return {"suite": SUITE_VERSION, "severity": corruption.severity, **own}
+
+
+def _watch(config: RunConfig) -> str | None:
+    seen = watched(config)
+    return None if seen is None else json.dumps(seen, sort_keys=True)
+
+
+def label_of(
+    config: RunConfig, command: str, name: str, restored: str | None, adapters: str | None
+) -> dict[str, Any]:
+    """What the rows say of the agent: with a restorer, a safeguard, adapters or what is watched it
+    is another one, by their hashes."""
+    sha = _digest(command)
+    guard = None if config.safeguard == "none" else _guard(config)
+    for part in (restored, guard, adapters, _watch(config)):
+        sha = sha if part is None else _digest(f"{sha} {part}")
+    return {"agent": sha, "name": _column(config, name), "split": config.split, "seed": config.seed}
+
+
+def default_folder(config: RunConfig, name: str) -> Path:
+    """The folder of a run that names none: other for another agent, severity, episodes."""
+    parts = [part for part in (adapters_of(config), _watch(config)) if part]
+    own = "-".join([_column(config, name), *(_digest(part)[:6] for part in parts)])
+    own += f"-s{config.severity:g}" + (f"-e{config.episodes}" if config.episodes else "")
+    return Path(config.runs) / "run" / plain(own)
+
+
+def adapters_of(config: RunConfig) -> str | None:
+    """The hash of the adapters and where they go; None without."""
+    if config.adapters is None:
+        return None
+    from mitigate.encoders.plain_adapters import WEIGHTS
+
+    folder, module, place = place_of(config.adapters)
+    file = Path(folder) / WEIGHTS
+    if not file.is_file():
+        raise FileNotFoundError(
+            f"adapters={config.adapters}: there is no {file}. Name the agent/ folder of a training "
+            "by the recipe encoder."
+        )
+    return f"{sha256(file)[:12]}:{module}:{place}"
+
+
+def place_of(adapters: str) -> tuple[str, str, str]:
+    """Folder, module and place (Class.attribute) of ``adapters=``. Raises ValueError for what names
+    none."""
+    folder, module, place = (*str(adapters).rsplit(":", 2), "", "")[:3]
+    if not place.partition(".")[0] or not module:
+        raise ValueError(
+            f"adapters={adapters} must be FOLDER:package.module:Class.attribute, where the "
+            "attribute of the class's instances is the encoder that the adapters were trained for: "
+            "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
+        )
+    return folder, module, place
+
+
+def _column(config: RunConfig, name: str) -> str:
+    """The column of the table: the command's name, and the labels of guards."""
+    parts = [name, *labels(config.safeguard, config.restore)]
+    parts += ["adapters"] if config.adapters is not None else []
+    return "+".join(parts)
+
+
+def _guard(config: RunConfig) -> str:
+    if config.safeguard == "none":
+        return "none"  # without a wait for torch
+    from mitigate.guards.text.choices import identity
+
+    return identity(config.safeguard)
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()[:12]

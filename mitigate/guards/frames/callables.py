@@ -1,0 +1,183 @@
+"""Frames changed by a callable of the user, ``restore=module:callable``: somebody else's
+depth-completion or denoising network, or a filter. Needs no torch.
+
+The rule: a class is constructed once per process, without arguments; any other object is used as it
+is. If the result is a :class:`~mitigate.guards.guard.Guard`, it is the guard. Otherwise it is
+called with the frames of one instant. ``docs/restoration.md`` has an example.
+
+Importing the module runs its code, so the option comes from the user's own command line or config,
+never from a folder that was downloaded.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import inspect
+import json
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from mitigate.core.checksums import DIGITS
+from mitigate.core.files import sha256
+from mitigate.core.names import unknown
+from mitigate.guards.frames.choices import SENSORS, CallableChoice, callable_of, label
+from mitigate.guards.guard import RESTORER, Guard
+
+FRAMES = (
+    "Return a dict of the changed frames by sensor name, with the shape and dtype of those given."
+)
+
+
+class FramesCallable(Guard):
+    """A callable of the user as a guard.
+
+    It is called with copies of the frames by sensor name, "rgb" uint8 [H, W, 3] or [V, H, W, 3] and
+    "depth" float32 metres [H, W, 1] or [V, H, W, 1], and returns those that it changed. Each call
+    must stand alone.
+
+    Args:
+        choice: ``module:callable`` or ``module:callable@VERSION``. Pickles hold this text alone, so
+            each process imports the module itself.
+        call: the callable; its attributes ``frames`` (names of sensors, default both) and
+            ``version`` are optional.
+        module: the file of this module is part of the fingerprint.
+    """
+
+    def __init__(self, choice: str, call: Callable[[dict], Mapping], module: ModuleType) -> None:
+        named = _parts(choice)
+        self.choice = choice
+        self.label = label(choice)
+        self.call = call
+        self.version = named.version or _text_or_none(getattr(call, "version", None))
+        self.frames = _frames(getattr(call, "frames", SENSORS), choice)
+        held = [f"{named.module}:{named.name}", _source(module, self.version), self.version]
+        digest = hashlib.sha256(json.dumps(held).encode()).hexdigest()
+        self._fingerprint = RESTORER + digest[:DIGITS]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return open_callable, (self.choice,)
+
+    def fingerprint(self) -> str:
+        """Return the hash of the module's source file, as it was when it was imported, and of
+        ``version``."""
+        return self._fingerprint
+
+    def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
+        given = {name: observation[name] for name in self.frames if name in observation}
+        if not given:
+            return observation
+        copies = {name: np.array(frame) for name, frame in given.items()}
+        try:
+            made = self.call(copies)
+        except Exception as error:  # of the user's code: say whose it is
+            raise ValueError(
+                f"restore={self.choice} failed with {type(error).__name__}: {error}"
+            ) from error
+        self._check(made, given)
+        changed = {n: f for n, f in made.items() if not np.array_equal(f, given[n])}
+        return {**observation, **changed} if changed else observation
+
+    def _check(self, made: Any, given: Mapping[str, np.ndarray]) -> None:
+        """Raise ValueError for what is not changed frames of those given."""
+        if not isinstance(made, Mapping):
+            self._reject(f"returned a {type(made).__name__}, not a dict")
+        for name, frame in made.items():
+            if name not in given:
+                self._reject(f"returned an entry {name!r}, but it was given {', '.join(given)}")
+            if not isinstance(frame, np.ndarray):
+                self._reject(f"returned {name} as a {type(frame).__name__}, not a numpy array")
+            wanted = given[name]
+            if frame.shape != wanted.shape:
+                self._reject(
+                    f"returned {name} of shape {list(frame.shape)}, not {list(wanted.shape)}"
+                )
+            if frame.dtype != wanted.dtype:
+                self._reject(f"returned {name} of dtype {frame.dtype}, not {wanted.dtype}")
+            if frame.dtype.kind == "f" and not np.isfinite(frame[np.isfinite(wanted)]).all():
+                self._reject(f"returned {name} with NaN or infinity; 0 means no reading")
+
+    def _reject(self, what: str) -> None:
+        raise ValueError(f"restore={self.choice} {what}. {FRAMES}")
+
+
+def open_callable(choice: str) -> Guard:
+    """Return the guard of ``restore=module:callable``.
+
+    Raises:
+        ValueError: there is no such module or callable, or it cannot be called.
+    """
+    named = _parts(choice)
+    try:
+        module = importlib.import_module(named.module)
+    except ImportError as error:
+        stem = named.module.removesuffix(".py")
+        hint = "" if stem == named.module else f" Write {stem}:{named.name}."
+        raise ValueError(
+            f"restore={choice}: {error}. It names module:callable, of a module that is installed, "
+            f"in the folder you are in, or on PYTHONPATH, or the folder of a restorer.{hint}"
+        ) from error
+    if not hasattr(module, named.name):
+        public = [name for name in vars(module) if not name.startswith("_")]
+        raise ValueError(
+            f"restore={choice}: {unknown(f'object of {named.module}', named.name, public)}"
+        )
+    found = getattr(module, named.name)
+    made = found() if isinstance(found, type) else found
+    if isinstance(made, Guard):
+        made.version = named.version or made.version
+        made.label = made.label or label(choice)
+        return made
+    if not callable(made):
+        raise ValueError(
+            f"restore={choice}: a {type(made).__name__} cannot be called with frames. Name a "
+            "function, an object that can be called, or a class of such objects."
+        )
+    return FramesCallable(choice, made, module)
+
+
+def _parts(choice: str) -> CallableChoice:
+    named = callable_of(choice)
+    assert named is not None, f"{choice} is no module:callable"
+    return named
+
+
+def _frames(frames: Any, choice: str) -> tuple[str, ...]:
+    named = (frames,) if isinstance(frames, str) else tuple(frames)
+    wrong = [name for name in named if name not in SENSORS]
+    if wrong or not named:
+        raise ValueError(
+            f"restore={choice}: frames must name rgb, depth or both, got {frames!r:.80}."
+        )
+    return named
+
+
+def _text_or_none(version: Any) -> str | None:
+    return None if version is None else str(version)
+
+
+def _source(module: ModuleType, version: str | None) -> str:
+    """Return the sha256 of a module's source file, "" if there is none. Raises ValueError if there
+    is no version in its place."""
+    source = _source_sha(module)
+    if not source and version is None:
+        raise ValueError(
+            f"{module.__name__} has no source file to tell its versions apart: write "
+            f"restore={module.__name__}:NAME@VERSION, and change VERSION with its behaviour."
+        )
+    return source
+
+
+@cache
+def _source_sha(module: ModuleType) -> str:
+    """As :func:`_source`, read once: a later edit of the file does not change a loaded module."""
+    try:
+        file = inspect.getsourcefile(module)
+    except TypeError:  # a module of the interpreter itself
+        return ""
+    return sha256(Path(file)) if file and Path(file).is_file() else ""

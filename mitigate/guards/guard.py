@@ -1,0 +1,226 @@
+"""The contract of guards: what stands between inputs and an agent at run time.
+
+A guard may change the instruction of an episode (``begin``), the frames of an observation
+(``observe``), or the agent itself while an episode runs (``attach``). Each has a default that
+changes nothing. The safeguard (text), the restorer (frames) and callables of users are guards;
+``opening.py`` makes them from the options ``safeguard=`` and ``restore=``.
+
+This module needs no torch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from mitigate.core.observation import DEPTH, RGB, Observation
+from mitigate.corruptions import Key
+from mitigate.worlds.world import World, WorldWrapper
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+RESTORER = "restorer-"  # begins the fingerprint of what ``restore=`` names
+
+
+@dataclass(frozen=True)
+class EpisodeStart:
+    """What a guard knows of an episode that begins.
+
+    Attributes:
+        key: seed and episode id, for random draws.
+        instruction: as the corruption left it.
+        system_prompt: of an agent that has one, as the corruption left it.
+    """
+
+    key: Key
+    instruction: str
+    system_prompt: str | None = None
+
+
+class Guard:
+    """Base class of guards. A subclass overrides what it needs; every default changes nothing.
+
+    An episode's result must not depend on other episodes, nor on their order: ``observe`` keeps
+    nothing between calls, unless the guard overrides ``attach``. Then episodes run one after the
+    other.
+
+    Attributes:
+        label: part of a table's column name.
+        frames: frames that ``observe`` reads or changes.
+        version: names what :meth:`fingerprint` cannot read, such as weights in a file.
+    """
+
+    label: str = ""
+    frames: Sequence[str] = (RGB, DEPTH)
+    version: str | None = None
+
+    def begin(self, episode: EpisodeStart) -> str:
+        """Return the instruction that the agent gets."""
+        return episode.instruction
+
+    def begin_all(self, episodes: Sequence[EpisodeStart]) -> list[str]:
+        """Return the instruction of each episode; a model may compute them as a batch."""
+        return [self.begin(episode) for episode in episodes]
+
+    def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Return the observation that the agent gets. Only frames may differ from ``observation``,
+        whose arrays must not be changed in place."""
+        return observation
+
+    def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+        """Return :meth:`observe` of observations of different episodes."""
+        return [self.observe(observation) for observation in observations]
+
+    def attach(self, agent: Any) -> AbstractContextManager:
+        """Return a context within which ``agent`` is adapted, for one episode. When it ends, the
+        agent is as it was before."""
+        return nullcontext()
+
+    def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
+        """Return the guard that worker processes get for these episodes; it is pickled. A guard
+        with a large model answers all of them here."""
+        return self
+
+    def fingerprint(self) -> str:
+        """Return a content hash that tells rows behind this guard from others: its class and code,
+        ``settings()`` or attributes, weights and ``version``.
+
+        Raises:
+            ValueError: a part cannot be read, and ``version`` is None.
+        """
+        from mitigate.agents.fingerprint import contents, hash_of
+
+        found = contents(self, self.version)
+        kind = type(self).__name__
+        if found.unreadable:
+            raise ValueError(
+                f"The fingerprint of a {kind} must cover all of it, but {found.explain()} cannot "
+                "be read. Give the guard an attribute version, and change it whenever the guard's "
+                "behaviour changes."
+            )
+        return f"{kind}-{hash_of(found.parts, {})}"
+
+    def check_shown(self, sensors: Iterable[str], where: str) -> None:
+        """Raise ValueError if ``where`` shows none of the ``frames`` that this guard changes."""
+        shown = [*sensors]
+        if overrides(self, "observe") and not set(self.frames) & {*shown}:
+            raise ValueError(
+                f"The guard {self.label or type(self).__name__} is for {', '.join(self.frames)}, "
+                f"but {where} shows {', '.join(shown) or 'no frames'}: leave restore= out."
+            )
+
+
+def overrides(guard: Guard, method: str) -> bool:
+    """Return whether the class of ``guard`` defines ``method`` itself."""
+    return getattr(type(guard), method) is not getattr(Guard, method)
+
+
+class Guards(Guard):
+    """A chain of guards: each gets what the one before it returned."""
+
+    def __init__(self, guards: Iterable[Guard] = ()) -> None:
+        self.guards = tuple(guards)
+        self.label = "+".join(guard.label for guard in self.guards if guard.label)
+
+    def __bool__(self) -> bool:
+        return bool(self.guards)
+
+    def _overriding(self, method: str) -> list[Guard]:
+        return [guard for guard in self.guards if overrides(guard, method)]
+
+    @property
+    def frames(self) -> tuple[str, ...]:  # type: ignore[override]
+        """Frames that any of them reads or changes; empty if none defines ``observe``."""
+        names = (name for guard in self._overriding("observe") for name in guard.frames)
+        return tuple(dict.fromkeys(names))
+
+    @property
+    def adapts(self) -> bool:
+        """Whether one of them changes the agent."""
+        return bool(self._overriding("attach"))
+
+    def begin(self, episode: EpisodeStart) -> str:
+        for guard in self.guards:
+            episode = replace(episode, instruction=guard.begin(episode))
+        return episode.instruction
+
+    def begin_all(self, episodes: Sequence[EpisodeStart]) -> list[str]:
+        for guard in self.guards:
+            episodes = _with(episodes, guard.begin_all(episodes))
+        return [episode.instruction for episode in episodes]
+
+    def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
+        for guard in self.guards:
+            observation = guard.observe(observation)
+        return observation
+
+    def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+        for guard in self.guards:
+            observations = guard.observe_all(observations)
+        return [*observations]
+
+    @contextmanager
+    def attach(self, agent: Any) -> Iterator[None]:
+        with ExitStack() as stack:
+            for guard in self.guards:
+                stack.enter_context(guard.attach(agent))
+            yield
+
+    def prepared(self, episodes: Sequence[EpisodeStart]) -> Guards:
+        found = []
+        for guard in self.guards:
+            found.append(guard.prepared(episodes))
+            episodes = _with(episodes, found[-1].begin_all(episodes))
+        return Guards(found)
+
+    def fingerprint(self) -> str:
+        """Return the fingerprints of all, joined; "none" comes first where no guard changes the
+        instruction, and is all where there is no guard."""
+        words = [] if self._overriding("begin") else ["none"]
+        return "+".join([*words, *(guard.fingerprint() for guard in self.guards)])
+
+    def frames_hash(self) -> str | None:
+        """Return the fingerprint of the guards that change frames, None without any; of a restorer
+        it is its hash alone."""
+        found = [guard.fingerprint() for guard in self._overriding("observe")]
+        return "+".join(part.removeprefix(RESTORER) for part in found) if found else None
+
+    def check_shown(self, sensors: Iterable[str], where: str) -> None:
+        shown = [*sensors]
+        for guard in self.guards:
+            guard.check_shown(shown, where)
+
+
+def _with(episodes: Sequence[EpisodeStart], instructions: Sequence[str]) -> list[EpisodeStart]:
+    pairs = zip(episodes, instructions, strict=True)
+    return [replace(episode, instruction=instruction) for episode, instruction in pairs]
+
+
+NO_GUARDS = Guards()
+
+
+class Guarded(WorldWrapper):
+    """A world whose frames a guard has changed; itself a world, as a corrupted one is.
+
+    Frames are changed when the agent reads them, so an agent that reads none pays nothing.
+    ``observation.clean`` stays what it was.
+    """
+
+    def __init__(self, world: World, guard: Guard) -> None:
+        super().__init__(world)
+        self.guard = guard
+
+    def _seen(self, met: Observation) -> Observation:
+        def observed() -> dict[str, Any]:
+            shown = self.guard.observe(dict(met))
+            return {name: shown[name] for name in met.frames}
+
+        return Observation(met.ready, observed, met.frames, clean=met.clean)
+
+
+def guarded(world: World, guards: Guards) -> World:
+    """Return ``world`` behind ``guards``: itself if none of them changes frames."""
+    return Guarded(world, guards) if guards.frames else world

@@ -1,0 +1,123 @@
+"""From the options ``safeguard=`` and ``restore=`` to guards. Only what is chosen is imported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from mitigate.guards.frames import choices as restorers
+from mitigate.guards.frames.choices import SENSORS, callable_of, parted
+from mitigate.guards.guard import EpisodeStart, Guard, Guards
+
+if TYPE_CHECKING:
+    from mitigate.guards.text.guard import Safeguard
+
+NONE = (None, "none")
+
+
+class TextGuard(Guard):
+    """A safeguard (``safeguard=``) as a guard.
+
+    Args:
+        safeguard: repairs instructions.
+        label: see :class:`Guard`.
+    """
+
+    def __init__(self, safeguard: Safeguard, label: str) -> None:
+        self.safeguard = safeguard
+        self.label = label
+
+    def begin(self, episode: EpisodeStart) -> str:
+        return self.begin_all([episode])[0]
+
+    def begin_all(self, episodes: Sequence[EpisodeStart]) -> list[str]:
+        decisions = self.safeguard.canonicalise_all([e.instruction for e in episodes])
+        return [decision.text for decision in decisions]
+
+    def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
+        """Answer all episodes in this process, which has the only copy of a language model."""
+        texts = [episode.instruction for episode in episodes]
+        answers = dict(zip(texts, self.begin_all(episodes), strict=True))
+        return AnsweredText(answers, self.label, self.fingerprint())
+
+    def fingerprint(self) -> str:
+        return self.safeguard.identity
+
+
+class AnsweredText(Guard):
+    """The answers of a :class:`TextGuard` for worker processes. Other texts stay as they are."""
+
+    def __init__(self, answers: dict[str, str], label: str, fingerprint: str) -> None:
+        self.answers = answers
+        self.label = label
+        self._fingerprint = fingerprint
+
+    def begin(self, episode: EpisodeStart) -> str:
+        return self.answers.get(episode.instruction, episode.instruction)
+
+    def fingerprint(self) -> str:
+        return self._fingerprint
+
+
+def open_guards(
+    safeguard: str | None,
+    restore: str | None,
+    sensors: Iterable[str] = SENSORS,
+    log: str | Path | None = None,
+) -> Guards:
+    """Return the guards of the two options, the safeguard first.
+
+    Args:
+        safeguard: as in ``text/guard.py``, or None.
+        restore: as :func:`open_restorer`.
+        sensors: what the world shows.
+        log: file for the decisions of the safeguard.
+    """
+    found: list[Guard] = []
+    restorer = open_restorer(restore, sensors)
+    if safeguard not in NONE:
+        from mitigate.guards.text.choices import label
+        from mitigate.guards.text.guard import open_safeguard
+
+        opened = open_safeguard(str(safeguard), log=log)
+        assert opened is not None, "only none has no safeguard"
+        found.append(TextGuard(opened, label(str(safeguard))))
+    return Guards([*found, *([] if restorer is None else [restorer])])
+
+
+def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard | None:
+    """Return the guard of ``restore=`` (``frames/choices.py``), None for None and "none".
+
+    Raises:
+        FileNotFoundError: the folder holds no restorer.
+        ValueError: it is damaged, there is no such callable, or it changes none of ``sensors``,
+            which are what a world shows.
+    """
+    if choice in NONE:
+        return None
+    if callable_of(str(choice)) is not None:
+        from mitigate.guards.frames.callables import open_callable
+
+        made = open_callable(str(choice))
+    else:
+        from mitigate.guards.frames.restorer import load_restorer
+
+        folder, only = parted(str(choice))
+        restorer = load_restorer(folder)
+        made = restorer if only is None else restorer.only(only)
+        made.label = restorers.label(str(choice))
+    made.check_shown(sensors, "the world")
+    return made
+
+
+def labels(safeguard: str | None, restore: str | None) -> list[str]:
+    """Return the labels of the guards of the two options, without opening them."""
+    found = []
+    if safeguard not in NONE:
+        from mitigate.guards.text import choices
+
+        found.append(choices.label(str(safeguard)))
+    if restore not in NONE:
+        found.append(restorers.label(str(restore)))
+    return found

@@ -1,0 +1,252 @@
+"""The options of ``conf/train.yaml`` as dataclasses, and the range of each value.
+
+A mistyped value is rejected before anything is built.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from numbers import Real
+from typing import Any
+
+from omegaconf import MISSING, DictConfig, OmegaConf
+
+from mitigate.core import conf, seeding
+from mitigate.core.names import short, unknown
+from mitigate.evaluation.config import (
+    REPORT,
+    CostConfig,
+    EnvConfig,
+    EvaluationConfig,
+    FinetuneConfig,
+    SuiteConfig,
+    WeightsConfig,
+    open_entries,
+)
+
+LONGEST = 100  # characters of the options in a folder's name; longer ones end in a digest
+COUNT = 10**9  # steps; at 1000 steps per second a training would take 11 days
+EPISODES = 100_000  # per step, a generous bound
+PROCESSES = 256  # a generous bound
+LIMITS: dict[str, tuple[float, float]] = {  # least and greatest; all are finite numbers
+    "steps": (1, COUNT),
+    "keep": (1, 10**6),
+    "lr": (1e-12, 100.0),
+    "weight_decay": (0.0, 100.0),
+    "grad_clip": (0.0, 1e9),
+    "lag": (0, 64),
+    **dict.fromkeys(("warmup", "log_every", "save_every"), (0, COUNT)),
+    **dict.fromkeys(("eval_every", "figure_every"), (0, COUNT)),
+}
+MEANS = {
+    "grad_clip": ": a norm above 0, or 0 to clip nothing",
+    "steps": ", at least 1",
+    "keep": ", at least 1",
+    "lr": ", above 0",
+}
+OPTIONS: dict[str, tuple[float, float, str]] = {  # of a run: least, greatest and what it is
+    "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), as severity=0.6"),
+    "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest), or null: as severity"),
+    "rollouts": (1, EPISODES, "a number of episodes a step, as rollouts=24"),
+    "refresh_episodes": (
+        1,
+        EPISODES,
+        "a number of episodes that a success rate is measured on, as refresh_episodes=8",
+    ),
+    "workers": (
+        0,
+        PROCESSES,
+        "a number of processes that make batches, 0 for none beside this one, or null for one a "
+        "core, 8 at most",
+    ),
+    "evaluation.workers": (1, PROCESSES, "a number of processes that walk, or null for one a core"),
+}
+
+
+@dataclass
+class TrainerConfig:
+    """Settings of a Trainer; None: the stage's value, or else the Trainer's default."""
+
+    steps: int | None = None
+    lr: float | None = None
+    weight_decay: float | None = None
+    warmup: int | None = None
+    schedule: str | None = None
+    grad_clip: float | None = None
+    log_every: int | None = None
+    save_every: int | None = None
+    eval_every: int | None = None
+    figure_every: int | None = None
+    keep: int | None = None
+    lag: int | None = None
+    precision: str | None = None
+    device: str | None = None
+
+
+@dataclass
+class StageConfig:
+    """One stage of a recipe.
+
+    Attributes:
+        recipe: a ``_target_`` node: the objective, with its arguments and those of its source.
+        trainer: settings of this stage's trainer.
+        cost: seconds per step on the machine of ``precision.REFERENCE``, for the estimate at the
+            start; None: unknown.
+    """
+
+    recipe: Any = None
+    trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    cost: float | None = None
+
+    def settings(self, common: TrainerConfig) -> dict[str, Any]:
+        """Return the trainer settings that are set; those of ``common`` override the stage's."""
+        return {
+            name: value
+            for part in (self.trainer, common)
+            for name, value in vars(part).items()
+            if value is not None
+        }
+
+
+@dataclass
+class TrainConfig:
+    """Types of ``conf/train.yaml``; the meaning of each entry is written there."""
+
+    name: str = MISSING
+    seed: int = 0
+    severity: float = 0.6
+    severity_depth: float | None = None
+    init: str | None = None
+    init_parts: list[str] | None = None
+    teacher: str | None = None
+    rollouts: int = 24
+    refresh_episodes: int = 8
+    runs: str = "runs"
+    folder: str | None = None
+    workers: int | None = None
+    report: str = REPORT
+    agent: Any = MISSING  # read: a dict
+    weights: WeightsConfig = field(default_factory=WeightsConfig)
+    finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
+    cost: CostConfig = field(default_factory=CostConfig)
+    env: Any = MISSING  # read: an EnvConfig
+    schedule: Any = MISSING  # read: a dict
+    suite: Any = MISSING  # read: a SuiteConfig
+    stages: dict[str, StageConfig | None] = field(default_factory=dict)
+    trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    evaluation: EvaluationConfig = field(default_factory=EvaluationConfig)
+
+    @property
+    def active_stages(self) -> dict[str, StageConfig]:
+        """The stages that are not null, by name."""
+        return {name: stage for name, stage in self.stages.items() if stage is not None}
+
+    @property
+    def has_base(self) -> bool:
+        """Whether the run starts from whole weights, which are evaluated too."""
+        return bool(self.init and not self.init_parts)
+
+
+conf.register("train", TrainConfig)
+
+
+def either(first: Any, second: Any) -> Any:
+    """Resolve ``${either:${trainer.steps},${stages.policy.trainer.steps}}``: the first, if set."""
+    return second if first is None else first
+
+
+OmegaConf.register_new_resolver("either", either, replace=True)
+
+
+def read(cfg: DictConfig) -> TrainConfig:
+    """Return the composed options of a training as typed data, with a folder.
+
+    Raises:
+        ValueError: for an entry that refers to a missing one.
+    """
+    cfg = cfg.copy()
+    cfg.folder = cfg.folder or default_folder(cfg)  # other entries refer to it
+    config: TrainConfig = conf.typed(cfg, "train")
+    config.env = open_entries(EnvConfig, config.env)
+    config.suite = open_entries(SuiteConfig, config.suite)
+    return config
+
+
+def plain_data(value: Any) -> Any:
+    """Return a config as dicts, lists and numbers, which ``config.yaml`` holds."""
+    if is_dataclass(value) and not isinstance(value, type):
+        value = vars(value)  # with the entries that it does not declare
+    if isinstance(value, Mapping):
+        return {name: plain_data(entry) for name, entry in value.items()}
+    return [*map(plain_data, value)] if isinstance(value, (list, tuple)) else value
+
+
+def default_folder(config: TrainConfig | DictConfig, variant: str = "") -> str:
+    """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
+    depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
+    variant = re.sub(r"=(True|False)\b", lambda match: match[0].lower(), variant)  # as in sweeps
+    end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))  # Hydra splits at "="
+    if len(end) > LONGEST:
+        end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]
+    end = f"-{end}" if end else ""
+    return f"{config.runs}/{config.name}-s{config.severity:g}{depth}-seed{config.seed}{end}"
+
+
+def check_values(config: TrainConfig) -> None:
+    """Raise ValueError for an option or a trainer setting that is out of its range."""
+    numbers = {**vars(config), "evaluation.workers": config.evaluation.workers}
+    for name, (low, high, meaning) in OPTIONS.items():
+        value = numbers[name]
+        if value is not None and not in_range(value, low, high):
+            raise ValueError(
+                f"{name}={number_text(value)} must be from {low:g} to {high:g}: it is {meaning}."
+            )
+    seeding.check(config.seed)
+    for stage in config.active_stages.values():
+        check_trainer(stage.settings(config.trainer))
+
+
+def check_trainer(settings: Mapping[str, Any]) -> None:
+    """Raise ValueError for trainer settings that are unknown or out of range."""
+    from mitigate.core import precision
+    from mitigate.training import optimization
+
+    known = [entry.name for entry in fields(TrainerConfig)]
+    for name in settings:
+        if name not in known:
+            raise ValueError(
+                unknown("setting of a trainer", f"trainer.{name}", [f"trainer.{n}" for n in known])
+            )
+    check_limits(settings)
+    if "schedule" in settings:
+        optimization.check(settings["schedule"])
+    precision.check(settings.get("precision", "auto"))
+    precision.device_of(settings.get("device", "auto"))
+
+
+def check_limits(settings: Mapping[str, Any]) -> None:
+    """Raise ValueError for a number among a trainer's ``settings`` that is out of its range."""
+    for name, (low, high) in LIMITS.items():
+        value = settings.get(name)
+        if value is not None and not in_range(value, low, high):
+            raise ValueError(
+                f"trainer.{name}={number_text(value)} must be a number from {low:g} to {high:g}"
+                f"{MEANS.get(name, '')}. Set it on the command line, e.g. trainer.steps=100 "
+                "trainer.lr=1e-3."
+            )
+
+
+def in_range(value: float, low: float, high: float) -> bool:
+    """Return whether ``value`` is a finite number from ``low`` to ``high``."""
+    return isinstance(value, Real) and low <= value <= high and math.isfinite(value)
+
+
+def number_text(value: float) -> str:
+    """Return a number as messages show it."""
+    if not isinstance(value, Real):
+        return short(value)
+    huge = isinstance(value, int) and value.bit_length() > 60  # a float may not hold it
+    return "..." if huge else format(value, ".6g")

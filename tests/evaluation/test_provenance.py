@@ -1,0 +1,215 @@
+"""Rows of one world are not taken for another's."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import linecache
+import re
+import sys
+from dataclasses import dataclass
+from enum import Enum
+from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from omegaconf import OmegaConf
+
+from mitigate.core.build import maker
+from mitigate.core.observation import Sensor
+from mitigate.evaluation import provenance
+from mitigate.worlds.episodes import Episode, Goal, Instruction
+
+EPISODES = [
+    Episode("0", "0", "maze", (0, 0, 0), (0, 0, 0, 1), (Goal((0, 0, 0)),), Instruction("go"), ())
+]
+
+
+class Maze:
+    """A world of ``cells``."""
+
+    def __init__(self, cells: int = 9, rule: str = "there", size: int = 8) -> None:
+        self.cells, self.rule = cells, rule
+        self.sensors = {"rgb": Sensor("rgb", (size, size, 3), "uint8")}
+
+
+class Other(Maze):
+    """Another class."""
+
+
+def keep(folder: Path, make, source: str | None = None) -> None:
+    provenance.keep(folder, *provenance.first_world(make), "val", EPISODES, source)
+
+
+def around(name: str | None = None, **kwargs) -> SimpleNamespace:
+    env = SimpleNamespace(spec=SimpleNamespace(id=name, kwargs=kwargs)) if name else None
+    return SimpleNamespace(rule="there", sensors={}, env=env)
+
+
+def of_config(**given):
+    target = f"{__name__}.Maze"
+    return maker(OmegaConf.create({"_target_": target, "_partial_": True, **given}))
+
+
+def in_two_layers(env) -> SimpleNamespace:
+    return SimpleNamespace(rule="there", sensors={}, env=SimpleNamespace(env=env))
+
+
+def with_cells(cells: int):
+    return lambda: Maze(cells)
+
+
+def by_default(value: int, kind: str = ""):
+    def positional(cells=value):
+        return Maze(cells)
+
+    def keyword(*, cells=value):
+        return Maze(cells)
+
+    return keyword if kind else positional
+
+
+@dataclass
+class Size:
+    cells: int
+
+
+class Kind(Enum):
+    DARK, LIT = range(2)
+
+
+class Builder:
+    def __init__(self, cells: int) -> None:
+        self.cells = cells
+
+    def build(self) -> Maze:
+        return Maze(self.cells)
+
+    __call__ = build
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "told"),
+    [
+        (partial(Maze, 9), partial(Maze, 3), "argument.0 was '9' and is '3'"),
+        (partial(Maze, cells=9), partial(Maze, cells=3), "argument.cells was '9' and is '3'"),
+        (of_config(cells=9), of_config(cells=3), "env.world.cells was '9' and is '3'"),
+        (of_config(), of_config(cells=3), "env.world.cells was not set and is '3'"),
+        (with_cells(9), with_cells(3), "value.cells was '9' and is '3'"),
+        (partial(Maze, Path("a")), partial(Maze, Path("b")), """argument.0 was '"a"'"""),
+        (partial(Maze, np.int64(9)), partial(Maze, np.int64(3)), "argument.0 was '9' and is '3'"),
+        (partial(Maze, 1), partial(Maze, 2), "argument.0 was '1' and is '2'"),  # no open files
+        (partial(Maze, np.zeros(2)), partial(Maze, np.ones(2)), "argument.0 was '\"array float64"),
+        (partial(Maze, Size(9)), partial(Maze, Size(3)), """Size", [9]]'"""),
+        (partial(Maze, Kind.DARK), partial(Maze, Kind.LIT), "Kind.DARK"),
+        (partial(Maze, [0] * 99), partial(Maze, [0] * 98 + [1]), "argument.0 was '[0, 0"),
+        (by_default(9), by_default(3), "default.0 was '9' and is '3'"),
+        (by_default(9, "keyword"), by_default(3, "keyword"), "default.cells was '9' and is '3'"),
+        (Builder(9), Builder(3), "attribute.cells was '9' and is '3'"),
+        (Builder(9).build, Builder(3).build, "attribute.cells was '9' and is '3'"),
+        (Maze, lambda: Maze(3), "what makes it was not set"),
+        (lambda: Maze(9), lambda: Maze(3), """what makes it was '[["Maze"], [9]]'"""),
+        (lambda: around(), lambda: around("Maze-v0"), "what makes it was"),
+        (lambda: around("Maze-v0", size=5), lambda: around("Maze-v0", size=6), "its env was"),
+        (lambda: Maze(), lambda: Other(), "its class was"),
+    ],
+)
+def test_rows_of_another_world_are_refused_and_it_is_said_what_differs(
+    tmp_path, first, second, told
+):
+    for _ in range(2):
+        keep(tmp_path, first)
+    with pytest.raises(ValueError, match=re.escape(told)) as refused:
+        keep(tmp_path, second)
+    assert "rows of another world" in str(refused.value) and "out=" in str(refused.value)
+
+
+class Odd:
+    """Looking at it raises."""
+
+    def __getattr__(self, name):
+        raise RuntimeError(name)
+
+
+def test_what_a_function_uses_may_be_anything_and_may_change_as_it_is_called(tmp_path):
+    made, circle, numbers, odd = {}, {}, [*range(100_000)], Odd()
+    circle["itself"] = circle
+
+    def make() -> Maze:
+        made[len(made)] = (numbers, circle, {(0, 1): 2}, odd)
+        return Maze()
+
+    for _ in range(3):
+        keep(tmp_path, make)
+        make()  # as a walk does
+    keep(tmp_path / "other", lambda: [Maze(), numbers, circle, odd][0])
+    assert (tmp_path / provenance.NOTE).stat().st_size < 3000
+
+
+def test_two_paths_of_one_file_are_one_world(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("scene.json", "other.json"):
+        Path(name).write_text("{}")
+    keep(tmp_path, of_config(cells="scene.json"))
+    keep(tmp_path, of_config(cells=str(tmp_path / "scene.json")))
+    with pytest.raises(ValueError, match=r"env\.world\.cells"):
+        keep(tmp_path, of_config(cells="other.json"))
+
+
+def test_worlds_of_other_sensors_or_another_rule_stand_side_by_side(tmp_path):
+    """Their rows say so: a table of agents with one camera and with twelve is one folder."""
+    for kind in ({}, {"size": 16}, {"rule": "near"}, {}):
+        keep(tmp_path, of_config(**kind))
+    with pytest.raises(ValueError, match=r"env\.world\.cells"):
+        keep(tmp_path, of_config(size=16, cells=3))
+
+
+@pytest.mark.parametrize("wrapped", [False, True])
+def test_an_edited_world_is_another_one(tmp_path, monkeypatch, wrapped):
+    """Also one inside an environment's wrappers."""
+    monkeypatch.syspath_prepend(tmp_path)
+    source = "class Edited:\n    rule, sensors = 'there', {}\n    won = True\n"
+    for text in (source, source, source.replace("True", "False")):
+        (tmp_path / "edited_world.py").write_text(text)
+        sys.modules.pop("edited_world", None)
+        importlib.invalidate_caches()
+        linecache.clearcache()
+        edited = importlib.import_module("edited_world").Edited
+        make = partial(in_two_layers, edited()) if wrapped else edited
+        if text == source:
+            keep(tmp_path, make)
+            continue
+        with pytest.raises(ValueError, match=r"the code of .* was changed"):
+            keep(tmp_path, make)
+    sys.modules.pop("edited_world")
+
+
+def test_a_folder_of_before_is_taken_as_it_is_and_what_its_note_says_counts(tmp_path):
+    (tmp_path / "rows.jsonl").write_text("")
+    keep(tmp_path, Maze)
+    note = tmp_path / provenance.NOTE
+    note.write_text(json.dumps({"val": {"world": f"{__name__}.Maze", "sums": {}}}))
+    keep(tmp_path, partial(Maze, 3))
+    note.write_text(json.dumps({"val": {"world": "toy.Toy", "sums": {}}}))
+    with pytest.raises(ValueError, match=r"its class was 'toy\.Toy'"):
+        keep(tmp_path, Maze)
+
+
+def test_another_list_is_refused_by_its_file_too(tmp_path):
+    listed = tmp_path / "val.json"
+    listed.write_text("{}")
+    keep(tmp_path, Maze, str(listed))
+    listed.write_text("[]")
+    with pytest.raises(ValueError, match="another list of val"):
+        keep(tmp_path, Maze, str(listed))
+
+
+def test_a_world_is_called_by_its_class_or_by_the_environment_in_one_of_ours():
+    from mitigate.worlds.seeded import SeededWorld
+
+    ours = SeededWorld.__new__(SeededWorld)
+    assert provenance.name_of(Maze()) == "Maze" and provenance.name_of(ours) == "SeededWorld"
+    ours.env = SimpleNamespace(unwrapped=Maze())
+    assert provenance.name_of(ours) == "Maze"

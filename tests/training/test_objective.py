@@ -1,0 +1,67 @@
+"""An objective receives its source; a recipe's flat arguments are split between both."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import pytest
+import torch
+
+from mitigate.training.objective import Objective, ObjectiveSpec, assemble
+from tests.tiny import TinyAgent
+
+
+class Numbers:
+    """A source of numbers."""
+
+    def __init__(self, agent, count: int = 2, seed: int = 0) -> None:
+        self.agent = agent
+        self.count = count
+        self.seed = seed
+
+
+class OnNumbers(Objective):
+    sources = {"numbers": partial(Numbers, count=3)}
+
+    def __init__(self, agent, numbers: Numbers, seed: int = 0, weight: float = 1.0) -> None:
+        super().__init__()
+        self.agent = agent
+        self.numbers = numbers
+        self.seed = seed
+        self.scale = weight
+
+
+TARGET = f"{__name__}.OnNumbers"
+
+
+def test_spec_gives_each_argument_to_the_constructors_that_name_it():
+    spec = ObjectiveSpec.of({"_target_": TARGET, "count": 5, "seed": 7, "weight": 2.0})
+    assert spec.source == {"count": 5, "seed": 7}
+    assert spec.arguments == {"seed": 7, "weight": 2.0}
+    agent = TinyAgent()
+    made = spec.build(agent)
+    assert made.agent is made.numbers.agent is agent
+    assert (made.numbers.count, made.numbers.seed, made.seed, made.scale) == (5, 7, 7, 2.0)
+
+
+def test_spec_uses_the_source_defaults_of_the_objective():
+    assert ObjectiveSpec.of({"_target_": TARGET}).build(TinyAgent()).numbers.count == 3
+    assert assemble(OnNumbers, TinyAgent(), count=4).numbers.count == 4
+
+
+def test_spec_rejects_an_argument_that_neither_constructor_names():
+    with pytest.raises(ValueError, match="no argument 'cuont'. Did you mean count?"):
+        ObjectiveSpec.of({"_target_": TARGET, "cuont": 5})
+
+
+def test_recipe_is_a_deprecated_name_of_objective():
+    with pytest.warns(DeprecationWarning, match="import Objective"):
+        from mitigate.training.recipe import Recipe
+    assert Recipe is Objective
+
+
+def test_build_never_trains_weights_that_are_not_floating_point():
+    agent = TinyAgent()
+    agent.register_parameter("bits", torch.nn.Parameter(torch.ones(2).byte(), requires_grad=False))
+    ObjectiveSpec.of({"_target_": TARGET}).build(agent)
+    assert not agent.bits.requires_grad and agent.body[0].weight.requires_grad
