@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from inspect import signature
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import torch
 from torch import nn
@@ -30,9 +30,6 @@ from mitigate.core.checkpoint import CONFIG
 from mitigate.core.files import find, places, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short, unknown
-
-if TYPE_CHECKING:
-    pass
 
 FORMAT = 2  # of a card; 1 is read, too (core/older_folders.py)
 CARD, README = "card.json", "README.md"
